@@ -1,0 +1,1 @@
+"""Metrics, repeated runs, tables and plots."""

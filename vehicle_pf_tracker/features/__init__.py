@@ -1,0 +1,1 @@
+"""What is measured in the image: frames, boxes, windows, histograms, similarity."""

@@ -1,0 +1,82 @@
+"""Boxes in continuous pixel coordinates.
+
+Pixel `i` covers the interval [i, i + 1), so that the centre of a box is ``x + width / 2`` and the
+centre of the first pixel is 0.5. Every position in this package is given in these coordinates.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.features.errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """An upright rectangle: top-left corner, width and height, in px."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+    @classmethod
+    def around(cls, centre: tuple[float, float], width: float, height: float) -> Box:
+        """Make the box of this size whose centre is `centre` (px)."""
+        return cls(centre[0] - width / 2, centre[1] - height / 2, width, height)
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Centre (x, y) in px."""
+        return self.x + self.width / 2, self.y + self.height / 2
+
+    @property
+    def diagonal(self) -> float:
+        """Length of the diagonal in px."""
+        return math.hypot(self.width, self.height)
+
+    @property
+    def area(self) -> float:
+        """Area in px²."""
+        return self.width * self.height
+
+    @property
+    def corners(self) -> tuple[tuple[float, float], ...]:
+        """The four corners, clockwise in the image from the top left."""
+        right, bottom = self.x + self.width, self.y + self.height
+        return (self.x, self.y), (right, self.y), (right, bottom), (self.x, bottom)
+
+    def __str__(self) -> str:
+        return f"{self.x:g},{self.y:g},{self.width:g},{self.height:g}"
+
+
+def check_target(box: Box, width: int, height: int) -> Box:
+    """Return `box` if a tracker can start on it in an image of `width` x `height` px.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite, the box has no area, or its centre is outside the image.
+    """
+    values = (box.x, box.y, box.width, box.height)
+    if not all(map(math.isfinite, values)):
+        raise InputError(f"the target {box} has a number that is not finite; give x,y,w,h in px")
+    if box.width < 1 or box.height < 1:
+        raise InputError(f"the target {box} is smaller than one pixel; give x,y,w,h in px")
+    cx, cy = box.centre
+    if not (0 <= cx <= width and 0 <= cy <= height):
+        raise InputError(
+            f"the target {box} has its centre outside the image of {width}x{height} px; "
+            "give the top-left corner and the size of the vehicle in this image"
+        )
+    return box
+
+
+def clip_position(
+    position: tuple[float, float], width: int, height: int
+) -> tuple[float, float]:
+    """Move `position` to the nearest pixel centre range of an image of `width` x `height` px."""
+    x = min(max(position[0], 0.5), width - 0.5)
+    y = min(max(position[1], 0.5), height - 0.5)
+    return x, y
