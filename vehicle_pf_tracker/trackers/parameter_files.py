@@ -1,0 +1,107 @@
+"""Parameters to and from ROS parameter files."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.trackers.parameters import EFFECTS, ParameterSpec, Value
+
+_WIDTH = 96
+
+
+def to_yaml(
+    table: Mapping[str, ParameterSpec],
+    values: Mapping[str, Value],
+    title: str,
+) -> str:
+    """Write `values` as a commented ROS parameter file for any node name and namespace."""
+    lines = [f"# {title}", "/**:", "  ros__parameters:"]
+    for name, spec in table.items():
+        lines += [f"    # {line}" for line in textwrap.wrap(_comment(spec), _WIDTH)]
+        lines.append(f"    {name}: {_scalar(values[name])}")
+    return "\n".join(lines) + "\n"
+
+
+def _comment(spec: ParameterSpec) -> str:
+    facts = [spec.unit, spec.bounds, " | ".join(spec.choices), spec.source]
+    if spec.effect != "keeps":
+        facts.append(f"a change {EFFECTS[spec.effect]}")
+    if spec.read_only:
+        facts.append("set at start-up only")
+    told = "; ".join(fact for fact in facts if fact)
+    return spec.doc + (f" [{told}]" if told else "")
+
+
+def _scalar(value: Value) -> str:
+    text: str = yaml.safe_dump(value, default_flow_style=True, width=10**6)
+    return text.splitlines()[0]
+
+
+def read_yaml(path: Path, node_name: str) -> dict[str, object]:
+    """Read the parameters that the file at `path` has for the node `node_name`.
+
+    Sections count when their last part is `node_name` or a wildcard; later ones win, as in ROS.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it is no YAML, or it has no `ros__parameters` for this node.
+    """
+    try:
+        document = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"cannot read the parameter file {path}: {error.strerror}") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"the parameter file {path} is not valid YAML: {reason}") from None
+    sections = list(_sections(document, ""))
+    if not sections:
+        raise InputError(
+            f"the parameter file {path} has no ros__parameters section; "
+            "`vehicle-pf-tracker params VARIANT` prints one to start from"
+        )
+    chosen = [body for name, body in sections if _matches(name, node_name)]
+    if not chosen:
+        names = ", ".join(name for name, _ in sections)
+        raise InputError(
+            f"the parameter file {path} has nothing for {node_name}, only for {names}; "
+            "use /** as the node name to address any"
+        )
+    merged: dict[str, object] = {}
+    for body in chosen:
+        merged.update(_flatten(body, ""))
+    return merged
+
+
+def _sections(document: Any, prefix: str) -> Iterable[tuple[str, Mapping[str, Any]]]:
+    if not isinstance(document, Mapping):
+        return
+    for key, body in document.items():
+        name = f"{prefix}/{str(key).strip('/')}"
+        if not isinstance(body, Mapping):
+            continue
+        inner = body.get("ros__parameters")
+        if isinstance(inner, Mapping):
+            yield name, inner
+        yield from _sections({k: v for k, v in body.items() if k != "ros__parameters"}, name)
+
+
+def _matches(section: str, node_name: str) -> bool:
+    return section.rsplit("/", 1)[-1] in {node_name, "*", "**"}
+
+
+def _flatten(body: Mapping[str, Any], prefix: str) -> dict[str, object]:
+    flat: dict[str, object] = {}
+    for key, value in body.items():
+        name = f"{prefix}{key}"
+        if isinstance(value, Mapping):
+            flat.update(_flatten(value, name + "."))
+        else:
+            flat[name] = value
+    return flat

@@ -1,0 +1,250 @@
+"""Parameters as frozen dataclasses: the one table everything else is derived from.
+
+A field made with `parameter` carries its default, bounds, unit, a line on what turning it does, and
+its source. A field whose type is another such dataclass (made with `group`) nests, and its fields
+get dotted names (`reference.alpha`). ROS descriptors, YAML files, ``--set key=value`` and the
+tables in the docs are all made from `specs`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias, TypeVar, cast, get_type_hints
+
+from vehicle_pf_tracker.features.errors import InputError
+
+Value: TypeAlias = bool | int | float | str
+Effect: TypeAlias = Literal["keeps", "relearns", "restarts"]
+ParametersT = TypeVar("ParametersT")
+
+EFFECTS: Mapping[Effect, str] = {
+    "keeps": "keeps track and reference",
+    "relearns": "keeps the track, rebuilds the reference from the first frame's target",
+    "restarts": "restarts the random numbers",
+}
+
+_KEY = "parameter"
+_TYPE_NAMES = {bool: "true or false", int: "a whole number", float: "a number", str: "a word"}
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterSpec:
+    """Everything there is to say about one parameter.
+
+    Attributes
+    ----------
+    name : str
+        Dotted snake_case name.
+    kind : type
+        `bool`, `int`, `float` or `str`.
+    doc : str
+        What turning it does, in one line.
+    minimum, maximum : float or None
+        Inclusive bounds, in `unit`; None is unbounded.
+    choices : tuple of str
+        The words allowed; empty where any will do.
+    source : str
+        Paper and equation, or reading, it comes from.
+    effect : {"keeps", "relearns", "restarts"}
+        What a change while tracking does (`EFFECTS`).
+    read_only : bool
+        True where it can be set at start-up only.
+    """
+
+    name: str
+    kind: type[Value]
+    default: Value
+    doc: str
+    minimum: float | None = None
+    maximum: float | None = None
+    unit: str = ""
+    source: str = ""
+    choices: tuple[str, ...] = ()
+    effect: Effect = "keeps"
+    read_only: bool = False
+
+    def check(self, value: object) -> Value:
+        """Return `value` in this parameter's type; whole numbers do for real ones.
+
+        Raises
+        ------
+        InputError
+            If the type is wrong, the number is not finite or out of bounds, or the word unknown.
+        """
+        if self.kind is float and isinstance(value, int) and not isinstance(value, bool):
+            value = float(value)
+        if type(value) is not self.kind:
+            raise InputError(f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {value!r}")
+        checked = cast("Value", value)
+        if self.choices and checked not in self.choices:
+            raise InputError(f"{self.name} must be one of {', '.join(self.choices)}, got {value!r}")
+        if isinstance(checked, int | float):
+            self._check_bounds(checked)
+        return checked
+
+    def _check_bounds(self, value: float) -> None:
+        if not math.isfinite(value):
+            raise InputError(f"{self.name} must be finite, got {value!r}")
+        low = -math.inf if self.minimum is None else self.minimum
+        high = math.inf if self.maximum is None else self.maximum
+        if not low <= value <= high:
+            raise InputError(f"{self.name} must be {self.bounds}, got {value!r}")
+
+    @property
+    def bounds(self) -> str:
+        """The bounds in words, for messages and tables; empty where there are none."""
+        if self.minimum is not None and self.maximum is not None:
+            return f"from {self.minimum:g} to {self.maximum:g}"
+        if self.minimum is not None:
+            return f"at least {self.minimum:g}"
+        return "" if self.maximum is None else f"at most {self.maximum:g}"
+
+    def parse(self, text: str) -> Value:
+        """Read a value written on a command line."""
+        word = text.strip()
+        readers: dict[type, Any] = {bool: _parse_bool, int: int, float: float, str: str}
+        try:
+            value = readers[self.kind](word)
+        except ValueError:
+            raise InputError(
+                f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {text!r}"
+            ) from None
+        return self.check(value)
+
+
+def _parse_bool(word: str) -> bool:
+    try:
+        return {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}[
+            word.lower()
+        ]
+    except KeyError:
+        raise ValueError(word) from None
+
+
+def parameter(  # noqa: PLR0913 - one keyword per column of the table
+    default: Value,
+    doc: str,
+    *,
+    minimum: float | None = None,
+    maximum: float | None = None,
+    unit: str = "",
+    source: str = "",
+    choices: Iterable[str] = (),
+    effect: Effect = "keeps",
+    read_only: bool = False,
+) -> Any:
+    """Make the dataclass field of one parameter; see `ParameterSpec` for the meaning of each."""
+    spec = ParameterSpec(
+        "", type(default), default, doc, minimum, maximum, unit, source, tuple(choices), effect,
+        read_only,
+    )  # fmt: skip
+    return dataclasses.field(default=default, metadata={_KEY: spec})
+
+
+def group(kind: type[Any], **changed: Value) -> Any:
+    """Make the field of a nested group; `changed` overrides the group's defaults here."""
+    return dataclasses.field(default_factory=lambda: kind(**changed), metadata={_KEY: kind})
+
+
+def specs(cls: type[Any]) -> dict[str, ParameterSpec]:
+    """Every parameter of the dataclass `cls` by dotted name, in order of declaration."""
+    hints = get_type_hints(cls)
+    defaults = cls()
+    table: dict[str, ParameterSpec] = {}
+    for field in dataclasses.fields(cls):
+        value = getattr(defaults, field.name)
+        if dataclasses.is_dataclass(value):
+            for name, spec in specs(hints[field.name]).items():
+                dotted = f"{field.name}.{name}"
+                table[dotted] = dataclasses.replace(spec, name=dotted, default=_get(value, name))
+        else:
+            spec = field.metadata[_KEY]
+            table[field.name] = dataclasses.replace(spec, name=field.name, default=value)
+    return table
+
+
+def _get(parameters: Any, name: str) -> Any:
+    for part in name.split("."):
+        parameters = getattr(parameters, part)
+    return parameters
+
+
+def to_mapping(parameters: object) -> dict[str, Value]:
+    """The value of every parameter by dotted name."""
+    return {name: _get(parameters, name) for name in specs(type(parameters))}
+
+
+def from_mapping(
+    cls: type[ParametersT],
+    values: Mapping[str, object],
+    base: ParametersT | None = None,
+) -> ParametersT:
+    """Make a `cls` from `base` (the defaults if None) with `values` put over it.
+
+    All or nothing. A method ``validate(self) -> None`` of `cls` may check parameters against each
+    other; it raises `InputError`.
+
+    Raises
+    ------
+    InputError
+        Naming every unknown name, wrong type and value out of bounds.
+    """
+    table = specs(cls)
+    problems = [unknown_name(name, table) for name in values if name not in table]
+    checked = to_mapping(base if base is not None else cls())
+    for name, value in values.items():
+        if name in table:
+            try:
+                checked[name] = table[name].check(value)
+            except InputError as error:
+                problems.append(str(error))
+    if problems:
+        raise InputError("; ".join(problems))
+    made = cast("ParametersT", _build(cls, checked, ""))
+    validate = getattr(made, "validate", None)
+    if validate is not None:
+        validate()
+    return made
+
+
+def _build(cls: type[Any], values: Mapping[str, Value], prefix: str) -> Any:
+    hints = get_type_hints(cls)
+    arguments: dict[str, Any] = {}
+    for field in dataclasses.fields(cls):
+        dotted = prefix + field.name
+        nested = dotted not in values
+        arguments[field.name] = (
+            _build(hints[field.name], values, dotted + ".") if nested else values[dotted]
+        )
+    return cls(**arguments)
+
+
+def unknown_name(name: str, known: Iterable[str]) -> str:
+    """Say that there is no parameter `name`, and which one may be meant."""
+    close = difflib.get_close_matches(name, list(known), n=1)
+    return f"there is no parameter {name!r}" + (f" (did you mean {close[0]!r}?)" if close else "")
+
+
+def parse_assignments(
+    table: Mapping[str, ParameterSpec], assignments: Iterable[str]
+) -> dict[str, Value]:
+    """Read `key=value` words as given to ``--set``.
+
+    Raises
+    ------
+    InputError
+        If a word has no ``=``, a name is unknown, or a value does not fit.
+    """
+    values: dict[str, Value] = {}
+    for word in assignments:
+        name, equals, text = word.partition("=")
+        if not equals:
+            raise InputError(f"--set wants name=value, got {word!r}")
+        if name not in table:
+            raise InputError(unknown_name(name, table))
+        values[name] = table[name].parse(text)
+    return values
