@@ -73,9 +73,7 @@ def check_target(box: Box, width: int, height: int) -> Box:
     return box
 
 
-def clip_position(
-    position: tuple[float, float], width: int, height: int
-) -> tuple[float, float]:
+def clip_position(position: tuple[float, float], width: int, height: int) -> tuple[float, float]:
     """Move `position` to the nearest pixel centre range of an image of `width` x `height` px."""
     x = min(max(position[0], 0.5), width - 0.5)
     y = min(max(position[1], 0.5), height - 0.5)

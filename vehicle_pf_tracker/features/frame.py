@@ -10,7 +10,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.features.errors import InputError
 
 Frame: TypeAlias = npt.NDArray[np.uint8]
-"""RGB image, shape (height, width, 3), dtype uint8; contiguous or a strided view, never written to."""
+"""RGB image, shape (height, width, 3) of uint8; contiguous or a strided view, never written to."""
 
 
 def check_frame(frame: Frame) -> Frame:

@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import functools
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, Literal, TypeAlias, TypeVar, cast, get_type_hints
 
 from vehicle_pf_tracker.features.errors import InputError
@@ -150,7 +152,8 @@ def group(kind: type[Any], **changed: Value) -> Any:
     return dataclasses.field(default_factory=lambda: kind(**changed), metadata={_KEY: kind})
 
 
-def specs(cls: type[Any]) -> dict[str, ParameterSpec]:
+@functools.cache
+def specs(cls: type[Any]) -> Mapping[str, ParameterSpec]:
     """Every parameter of the dataclass `cls` by dotted name, in order of declaration."""
     hints = get_type_hints(cls)
     defaults = cls()
@@ -164,7 +167,7 @@ def specs(cls: type[Any]) -> dict[str, ParameterSpec]:
         else:
             spec = field.metadata[_KEY]
             table[field.name] = dataclasses.replace(spec, name=field.name, default=value)
-    return table
+    return MappingProxyType(table)
 
 
 def _get(parameters: Any, name: str) -> Any:
@@ -174,7 +177,7 @@ def _get(parameters: Any, name: str) -> Any:
 
 
 def to_mapping(parameters: object) -> dict[str, Value]:
-    """The value of every parameter by dotted name."""
+    """Return the value of every parameter by dotted name."""
     return {name: _get(parameters, name) for name in specs(type(parameters))}
 
 

@@ -1,0 +1,72 @@
+"""Importance weights of a particle cloud."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Weights = npt.NDArray[np.float64]
+
+
+def normalise(weights: Weights) -> tuple[Weights, bool]:
+    """Scale weights so that they sum to one (P1 eq. 6).
+
+    Parameters
+    ----------
+    weights : (N,) array
+        Non-negative weights in any scale.
+
+    Returns
+    -------
+    normalised : (N,) array
+        Sums to one.
+    sound : bool
+        False where the weights say nothing (all zero, negative, or not finite); they are uniform
+        then, and the caller's confidence has to say so.
+    """
+    weights = np.asarray(weights, dtype=np.float64)
+    largest = weights.max()
+    if not (np.isfinite(largest) and largest > 0 and weights.min() >= 0):
+        return np.full(len(weights), 1.0 / len(weights)), False
+    # Dividing by the largest first keeps a cloud of tiny weights from summing to zero.
+    scaled = weights / largest
+    return scaled / scaled.sum(), True
+
+
+def from_log(log_weights: Weights) -> tuple[Weights, bool]:
+    """Normalise weights given as logarithms, without underflow.
+
+    Parameters
+    ----------
+    log_weights : (N,) array
+        Logarithms in any offset; minus infinity is a weight of zero.
+
+    Returns
+    -------
+    normalised, sound
+        As for `normalise`.
+    """
+    largest = np.max(log_weights)
+    if not np.isfinite(largest):
+        return normalise(np.zeros(len(log_weights)))
+    return normalise(np.exp(log_weights - largest))
+
+
+def effective_sample_size(weights: Weights) -> float:
+    """Number of equally weighted particles that would do as well, ``1 / sum(w²)``.
+
+    Parameters
+    ----------
+    weights : (N,) array
+        Normalised weights.
+
+    Returns
+    -------
+    float
+        From 1 (one particle carries everything) to N (uniform).
+
+    References
+    ----------
+    P2 eq. 14 and P3, with normalised weights (READINGS 16).
+    """
+    return float(1.0 / np.dot(weights, weights))
