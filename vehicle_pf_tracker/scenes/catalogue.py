@@ -1,0 +1,78 @@
+"""The scenes by name, and how to make one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.scenes.bar import BarParameters, bar
+from vehicle_pf_tracker.scenes.randomness import check_seed
+from vehicle_pf_tracker.scenes.scene import Scene
+from vehicle_pf_tracker.trackers.parameters import from_mapping, parse_assignments, specs
+
+
+@dataclass(frozen=True, slots=True)
+class SceneKind:
+    """An entry of the catalogue.
+
+    Attributes
+    ----------
+    parameters : type
+        Frozen dataclass of what can be chosen, its fields made with `parameter`.
+    build : callable
+        Makes the scene from an instance of `parameters` and a seed.
+    summary : str
+        What is to be seen, in one line.
+    """
+
+    parameters: type[Any]
+    build: Callable[[Any, int], Scene]
+    summary: str
+
+
+SCENES: dict[str, SceneKind] = {
+    "bar": SceneKind(BarParameters, bar, "a vehicle passes behind a dark vertical bar"),
+}
+
+
+def make_scene(
+    name: str, *, seed: int = 0, settings: Mapping[str, object] | Sequence[str] = ()
+) -> Scene:
+    """Make the scene `name`.
+
+    Parameters
+    ----------
+    name : str
+        A key of `SCENES`.
+    seed : int
+        At least 0. Changes textures, noise and what the scene leaves to chance.
+    settings : mapping or sequence of str
+        Scene parameters by name, or ``key=value`` words.
+
+    Raises
+    ------
+    InputError
+        If the scene or a setting is unknown (naming the known ones), or a value does not fit.
+    """
+    if name not in SCENES:
+        raise InputError(f"there is no scene {name!r}; choose one of {', '.join(SCENES)}")
+    kind = SCENES[name]
+    if isinstance(settings, Mapping):
+        _check_names(name, settings)
+        values: Mapping[str, object] = settings
+    else:
+        _check_names(name, (word.partition("=")[0] for word in settings))
+        values = parse_assignments(specs(kind.parameters), settings)
+    return kind.build(from_mapping(kind.parameters, values), check_seed(seed))
+
+
+def _check_names(scene: str, names: Iterable[str]) -> None:
+    known = specs(SCENES[scene].parameters)
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        raise InputError(
+            f"the scene {scene} has no setting {', '.join(map(repr, unknown))}; "
+            f"it has {', '.join(known)}"
+        )

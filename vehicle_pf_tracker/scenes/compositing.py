@@ -1,0 +1,155 @@
+"""Sprites painted over an image at exact sub-pixel places and sizes, and what they hide.
+
+A sprite keeps the integral of its finely drawn picture, so that the mean over any pixel is four
+look-ups, exact for every sub-pixel shift and every scale.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.features.box import Box
+
+Image: TypeAlias = npt.NDArray[np.float32]
+"""RGB picture while it is composed, shape (height, width, 3), levels 0 to 255."""
+Array: TypeAlias = npt.NDArray[np.float64]
+Colour: TypeAlias = tuple[float, float, float]
+"""Red, green and blue, levels 0 to 255."""
+
+
+@dataclass(frozen=True, slots=True)
+class PixelWindow:
+    """The pixels of an image from (left, top) up to, not including, (right, bottom)."""
+
+    left: int
+    top: int
+    right: int
+    bottom: int
+
+    @classmethod
+    def of(cls, box: Box, width: int, height: int) -> PixelWindow:
+        """Make the window of all pixels of a `width` x `height` px image that `box` touches."""
+        return cls(
+            max(math.floor(box.x), 0),
+            max(math.floor(box.y), 0),
+            min(math.ceil(box.x + box.width), width),
+            min(math.ceil(box.y + box.height), height),
+        )
+
+    @property
+    def empty(self) -> bool:
+        """True if there is no pixel in it."""
+        return self.left >= self.right or self.top >= self.bottom
+
+    @property
+    def slices(self) -> tuple[slice, slice]:
+        """Index of these pixels in an image array."""
+        return slice(self.top, self.bottom), slice(self.left, self.right)
+
+
+class Sprite:
+    """A picture with opacity that can be painted at any place and size.
+
+    Parameters
+    ----------
+    colour : array of shape (rows, columns, 3)
+        RGB levels 0 to 255, finely drawn; each cell is taken as constant over its area.
+    opacity : array of shape (rows, columns)
+        0 (nothing there) to 1 (hides what is behind).
+    """
+
+    def __init__(self, colour: npt.ArrayLike, opacity: npt.ArrayLike) -> None:
+        alpha = np.asarray(opacity, dtype=np.float64)[..., np.newaxis]
+        cells = np.concatenate([np.asarray(colour, dtype=np.float64) * alpha, alpha], axis=2)
+        rows, columns, channels = cells.shape
+        self._integral: Array = np.zeros((rows + 1, columns + 1, channels))
+        self._integral[1:, 1:] = cells.cumsum(axis=0).cumsum(axis=1)
+
+    @classmethod
+    def plain(cls, colour: Colour, opacity: float = 1.0) -> Sprite:
+        """Make a rectangle of one colour."""
+        return cls(np.reshape(colour, (1, 1, 3)), np.full((1, 1), opacity))
+
+    def area(self, box: Box) -> float:
+        """Area in px² of the silhouette when the sprite fills `box`."""
+        rows, columns = self._integral.shape[0] - 1, self._integral.shape[1] - 1
+        return float(self._integral[-1, -1, 3] * box.area / (rows * columns))
+
+    def layer(self, box: Box, window: PixelWindow) -> Array:
+        """Mean of the sprite over each pixel of `window` when it fills `box`.
+
+        Returns
+        -------
+        array of shape (rows, columns, 4)
+            Red, green and blue already multiplied with opacity, and opacity.
+        """
+        return self._means(self._integral, box, window)
+
+    def coverage(self, box: Box, window: PixelWindow) -> Array:
+        """Opacity alone of `layer`, shape (rows, columns)."""
+        return self._means(self._integral[..., 3], box, window)
+
+    @staticmethod
+    def _means(integral: Array, box: Box, window: PixelWindow) -> Array:
+        rows, columns = integral.shape[0] - 1, integral.shape[1] - 1
+        x = (np.arange(window.left, window.right + 1) - box.x) * (columns / box.width)
+        y = (np.arange(window.top, window.bottom + 1) - box.y) * (rows / box.height)
+        corners = _interpolate(integral, y.clip(0, rows), x.clip(0, columns))
+        sums: Array = np.diff(np.diff(corners, axis=0), axis=1)
+        sums *= box.area / (rows * columns)
+        return sums
+
+
+def _interpolate(grid: Array, y: Array, x: Array) -> Array:
+    """Bilinear values of `grid` at every (y, x), which is exact for an integral of cells."""
+    row = np.minimum(y.astype(np.intp), grid.shape[0] - 2)
+    column = np.minimum(x.astype(np.intp), grid.shape[1] - 2)
+    depth = (1,) * (grid.ndim - 2)
+    down = (y - row).reshape(-1, 1, *depth)
+    right = (x - column).reshape(1, -1, *depth)
+    upper, lower = grid[row], grid[row + 1]
+    left: Array = upper[:, column] * (1 - down) + lower[:, column] * down
+    beyond: Array = upper[:, column + 1] * (1 - down) + lower[:, column + 1] * down
+    values: Array = left * (1 - right) + beyond * right
+    return values
+
+
+def paint(canvas: Image, sprite: Sprite, box: Box) -> None:
+    """Paint `sprite`, filling `box`, over `canvas` in place; what lies outside is clipped."""
+    window = PixelWindow.of(box, canvas.shape[1], canvas.shape[0])
+    if window.empty:
+        return
+    layer = sprite.layer(box, window).astype(np.float32)
+    region = canvas[window.slices]
+    region *= 1 - layer[..., 3:]
+    region += layer[..., :3]
+
+
+def visible_fraction(
+    target: tuple[Sprite, Box], covers: Iterable[tuple[Sprite, Box]], width: int, height: int
+) -> float:
+    """Share (0 to 1) of the target's silhouette that can be seen in a `width` x `height` px image.
+
+    Parts outside the image count as hidden. `covers` are what is painted after the target.
+    """
+    sprite, box = target
+    window = PixelWindow.of(box, width, height)
+    if window.empty:
+        return 0.0
+    seen = sprite.coverage(box, window)
+    for cover, place in covers:
+        if _overlap(place, box):
+            seen = seen * (1 - cover.coverage(place, window))
+    # Rounded because sums of floats must not make a free vehicle look 1e-16 hidden.
+    return round(float(min(max(seen.sum() / sprite.area(box), 0.0), 1.0)), 9)
+
+
+def _overlap(one: Box, other: Box) -> bool:
+    across = one.x < other.x + other.width and other.x < one.x + one.width
+    return across and one.y < other.y + other.height and other.y < one.y + one.height

@@ -1,0 +1,27 @@
+"""Named random streams: what one part of a scene draws never shifts another part's numbers."""
+
+from __future__ import annotations
+
+import zlib
+
+import numpy as np
+
+from vehicle_pf_tracker.features.errors import InputError
+
+
+def stream(seed: int, name: str, index: int = 0) -> np.random.Generator:
+    """Make the generator of the part `name` of a scene, for its frame or copy `index`."""
+    return np.random.default_rng([seed, zlib.crc32(name.encode()), index])
+
+
+def check_seed(seed: int) -> int:
+    """Return `seed` if a scene can be made from it.
+
+    Raises
+    ------
+    InputError
+        If it is not a whole number of at least 0.
+    """
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError(f"the seed of a scene must be a whole number of at least 0, got {seed!r}")
+    return seed

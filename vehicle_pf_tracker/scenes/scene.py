@@ -1,0 +1,110 @@
+"""A scene: things on paths in front of a backdrop, seen by a camera, with exact truth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
+from vehicle_pf_tracker.scenes.camera import Camera
+from vehicle_pf_tracker.scenes.compositing import Image, Sprite, paint, visible_fraction
+from vehicle_pf_tracker.scenes.paths import Path
+
+FIRST_STAMP_NS = 1_000_000_000
+"""Stamp of frame 0: a stamp of zero means "unknown" to many tools."""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneFrame:
+    """One frame of a scene and the truth about its target."""
+
+    frame: Frame
+    truth: Truth
+
+
+@dataclass(frozen=True, slots=True)
+class Actor:
+    """A sprite on a path.
+
+    Attributes
+    ----------
+    sprite : Sprite
+        What it looks like.
+    path : Path
+        The box it fills, by frame number.
+    hides : bool
+        False for what darkens or tints without hiding, such as shadows.
+    """
+
+    sprite: Sprite
+    path: Path
+    hides: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Synthetic traffic; the same scene, parameters and seed give bit-identical frames.
+
+    Attributes
+    ----------
+    name : str
+        Name in the catalogue.
+    width, height : int
+        Image size in px.
+    frame_rate : float
+        Frames per second.
+    frame_count : int
+        Number of frames.
+    backdrop : callable
+        Draws what never moves and hides nothing; called once per pass over the frames.
+    actors : tuple of Actor
+        All things in the order they are painted, far to near.
+    target : int
+        Index in `actors` of the vehicle the truth is about.
+    camera : Camera
+        Takes the picture.
+    """
+
+    name: str
+    width: int
+    height: int
+    frame_rate: float
+    frame_count: int
+    backdrop: Callable[[], Image]
+    actors: tuple[Actor, ...]
+    target: int
+    camera: Camera
+
+    def frames(self) -> Iterator[SceneFrame]:
+        """Render every frame in order, with its truth."""
+        backdrop = self.backdrop()
+        for index in range(self.frame_count):
+            picture = backdrop.copy()
+            for actor in self.actors:
+                paint(picture, actor.sprite, actor.path(index))
+            yield SceneFrame(self.camera.capture(picture, index), self.truth(index))
+
+    def truths(self) -> Iterator[Truth]:
+        """Give the truth of every frame, as `frames` does, without rendering a pixel."""
+        return map(self.truth, range(self.frame_count))
+
+    def truth(self, index: int) -> Truth:
+        """Exact truth of frame `index`, counted from 0."""
+        box = self.actors[self.target].path(index)
+        visible = self._visible_fraction(index, box)
+        return Truth(self.stamp_ns(index), box, Occlusion.of(visible), visible)
+
+    def stamp_ns(self, index: int) -> int:
+        """Stamp of frame `index`: 1 s, and one period more for each frame, to the nearest ns."""
+        return FIRST_STAMP_NS + round(index * 1e9 / self.frame_rate)
+
+    def _visible_fraction(self, index: int, box: Box) -> float:
+        covers = (
+            (actor.sprite, actor.path(index))
+            for actor in self.actors[self.target + 1 :]
+            if actor.hides
+        )
+        target = (self.actors[self.target].sprite, box)
+        return visible_fraction(target, covers, self.width, self.height)

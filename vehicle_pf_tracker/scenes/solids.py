@@ -1,0 +1,107 @@
+"""Solids of flat faces, seen from beside the road and a little above, drawn as sprites.
+
+Coordinates in metres: x forward, y away from the viewer, z up. The view is a parallel projection,
+as through the long lens of a traffic camera, so that a solid keeps its size along the road.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.scenes.compositing import Array, Colour, Sprite
+
+ELEVATION = math.radians(35)
+"""Angle of the view above the horizon."""
+OVERSAMPLING = 6
+"""Cells drawn per pixel and axis."""
+
+_VIEW = np.array([0.0, -math.cos(ELEVATION), math.sin(ELEVATION)])
+_SUN = np.array([0.25, -0.5, 0.83])
+_SUBCELL_BITS = 8
+
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Face:
+    """A flat polygon of one colour; `glow` leaves it unshaded (lamps, glass with a reflection)."""
+
+    points: tuple[Point, ...]
+    colour: Colour
+    glow: bool = False
+
+
+def side_panel(
+    contour: Sequence[tuple[float, float]], y: float, colour: Colour, *, glow: bool = False
+) -> Face:
+    """Make an upright face along the road from (x, z) points."""
+    return Face(tuple((x, y, z) for x, z in contour), colour, glow)
+
+
+def strips(
+    contour: Sequence[tuple[float, float]], near: float, far: float, colour: Colour
+) -> list[Face]:
+    """Make the faces swept by a line of (x, z) points drawn from y = `near` to `far`."""
+    return [
+        Face(((x0, near, z0), (x1, near, z1), (x1, far, z1), (x0, far, z0)), colour)
+        for (x0, z0), (x1, z1) in pairwise(contour)
+    ]
+
+
+def disc(x: float, z: float, radius: float, colour: Colour, y: float = 0.0) -> Face:
+    """Make a round upright face along the road."""
+    turns = [2 * math.pi * step / 24 for step in range(24)]
+    contour = [(x + radius * math.cos(t), z + radius * math.sin(t)) for t in turns]
+    return side_panel(contour, y, colour)
+
+
+def draw(faces: Iterable[Face], width: float, height: float, *, mirrored: bool = False) -> Sprite:
+    """Draw `faces` in the order given, far to near.
+
+    The silhouette is stretched to touch all four sides of the sprite, so that the box the sprite
+    fills is the tight box of the vehicle. `width` and `height` (px) are the size it is meant for
+    and set the fineness. `mirrored` turns it to drive to the left.
+    """
+    faces = list(faces)
+    outlines = [_project(face) for face in faces]
+    every = np.concatenate(outlines)
+    low, extent = every.min(axis=0), np.ptp(every, axis=0)
+    columns, rows = math.ceil(width * OVERSAMPLING), math.ceil(height * OVERSAMPLING)
+    colour = np.zeros((rows, columns, 3), np.uint8)
+    mask = np.zeros((rows, columns), np.uint8)
+    for face, outline in zip(faces, outlines, strict=True):
+        # OpenCV puts integer coordinates in the middle of a cell, we at its edge.
+        cells = (outline - low) / extent * (columns, rows) - 0.5
+        polygon = [np.rint(cells * 2**_SUBCELL_BITS).astype(np.int32)]
+        cv2.fillPoly(colour, polygon, _shaded(face), cv2.LINE_8, _SUBCELL_BITS)
+        cv2.fillPoly(mask, polygon, (1,), cv2.LINE_8, _SUBCELL_BITS)
+    step = -1 if mirrored else 1
+    return Sprite(colour[:, ::step], mask[:, ::step])
+
+
+def _project(face: Face) -> Array:
+    x, y, z = np.transpose(face.points)
+    return np.stack([x, -z * math.cos(ELEVATION) - y * math.sin(ELEVATION)], axis=1)
+
+
+def _shaded(face: Face) -> Colour:
+    if face.glow:
+        return face.colour
+    light = 0.5 + 0.55 * max(0.0, float(_normal(face) @ _SUN))
+    red, green, blue = (min(255.0, round(level * light)) for level in face.colour)
+    return red, green, blue
+
+
+def _normal(face: Face) -> Array:
+    """Return the unit normal on the side of the viewer."""
+    points = np.asarray(face.points)
+    normal = np.cross(points[1] - points[0], points[2] - points[0])
+    normal = normal / math.hypot(*normal)
+    result: Array = normal if normal @ _VIEW >= 0 else -normal
+    return result

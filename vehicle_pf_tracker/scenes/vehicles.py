@@ -1,0 +1,167 @@
+"""What vehicles look like: solids with body, glass, wheels and lamps in colours of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from vehicle_pf_tracker.scenes.compositing import Colour
+from vehicle_pf_tracker.scenes.solids import Face, Point, disc, side_panel, strips
+
+TYRE: Colour = (22, 22, 24)
+RIM: Colour = (150, 152, 156)
+SILL: Colour = (38, 38, 40)
+SIDE_GLASS: Colour = (40, 48, 56)
+SCREEN: Colour = (92, 112, 128)
+HEAD_LAMP: Colour = (244, 240, 214)
+TAIL_LAMP: Colour = (186, 24, 22)
+AMBER_LAMP: Colour = (236, 140, 30)
+
+Contour = Sequence[tuple[float, float]]
+
+
+def car(paint: Colour) -> list[Face]:
+    """Build a small hatchback, 3.7 m long, with a dark glass roof."""
+    body = [(0.0, 0.32), (0.0, 0.78), (0.12, 0.95), (2.55, 0.95), (3.4, 0.8), (3.66, 0.62),
+            (3.7, 0.32)]  # fmt: skip
+    cabin = [(0.1, 0.95), (0.42, 1.5), (1.95, 1.5), (2.65, 0.95)]
+    roof_window = _quad((0.75, 1.5), (1.65, 1.5), 0.45, 1.25, (62, 66, 74))
+    windows = [[(0.5, 1.0), (0.66, 1.4), (1.15, 1.43), (1.15, 1.0)],
+               [(1.25, 1.0), (1.25, 1.43), (1.9, 1.4), (2.35, 1.0)]]  # fmt: skip
+    return [
+        *_shell(body, 1.68, paint),
+        *_cabin(cabin, 1.68, paint),
+        roof_window,
+        *(_side_window(window) for window in windows),
+        *_flank(body, paint, door=1.2),
+        *_lamps(body, front=3.7, rear=0.0),
+        *_wheels((0.68, 2.95), 0.31),
+    ]
+
+
+def saloon(paint: Colour) -> list[Face]:
+    """Build a saloon, 4.6 m long, with its boot behind the cabin."""
+    body = [(0.0, 0.35), (0.0, 0.86), (0.1, 0.97), (3.3, 0.94), (4.35, 0.78), (4.58, 0.6),
+            (4.6, 0.32)]  # fmt: skip
+    cabin = [(0.6, 0.96), (1.25, 1.44), (2.6, 1.44), (3.4, 0.94)]
+    windows = [[(0.95, 1.0), (1.35, 1.37), (1.9, 1.38), (1.9, 1.0)],
+               [(2.0, 1.0), (2.0, 1.38), (2.55, 1.37), (3.05, 1.0)]]  # fmt: skip
+    return [
+        *_shell(body, 1.78, paint),
+        *_cabin(cabin, 1.78, paint),
+        *(_side_window(window) for window in windows),
+        *_flank(body, paint, door=1.95),
+        *_lamps(body, front=4.6, rear=0.0),
+        *_wheels((0.85, 3.7), 0.32),
+    ]
+
+
+def van(paint: Colour) -> list[Face]:
+    """Build a panel van, 5.4 m long, with windows in the cab only."""
+    body = [(0.0, 0.4), (0.0, 2.25), (0.08, 2.4), (3.5, 2.45), (3.9, 2.3), (4.6, 1.35),
+            (5.3, 1.1), (5.4, 0.4)]  # fmt: skip
+    width = 2.0
+    screen = Face(((3.9, 0.1, 2.3), (4.6, 0.05, 1.35), (4.6, 1.95, 1.35), (3.9, 1.9, 2.3)), SCREEN)
+    door_window = side_panel([(3.45, 1.4), (3.45, 2.05), (3.85, 2.05), (4.35, 1.4)], 0, SIDE_GLASS)
+    return [
+        *_shell(body, width, paint),
+        screen,
+        *_flank(body, paint, door=3.35),
+        door_window,
+        *_lamps(body, front=5.4, rear=0.0),
+        *_wheels((1.0, 4.5), 0.36),
+    ]
+
+
+def lorry(cab: Colour, box: Colour, stripe: Colour) -> list[Face]:
+    """Build a box lorry, 12.2 m long: a closed box of 9.9 m behind a cab with a wind deflector."""
+    width, floor, top = 2.5, 1.1, 4.0
+    load = [(0.0, floor), (0.0, top), (9.9, top), (9.9, floor)]
+    tractor = [(10.0, 0.7), (10.0, 3.8), (10.7, 3.7), (11.8, 2.9), (12.15, 1.9), (12.2, 0.7)]
+    screen = Face(((11.75, 0.15, 2.85), (12.12, 0.15, 1.95), (12.12, 2.35, 1.95),
+                   (11.75, 2.35, 2.85)), SCREEN)  # fmt: skip
+    return [
+        side_panel([(0.1, 0.6), (0.1, 1.2), (12.0, 1.2), (12.0, 0.6)], 0.3, SILL),
+        *_shell(tractor, width, cab),
+        screen,
+        side_panel(tractor, 0, cab),
+        side_panel([(10.7, 1.9), (10.7, 2.75), (11.5, 2.75), (11.85, 1.9)], 0, SIDE_GLASS),
+        *strips(load[1:3], 0, width, box),
+        side_panel(load, 0, box),
+        side_panel([(0.0, 2.0), (0.0, 2.5), (9.9, 2.5), (9.9, 2.0)], 0, stripe),
+        *(side_panel([(x, 1.15), (x, 3.95), (x + 0.06, 3.95), (x + 0.06, 1.15)], 0, SILL)
+          for x in (0.02, 9.8)),
+        side_panel([(2.9, 0.5), (2.9, 1.05), (7.4, 1.05), (7.4, 0.5)], 0, (120, 122, 124)),
+        side_panel([(11.95, 0.8), (11.95, 1.1), (12.2, 1.1), (12.2, 0.8)], 0, HEAD_LAMP, glow=True),
+        side_panel([(0.0, 0.8), (0.0, 1.05), (0.3, 1.05), (0.3, 0.8)], 0, TAIL_LAMP, glow=True),
+        *_wheels((1.0, 2.2, 8.6, 10.9), 0.5),
+    ]  # fmt: skip
+
+
+def _quad(one: tuple[float, float], two: tuple[float, float], near: float, far: float,
+          colour: Colour) -> Face:  # fmt: skip
+    return strips([one, two], near, far, colour)[0]
+
+
+def _shell(body: Contour, width: float, paint: Colour) -> list[Face]:
+    return strips(body, 0, width, paint)
+
+
+def _flank(body: Contour, paint: Colour, door: float) -> list[Face]:
+    """Near side of the body: paint, a darker lower part, the sill and the gap of a door."""
+    lower = tuple(0.8 * level for level in paint)
+    rear, front = body[0][0], body[-1][0]
+    return [
+        side_panel(body, 0, paint),
+        side_panel([(rear, 0.3), (rear, 0.55), (front, 0.55), (front, 0.3)], 0,
+                   (lower[0], lower[1], lower[2])),
+        side_panel([(rear + 0.3, 0.22), (rear + 0.3, 0.36), (front - 0.3, 0.36),
+                    (front - 0.3, 0.22)], 0, SILL),
+        side_panel([(door, 0.4), (door, 0.95), (door + 0.05, 0.95), (door + 0.05, 0.4)], 0, SILL),
+    ]  # fmt: skip
+
+
+_TUMBLEHOME = 0.2
+"""How far the cabin leans in from sill to roof, m."""
+
+
+def _cabin(cabin: Contour, width: float, paint: Colour) -> list[Face]:
+    """Rear and front screens, roof and the painted near side of a cabin of four (x, z) points."""
+    (xr, zr), (x1, z1), (x2, z2), (xf, zf) = cabin
+    near, far = _TUMBLEHOME, width - _TUMBLEHOME
+    return [
+        Face(((xr, 0.05, zr), (x1, near, z1), (x1, far, z1), (xr, width - 0.05, zr)), SCREEN),
+        Face(((xf, 0.05, zf), (x2, near, z2), (x2, far, z2), (xf, width - 0.05, zf)), SCREEN),
+        Face(((x1, near, z1), (x2, near, z2), (x2, far, z2), (x1, far, z1)), paint),
+        Face(((xr, 0.0, zr), (x1, near, z1), (x2, near, z2), (xf, 0.0, zf)), paint),
+    ]
+
+
+def _side_window(window: Contour) -> Face:
+    """Glass in the leaning near side of a cabin from sill (0.95 m) to roof (1.5 m)."""
+    points: list[Point] = [(x, _TUMBLEHOME * (z - 0.95) / 0.55, z) for x, z in window]
+    return Face(tuple(points), SIDE_GLASS)
+
+
+def _lamps(body: Contour, front: float, rear: float) -> list[Face]:
+    """Head lamp, amber side lamp and tail lamp, on the near side."""
+    top = body[-2][1]
+    return [
+        side_panel([(front - 0.42, top - 0.14), (front - 0.42, top), (front - 0.02, top),
+                    (front, top - 0.14)], 0, HEAD_LAMP, glow=True),
+        side_panel([(front - 0.55, top - 0.14), (front - 0.55, top), (front - 0.42, top),
+                    (front - 0.42, top - 0.14)], 0, AMBER_LAMP, glow=True),
+        side_panel([(rear, 0.6), (rear, 0.85), (rear + 0.22, 0.85), (rear + 0.22, 0.6)], 0,
+                   TAIL_LAMP, glow=True),
+    ]  # fmt: skip
+
+
+def _wheels(axles: Sequence[float], radius: float) -> list[Face]:
+    return [
+        face
+        for x in axles
+        for face in (
+            disc(x, radius + 0.04, radius + 0.09, SILL),
+            disc(x, radius, radius, TYRE),
+            disc(x, radius, 0.55 * radius, RIM),
+        )
+    ]
