@@ -1,0 +1,65 @@
+"""One description of the package for both of its homes: pip, and colcon on a robot."""
+
+import sys
+from glob import glob
+
+from setuptools import find_packages, setup
+
+NAME = "vehicle_pf_tracker"
+VARIANTS = ("apf", "pf")  # a test holds this equal to the registry in trackers/registry.py
+JAZZY_WHEELS = "sys_platform == 'linux' and platform_machine == 'x86_64'"
+
+RUNTIME = [
+    "numpy>=1.26",
+    "opencv-python-headless>=4.6",
+    "mcap>=1.2",
+    "rosbags>=0.10",
+    "rich>=13",
+    "matplotlib>=3.6",
+    "PyYAML>=6.0",
+]
+TEST = ["pytest>=7", "hypothesis>=6.100"]
+LINT = ["ruff>=0.17,<0.18", "mypy>=2.4,<3", "types-PyYAML"]
+ROS = [
+    f"{wheel}; {JAZZY_WHEELS}"
+    for wheel in (
+        "ros-jazzy-rclpy[fastrtps]==7.1.6",
+        "ros-jazzy-common-interfaces==5.3.6",
+        "ros-lifecycle-msgs==2.0.3",
+        "ros-rosgraph-msgs==2.0.3",
+        "ros-rcl-interfaces==2.0.3",
+    )
+]
+
+# On a robot (`setup.py install` or `develop`: colcon and the Debian builds) the libraries come from
+# apt through package.xml. apt's OpenCV is not called opencv-python-headless, and the executables
+# which `setup.py install` writes state requirements that pkg_resources would then find missing.
+BUILT_FOR_ROS = not {"install", "develop"}.isdisjoint(sys.argv[1:])
+
+setup(
+    name=NAME,
+    version="0.1.0",
+    description="Particle-filter vehicle tracking through occlusions, for ROS 2 and recordings",
+    license="Apache-2.0",
+    maintainer="vehicle_pf_tracker maintainers",
+    maintainer_email="maintainers@vehicle-pf-tracker.invalid",
+    python_requires=">=3.10",
+    packages=find_packages(include=[NAME, f"{NAME}.*"]),
+    package_data={NAME: ["py.typed"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
+        (f"share/{NAME}", ["package.xml"]),
+        (f"share/{NAME}/config", sorted(glob("config/*.yaml"))),
+        (f"share/{NAME}/launch", sorted(glob("launch/*.launch.py"))),
+    ],
+    zip_safe=False,
+    install_requires=[] if BUILT_FOR_ROS else RUNTIME,
+    extras_require={"ros": ROS, "test": TEST, "lint": LINT, "dev": TEST + LINT},
+    entry_points={
+        "console_scripts": [
+            f"vehicle-pf-tracker = {NAME}.cli.main:main",
+            f"bag_replay = {NAME}.cli.main:bag_replay",
+            *(f"{name}_tracker = {NAME}.ros.executables:{name}_tracker" for name in VARIANTS),
+        ],
+    },
+)
