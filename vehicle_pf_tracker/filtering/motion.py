@@ -56,12 +56,12 @@ def normal_rayleigh_pdf(along: Array, across: Array, sigma_r: float, sigma_n: fl
         Density per px².
     """
     across_pdf = np.exp(-0.5 * np.square(across / sigma_n)) / (np.sqrt(2 * np.pi) * sigma_n)
-    return rayleigh_pdf(along, sigma_r) * np.asarray(across_pdf)
+    return np.asarray(rayleigh_pdf(along, sigma_r) * across_pdf)
 
 
 def sample_normal(rng: np.random.Generator, count: int, sigma: float) -> Array:
     """Draw `count` displacements from equation 7, shape (count, 2), in px."""
-    return sigma * rng.standard_normal((count, 2))
+    return np.asarray(sigma * rng.standard_normal((count, 2)))
 
 
 def sample_normal_rayleigh(

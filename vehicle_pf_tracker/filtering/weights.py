@@ -53,7 +53,7 @@ def from_log(log_weights: Weights) -> tuple[Weights, bool]:
 
 
 def effective_sample_size(weights: Weights) -> float:
-    """Number of equally weighted particles that would do as well, ``1 / sum(w²)``.
+    """Count the equally weighted particles that would do as well, ``1 / sum(w²)``.
 
     Parameters
     ----------
@@ -69,4 +69,4 @@ def effective_sample_size(weights: Weights) -> float:
     ----------
     P2 eq. 14 and P3, with normalised weights (READINGS 16).
     """
-    return float(1.0 / np.dot(weights, weights))
+    return float(1.0 / np.square(weights).sum())

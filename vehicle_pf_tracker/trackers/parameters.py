@@ -81,7 +81,7 @@ class ParameterSpec:
             value = float(value)
         if type(value) is not self.kind:
             raise InputError(f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {value!r}")
-        checked = cast("Value", value)
+        checked = value
         if self.choices and checked not in self.choices:
             raise InputError(f"{self.name} must be one of {', '.join(self.choices)}, got {value!r}")
         if isinstance(checked, int | float):
@@ -152,9 +152,14 @@ def group(kind: type[Any], **changed: Value) -> Any:
     return dataclasses.field(default_factory=lambda: kind(**changed), metadata={_KEY: kind})
 
 
-@functools.cache
-def specs(cls: type[Any]) -> Mapping[str, ParameterSpec]:
+def specs(cls: type[object]) -> Mapping[str, ParameterSpec]:
     """Every parameter of the dataclass `cls` by dotted name, in order of declaration."""
+    key: Any = cls
+    return _specs(key)
+
+
+@functools.cache
+def _specs(cls: Any) -> Mapping[str, ParameterSpec]:
     hints = get_type_hints(cls)
     defaults = cls()
     table: dict[str, ParameterSpec] = {}

@@ -1,0 +1,137 @@
+"""`apf`: the adaptive particle filter of Scharcanski et al. 2011 (P1, Algorithms 1 and 2).
+
+In the regular regime particles are resampled and propagated with a Normal density; while the
+histogram at the estimate is unlike the first or the last one, they drift with a Normal-Rayleigh
+density along the mean motion instead. Step numbers are those of Algorithm 1. Speeds and spreads
+are per nominal frame period, so that all of them scale with the elapsed time.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle_pf_tracker.features.colour import Histogram, joint_histogram
+from vehicle_pf_tracker.features.colour_kernel import joint_similarity
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient, hellinger_distance
+from vehicle_pf_tracker.filtering.motion import (
+    RAYLEIGH_MEAN,
+    sample_normal,
+    sample_normal_rayleigh,
+)
+from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.filtering.weights import from_log
+from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
+from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
+from vehicle_pf_tracker.trackers.estimate import Array
+from vehicle_pf_tracker.trackers.likelihood import log_likelihood
+from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
+
+
+class ApfTracker(ParticleTracker[ApfParameters]):
+    """Algorithm 1 of P1."""
+
+    def __init__(self, parameters: ApfParameters) -> None:
+        super().__init__(parameters)
+        self._first: Histogram = np.zeros(0)
+        self._reference: Histogram = np.zeros(0)
+        self._velocity = MeanVelocity(0)
+        self._position = (0.0, 0.0)
+        self._pi = self._pi_up = 1.0
+
+    def reconfigure(self, parameters: ApfParameters) -> None:
+        """Take new parameters; a new velocity window looks at the same history."""
+        self._velocity = self._velocity.resized(parameters.effective().velocity.window)
+        super().reconfigure(parameters)
+
+    def _learn(self) -> None:
+        self._first = self.target.joint_histogram(self.window, self.parameters.histogram_bits)
+        self._reference = self._first
+
+    def _scatter(self, centre: tuple[float, float]) -> Array:
+        settings = self.parameters.effective()
+        self._pi = self._pi_up = 1.0  # step 2
+        self._velocity = MeanVelocity(settings.velocity.window)
+        self._position = (0.0, 0.0) if settings.velocity.from_origin else centre
+        moves = sample_normal(self._rng, settings.num_particles, settings.motion.sigma_w)
+        return np.asarray(centre) + moves  # step 1
+
+    def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        settings = self.parameters.effective()
+        bits = settings.histogram_bits
+        regular = self._is_clear(settings)  # step 4
+        if regular:
+            parents = self._resample(settings)  # steps 5 and 6
+            moves = sample_normal(
+                self._rng, len(parents), settings.motion.sigma_w * elapsed
+            )  # step 7
+        else:
+            parents = self._cloud.positions
+            moves = self._drift(settings, len(parents), elapsed)  # step 9
+        particles, left_image = self._move(frame, parents, moves)
+        rho = joint_similarity(frame, particles, self.window, self._reference, bits)
+        weights = from_log(log_likelihood(rho, settings.likelihood))  # steps 11 and 12
+        cloud = Cloud(particles, *weights)
+        position = cloud.mean()  # step 13
+        histogram = joint_histogram(frame, position, self.window, bits)  # step 14
+        evidence = _similarity(histogram, self._reference)
+        self._compare_and_learn(settings, histogram)  # steps 15 and 16
+        self._follow(settings, position, elapsed, regular=regular)
+        return Outcome(
+            cloud,
+            position,
+            self._velocity.value,
+            "regular" if regular else "occlusion",
+            evidence,
+            {"pi": self._pi, "pi_up": self._pi_up},
+            resampling_passes=int(regular),
+            resampled_particles=len(particles) if regular else 0,
+            left_image=left_image,
+        )
+
+    def _is_clear(self, settings: ApfParameters) -> bool:
+        return min(self._pi, self._pi_up) >= settings.occlusion.tau
+
+    def _resample(self, settings: ApfParameters) -> Array:
+        """Run Algorithm 2."""
+        scheme = SCHEMES[settings.resampling]
+        ancestors = scheme(self._cloud.weights, settings.num_particles, self._rng)
+        return self._cloud.positions[ancestors]
+
+    def _drift(self, settings: ApfParameters, count: int, elapsed: float) -> Array:
+        motion, velocity = settings.motion, self._velocity.value
+        if motion.drift_from_velocity:
+            sigma_r = float(np.hypot(*velocity)) / RAYLEIGH_MEAN
+        else:
+            sigma_r = motion.sigma_r or motion.sigma_w
+        sigma_n = motion.sigma_n or motion.sigma_w
+        return sample_normal_rayleigh(
+            self._rng, count, velocity, sigma_r * elapsed, sigma_n * elapsed
+        )
+
+    def _compare_and_learn(self, settings: ApfParameters, histogram: Histogram) -> None:
+        """Do steps 15 and 16."""
+        alpha = settings.reference.alpha
+        blended = alpha * histogram + (1 - alpha) * self._reference
+        judged = histogram if settings.occlusion.raw_histogram else blended
+        self._pi = _similarity(judged, self._first)
+        self._pi_up = _similarity(judged, self._reference)
+        if self._is_clear(settings) or not settings.reference.frozen_while_occluded:
+            self._reference = blended
+
+    def _follow(
+        self,
+        settings: ApfParameters,
+        position: tuple[float, float],
+        elapsed: float,
+        *,
+        regular: bool,
+    ) -> None:
+        if regular or not settings.velocity.frozen_while_occluded:
+            self._velocity.add(self._position, position, elapsed)
+        self._position = position
+
+
+def _similarity(p: Histogram, q: Histogram) -> float:
+    """``1 - d_B`` (step 16)."""
+    return float(1.0 - hellinger_distance(bhattacharyya_coefficient(p, q)))

@@ -1,0 +1,150 @@
+"""Parameters of `apf` (P1), with a switch for every reading that departs from the print."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.trackers.contract import TrackerParameters
+from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
+from vehicle_pf_tracker.trackers.parameters import group, parameter
+
+
+@dataclass(frozen=True, slots=True)
+class ApfMotionParameters:
+    """How particles are propagated in the two regimes."""
+
+    sigma_w: float = parameter(
+        6.0,
+        "About the vehicle's speed: less loses fast vehicles, more follows look-alikes.",
+        minimum=0.01,
+        maximum=1000.0,
+        unit="px/frame",
+        source="P1 eq. 7, READINGS 11",
+    )
+    sigma_n: float = parameter(
+        0.0,
+        "Larger: occluded particles spread further across the motion; 0 takes sigma_w.",
+        minimum=0.0,
+        maximum=1000.0,
+        unit="px/frame",
+        source="P1 eq. 10",
+    )
+    sigma_r: float = parameter(
+        0.0,
+        "Larger: occluded particles drift faster along the motion; 0 takes sigma_w. "
+        "Counts with drift_from_velocity off.",
+        minimum=0.0,
+        maximum=1000.0,
+        unit="px/frame",
+        source="P1 eq. 9",
+    )
+    drift_from_velocity: bool = parameter(
+        True,
+        "Drift at the vehicle's own mean speed, sigma_R = |V| / sqrt(pi / 2); off takes sigma_r.",
+        source="P1 eq. 20, READINGS 11",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ApfReferenceParameters:
+    """How the histogram that particles are held against follows the vehicle."""
+
+    alpha: float = parameter(
+        0.1,
+        "Higher: the reference follows changes of the vehicle's look faster.",
+        minimum=0.0,
+        maximum=1.0,
+        source="P1 Algorithm 1 step 15",
+    )
+    frozen_while_occluded: bool = parameter(
+        True,
+        "Keep the reference while occluded; off lets it learn the occluder, as printed.",
+        source="P1 Algorithm 1 step 15, READINGS 6",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ApfOcclusionParameters:
+    """When the occlusion regime is entered and left."""
+
+    tau: float = parameter(
+        0.8,
+        "Higher: smaller changes of the histogram switch to the occlusion regime.",
+        minimum=0.0,
+        maximum=1.0,
+        source="P1 Algorithm 1 step 4, READINGS 8",
+    )
+    raw_histogram: bool = parameter(
+        True,
+        "Judge the window's own histogram; off judges the blended reference, as printed.",
+        source="P1 Algorithm 1 step 16, READINGS 7",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ApfVelocityParameters:
+    """The mean velocity that gives the direction of the drift."""
+
+    window: int = parameter(
+        8,
+        "Longer: a steadier direction that follows turns later; 0 takes all estimates.",
+        minimum=0,
+        maximum=10_000,
+        unit="frames",
+        source="P1 section III-B, READINGS 5",
+    )
+    from_origin: bool = parameter(
+        False,
+        "Count the first displacement from (0, 0), as printed.",
+        source="P1 section III-B, READINGS 5",
+    )
+    frozen_while_occluded: bool = parameter(
+        True,
+        "Leave estimates of the occlusion regime out of the mean.",
+        source="READINGS 5",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ApfParameters(TrackerParameters):
+    """Parameters of `apf`."""
+
+    as_printed: bool = parameter(
+        False,
+        "Follow the paper to the letter: overrides every reading below that departs from it.",
+        source="READINGS 1, 5, 6, 7, 11",
+    )
+    histogram_bits: int = parameter(
+        3,
+        "More: finer colours, more easily upset by light and noise.",
+        minimum=1,
+        maximum=5,
+        unit="bits/channel",
+        source="P1 section III-C",
+        effect="relearns",
+    )
+    resampling: str = parameter(
+        "multinomial",
+        "How ancestors are drawn; systematic and stratified vary less.",
+        choices=SCHEMES,
+        source="P1 Algorithm 2",
+    )
+    motion: ApfMotionParameters = group(ApfMotionParameters)
+    likelihood: LikelihoodParameters = group(LikelihoodParameters)
+    reference: ApfReferenceParameters = group(ApfReferenceParameters)
+    occlusion: ApfOcclusionParameters = group(ApfOcclusionParameters)
+    velocity: ApfVelocityParameters = group(ApfVelocityParameters)
+
+    def effective(self) -> ApfParameters:
+        """Return the parameters in force: those of the print where `as_printed` is set."""
+        if not self.as_printed:
+            return self
+        return replace(
+            self,
+            likelihood=LikelihoodParameters(sigma_v=1.5, squared_distance=False),
+            motion=replace(self.motion, sigma_n=0.0, sigma_r=0.0, drift_from_velocity=False),
+            reference=replace(self.reference, frozen_while_occluded=False),
+            occlusion=replace(self.occlusion, raw_histogram=False),
+            velocity=ApfVelocityParameters(window=0, from_origin=True, frozen_while_occluded=False),
+        )

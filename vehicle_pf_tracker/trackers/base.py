@@ -1,0 +1,205 @@
+"""What all particle trackers share around the step that makes each of them itself."""
+
+from __future__ import annotations
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from vehicle_pf_tracker.features.box import Box, check_target
+from vehicle_pf_tracker.features.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.features.window import Window, are_outside, keep_inside
+from vehicle_pf_tracker.filtering.resampling import systematic
+from vehicle_pf_tracker.filtering.weights import effective_sample_size
+from vehicle_pf_tracker.trackers.contract import TrackerParameters
+from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode, read_only
+from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
+from vehicle_pf_tracker.trackers.parameters import specs, to_mapping
+from vehicle_pf_tracker.trackers.target import Target
+
+ParametersT = TypeVar("ParametersT", bound=TrackerParameters)
+
+DEFAULT_PERIOD = 1 / 30
+"""Frame period in s that is assumed until stamps or a parameter tell."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cloud:
+    """Particle positions (N, 2) in px, normalised weights (N,), and whether those say anything."""
+
+    positions: Array
+    weights: Array
+    sound: bool = True
+
+    @classmethod
+    def uniform(cls, positions: Array) -> Cloud:
+        """Cloud of equal weights."""
+        return cls(positions, np.full(len(positions), 1.0 / len(positions)))
+
+    def mean(self) -> tuple[float, float]:
+        """Weighted mean of the positions (P1 eq. 5)."""
+        x, y = (self.weights[:, np.newaxis] * self.positions).sum(axis=0)
+        return float(x), float(y)
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What a variant's step found; the base turns it into an `Estimate`.
+
+    Attributes
+    ----------
+    cloud : Cloud
+        After weighting, before the next resampling.
+    position : (float, float)
+        Estimate in px.
+    evidence : float
+        Similarity of the image at `position` to the reference, 0 to 1.
+    """
+
+    cloud: Cloud
+    position: tuple[float, float]
+    velocity: tuple[float, float]
+    regime: str
+    evidence: float
+    similarities: Mapping[str, float]
+    resampling_passes: int = 0
+    resampled_particles: int = 0
+    left_image: bool = False
+
+
+class ParticleTracker(ABC, Generic[ParametersT]):
+    """Start, time, mode, reconfiguration; a variant adds `_learn` and `_advance`.
+
+    Parameters
+    ----------
+    parameters : ParametersT
+        The variant's own dataclass.
+    """
+
+    def __init__(self, parameters: ParametersT) -> None:
+        self.parameters = parameters
+        self.frame_period = 1 / parameters.frame_rate if parameters.frame_rate else DEFAULT_PERIOD
+        self._seed = _draw_seed(parameters.seed)
+        self._rng = np.random.default_rng(self._seed)
+        self._target: Target | None = None
+        self._judge = EvidenceJudge()
+        self._cloud = Cloud.uniform(np.zeros((1, 2)))
+
+    @property
+    def seed(self) -> int:
+        """The seed in use."""
+        return self._seed
+
+    @property
+    def target(self) -> Target:
+        """The target as first seen.
+
+        Raises
+        ------
+        RuntimeError
+            If the tracker was not started.
+        """
+        if self._target is None:
+            raise RuntimeError("start the tracker on a first frame before stepping it")
+        return self._target
+
+    @property
+    def window(self) -> Window:
+        """The window that features are taken from."""
+        wanted = self.parameters.window
+        return self.target.window(wanted.width, wanted.height)
+
+    def start(self, frame: Frame, box: Box) -> Estimate:
+        """Learn the target; see `Tracker.start`."""
+        began = time.perf_counter()
+        check_target(box, *frame_size(check_frame(frame)))
+        self._target = Target(frame, box)
+        self._rng = np.random.default_rng(self._seed)
+        self._judge = EvidenceJudge()
+        self._cloud = Cloud.uniform(keep_inside(frame, self._scatter(box.centre)))
+        self._learn()
+        x, y = keep_inside(frame, np.asarray(box.centre))
+        outcome = Outcome(self._cloud, (float(x), float(y)), (0.0, 0.0), "start", 1.0, {})
+        return self._estimate(outcome, Mode.TRACKING, 1.0, began)
+
+    def step(self, frame: Frame, elapsed: float = 1.0) -> Estimate:
+        """Find the target in the next frame; see `Tracker.step`."""
+        began = time.perf_counter()
+        outcome = self._advance(check_frame(frame), elapsed)
+        self._cloud = outcome.cloud
+        mode = self._judge.judge(
+            outcome.evidence,
+            elapsed * self.frame_period,
+            self.parameters.evidence,
+            lost_after=self.parameters.lost_after,
+            left_image=outcome.left_image,
+        )
+        confidence = self._judge.confidence(outcome.evidence) if outcome.cloud.sound else 0.0
+        return self._estimate(outcome, mode, confidence, began)
+
+    def reconfigure(self, parameters: ParametersT) -> None:
+        """Take new parameters; see `Tracker.reconfigure`."""
+        changed = _changed_effects(self.parameters, parameters)
+        self.parameters = parameters
+        if parameters.frame_rate:
+            self.frame_period = 1 / parameters.frame_rate
+        if "restarts" in changed:
+            self._seed = _draw_seed(parameters.seed)
+            self._rng = np.random.default_rng(self._seed)
+        if self._target is None:
+            return
+        if len(self._cloud.weights) != parameters.num_particles:
+            ancestors = systematic(self._cloud.weights, parameters.num_particles, self._rng)
+            self._cloud = Cloud.uniform(self._cloud.positions[ancestors])
+        if "relearns" in changed:
+            self._learn()
+
+    @abstractmethod
+    def _learn(self) -> None:
+        """Build the references from `self.target`."""
+
+    @abstractmethod
+    def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        """Take the paper's step on the cloud `self._cloud`."""
+
+    @abstractmethod
+    def _scatter(self, centre: tuple[float, float]) -> Array:
+        """Draw the first particles around `centre`, shape (num_particles, 2) in px."""
+
+    def _move(self, frame: Frame, positions: Array, moves: Array) -> tuple[Array, bool]:
+        """Displace particles inside the image; tells whether their mean went over its border."""
+        proposed = positions + moves
+        left_image = bool(are_outside(frame, proposed.mean(axis=0)))
+        return keep_inside(frame, proposed), left_image
+
+    def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
+        box = Box.around(outcome.position, self.target.box.width, self.target.box.height)
+        estimate = Estimate(
+            position=outcome.position,
+            box=box,
+            velocity=outcome.velocity,
+            mode=mode,
+            regime=outcome.regime,
+            confidence=confidence,
+            similarities=outcome.similarities,
+            effective_sample_size=effective_sample_size(outcome.cloud.weights),
+            resampling_passes=outcome.resampling_passes,
+            resampled_particles=outcome.resampled_particles,
+            particles=read_only(outcome.cloud.positions),
+            weights=read_only(outcome.cloud.weights),
+        )
+        return replace(estimate, duration=time.perf_counter() - began)
+
+
+def _draw_seed(seed: int) -> int:
+    return seed if seed >= 0 else int(np.random.default_rng().integers(2**31))
+
+
+def _changed_effects(old: TrackerParameters, new: TrackerParameters) -> set[str]:
+    before, after = to_mapping(old), to_mapping(new)
+    table = specs(type(new))
+    return {table[name].effect for name in after if before[name] != after[name]}

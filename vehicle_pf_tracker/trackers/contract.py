@@ -1,0 +1,104 @@
+"""The contract of all variants: a frame goes in, an estimate comes out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.evidence import EvidenceParameters
+from vehicle_pf_tracker.trackers.parameters import group, parameter
+
+
+@dataclass(frozen=True, slots=True)
+class WindowParameters:
+    """The window that features are taken from."""
+
+    width: float = parameter(
+        0.0,
+        "Wider: more of the surroundings count as the target; 0 takes the target box's width.",
+        minimum=0.0,
+        maximum=4096.0,
+        unit="px",
+        effect="relearns",
+    )
+    height: float = parameter(
+        0.0,
+        "Higher: more of the surroundings count as the target; 0 takes the target box's height.",
+        minimum=0.0,
+        maximum=4096.0,
+        unit="px",
+        effect="relearns",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerParameters:
+    """What every variant has."""
+
+    seed: int = parameter(
+        0,
+        "Same seed, frames and parameters give the same estimates; -1 draws one and says which.",
+        minimum=-1,
+        maximum=2**31 - 1,
+        effect="restarts",
+    )
+    frame_rate: float = parameter(
+        0.0,
+        "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
+        "intervals.",
+        minimum=0.0,
+        maximum=1000.0,
+        unit="1/s",
+    )
+    num_particles: int = parameter(
+        200,
+        "More: steadier estimates, at more time per frame.",
+        minimum=1,
+        maximum=100_000,
+    )
+    lost_after: float = parameter(
+        5.0,
+        "Longer: the mode stays OCCLUDED longer before it says LOST.",
+        minimum=0.0,
+        maximum=86_400.0,
+        unit="s",
+    )
+    window: WindowParameters = group(WindowParameters)
+    evidence: EvidenceParameters = group(EvidenceParameters)
+
+    def validate(self) -> None:
+        """Check parameters against each other."""
+        self.evidence.validate()
+
+
+class Tracker(Protocol):
+    """Follows one target through a stream of frames."""
+
+    @property
+    def seed(self) -> int:
+        """The seed in use, also where the parameter asked for a drawn one."""
+        ...
+
+    frame_period: float
+    """Nominal time between frames in s; whoever reads the stamps keeps it true."""
+
+    def start(self, frame: Frame, box: Box) -> Estimate:
+        """Learn the target `box` in `frame`, with the random numbers begun afresh.
+
+        Raises
+        ------
+        InputError
+            If the box is no target in this frame.
+        """
+        ...
+
+    def step(self, frame: Frame, elapsed: float = 1.0) -> Estimate:
+        """Find the target in the next frame, `elapsed` nominal frame periods later."""
+        ...
+
+    def reconfigure(self, parameters: Any) -> None:
+        """Take new parameters between two frames; the track goes on."""
+        ...

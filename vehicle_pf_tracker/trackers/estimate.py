@@ -1,0 +1,100 @@
+"""What a tracker says about one frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from types import MappingProxyType
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.features.box import Box
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+
+class Mode(str, Enum):
+    """The claim made to users, from evidence in the image."""
+
+    TRACKING = "TRACKING"
+    OCCLUDED = "OCCLUDED"
+    LOST = "LOST"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Estimate:
+    """Where the vehicle is, how sure that is, and what the filter did to find out.
+
+    Attributes
+    ----------
+    position : (float, float)
+        Centre of the vehicle in px, always inside the image.
+    box : Box
+        Its box in px.
+    velocity : (float, float)
+        px per nominal frame period.
+    mode : Mode
+        Whether there is evidence for the vehicle at `position`.
+    regime : str
+        The branch that the paper's algorithm is in; not an occlusion detector.
+    confidence : float
+        Evidence relative to its clear level, 0 to 1; 0 where the weights said nothing.
+    similarities : mapping of str to float
+        The similarities that the algorithm decides by, each 0 to 1.
+    effective_sample_size : float
+        1 to N, before resampling.
+    resampling_passes, resampled_particles : int
+        How often the step resampled, and how many particles it replaced.
+    particles : (N, 2) array
+        Read-only view, px.
+    weights : (N,) array
+        Read-only view, normalised.
+    duration : float
+        Time that the step took, in s.
+    """
+
+    position: tuple[float, float]
+    box: Box
+    velocity: tuple[float, float]
+    mode: Mode
+    regime: str
+    confidence: float
+    similarities: Mapping[str, float]
+    effective_sample_size: float
+    resampling_passes: int
+    resampled_particles: int
+    particles: Array = field(repr=False)
+    weights: Array = field(repr=False)
+    duration: float = 0.0
+
+    def scalars(self) -> Mapping[str, float | int | str]:
+        """Every scalar by the name that `~/mode` and the tables use."""
+        return MappingProxyType(
+            {
+                "mode": self.mode.value,
+                "regime": self.regime,
+                "x": self.position[0],
+                "y": self.position[1],
+                "width": self.box.width,
+                "height": self.box.height,
+                "velocity_x": self.velocity[0],
+                "velocity_y": self.velocity[1],
+                "confidence": self.confidence,
+                **self.similarities,
+                "n_eff": self.effective_sample_size,
+                "resampling_passes": self.resampling_passes,
+                "resampled_particles": self.resampled_particles,
+                "num_particles": len(self.weights),
+                "step_ms": self.duration * 1e3,
+            }
+        )
+
+
+def read_only(array: Array) -> Array:
+    """View of `array` that cannot be written through."""
+    view: Array = array.view()
+    view.flags.writeable = False
+    return view

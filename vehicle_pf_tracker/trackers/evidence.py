@@ -1,0 +1,117 @@
+"""Whether the vehicle is in sight: the mode of every variant, from evidence with hysteresis.
+
+The evidence is the similarity of the image at the estimate to the reference. It is held against
+its own running level in clear frames, because what counts as alike differs from vehicle to vehicle
+and from camera to camera. The regime of an algorithm takes no part in this.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.trackers.estimate import Mode
+from vehicle_pf_tracker.trackers.parameters import parameter
+
+
+@dataclass(frozen=True, slots=True)
+class EvidenceParameters:
+    """When evidence is lost and found again."""
+
+    occluded_below: float = parameter(
+        0.7,
+        "Lower: deeper occlusions are needed before the mode leaves TRACKING.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="share of the clear level",
+    )
+    clear_above: float = parameter(
+        0.8,
+        "Higher: more of the vehicle must be seen again before the mode returns to TRACKING.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="share of the clear level",
+    )
+    minimum: float = parameter(
+        0.3,
+        "Similarity below which there is no evidence, whatever the clear level is.",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    level_rate: float = parameter(
+        0.05,
+        "Higher: the clear level follows the similarity faster.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="per frame",
+    )
+
+    def validate(self) -> None:
+        """Hold the two thresholds apart in the right order."""
+        if self.occluded_below > self.clear_above:
+            raise InputError(
+                f"evidence.occluded_below ({self.occluded_below:g}) must not be above "
+                f"evidence.clear_above ({self.clear_above:g})"
+            )
+
+
+class EvidenceJudge:
+    """Keeps the clear level and turns each frame's evidence into a mode."""
+
+    def __init__(self) -> None:
+        self.mode = Mode.TRACKING
+        self.seconds_without = 0.0
+        self._level = 0.0
+        self._clear_frames = 0
+
+    @property
+    def level(self) -> float:
+        """Running level of the similarity in clear frames, 0 to 1."""
+        return self._level
+
+    def judge(
+        self,
+        similarity: float,
+        seconds: float,
+        parameters: EvidenceParameters,
+        *,
+        lost_after: float,
+        left_image: bool,
+    ) -> Mode:
+        """Take one frame's evidence and return the mode.
+
+        Parameters
+        ----------
+        similarity : float
+            Of the image at the estimate to the reference, 0 to 1.
+        seconds : float
+            Time since the frame before.
+        parameters : EvidenceParameters
+            The thresholds.
+        lost_after : float
+            Seconds without evidence after which the target counts as lost.
+        left_image : bool
+            Whether the cloud's mean went over the border before it was clipped.
+        """
+        if self._is_evidence(similarity, parameters):
+            self.mode, self.seconds_without = Mode.TRACKING, 0.0
+            self._follow(similarity, parameters.level_rate)
+            return self.mode
+        self.seconds_without += seconds
+        gone = left_image or self.seconds_without >= lost_after or self.mode is Mode.LOST
+        self.mode = Mode.LOST if gone else Mode.OCCLUDED
+        return self.mode
+
+    def confidence(self, similarity: float) -> float:
+        """Similarity relative to its clear level, 0 to 1."""
+        return min(similarity / self._level, 1.0) if self._level > 0 else 0.0
+
+    def _is_evidence(self, similarity: float, parameters: EvidenceParameters) -> bool:
+        in_sight = self.mode is Mode.TRACKING
+        share = parameters.occluded_below if in_sight else parameters.clear_above
+        return similarity >= max(parameters.minimum, share * self._level)
+
+    def _follow(self, similarity: float, rate: float) -> None:
+        # A plain mean at first: the first frame's similarity to itself says nothing about clear.
+        self._clear_frames += 1
+        self._level += max(rate, 1.0 / self._clear_frames) * (similarity - self._level)

@@ -1,0 +1,51 @@
+"""Colour likelihood of particles from the Hellinger distance (P1 eq. 25)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehicle_pf_tracker.features.similarity import hellinger_distance
+from vehicle_pf_tracker.filtering.weights import Weights
+from vehicle_pf_tracker.trackers.estimate import Array
+from vehicle_pf_tracker.trackers.parameters import parameter
+
+
+@dataclass(frozen=True, slots=True)
+class LikelihoodParameters:
+    """How sharply weights fall with the distance of the histograms."""
+
+    sigma_v: float = parameter(
+        0.1,
+        "Smaller: weights fall faster as a particle's histogram departs from the reference.",
+        minimum=1e-3,
+        maximum=100.0,
+        source="P1 eq. 25, READINGS 1 (printed: 1.5)",
+    )
+    squared_distance: bool = parameter(
+        True,
+        "False takes the distance unsquared, as printed; the weights are then almost flat.",
+        source="P1 eq. 25, READINGS 1",
+    )
+
+
+def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Weights:
+    """Logarithm of equation 25 without its constant factor.
+
+    Parameters
+    ----------
+    coefficients : (N,) array
+        Bhattacharyya coefficients of the particles' histograms with the reference.
+    parameters : LikelihoodParameters
+        Spread of the distance, and whether it is squared.
+
+    Returns
+    -------
+    (N,) array
+        ``-d_B² / (2 sigma_v²)``, or with ``d_B`` in place of its square.
+    """
+    distance = hellinger_distance(coefficients)
+    if parameters.squared_distance:
+        distance = np.square(distance)
+    return np.asarray(-distance / (2 * parameters.sigma_v**2))

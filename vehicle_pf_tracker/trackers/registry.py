@@ -1,0 +1,57 @@
+"""The tracker variants by name: node executable minus ``_tracker``, and config file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.trackers.apf import ApfParameters, ApfTracker
+from vehicle_pf_tracker.trackers.base import ParticleTracker
+from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """A tracker class with its parameter dataclass, and what it is in one line."""
+
+    name: str
+    tracker: type[ParticleTracker[Any]]
+    parameters: type[Any]
+    summary: str
+
+
+VARIANTS: Mapping[str, Variant] = MappingProxyType(
+    {
+        variant.name: variant
+        for variant in (
+            Variant(
+                "apf",
+                ApfTracker,
+                ApfParameters,
+                "adaptive particle filter, two regimes (Scharcanski et al. 2011)",
+            ),
+            Variant(
+                "pf",
+                PfTracker,
+                PfParameters,
+                "colour particle filter (Perez et al. 2002)",
+            ),
+        )
+    }
+)
+
+
+def find_variant(name: str) -> Variant:
+    """Look up a variant.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name.
+    """
+    if name not in VARIANTS:
+        raise InputError(f"there is no variant {name!r}; choose one of {', '.join(VARIANTS)}")
+    return VARIANTS[name]

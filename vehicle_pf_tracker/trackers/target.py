@@ -1,0 +1,47 @@
+"""The target as it was in the first frame."""
+
+from __future__ import annotations
+
+import math
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.colour import Histogram, joint_histogram
+from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.features.window import Window
+
+_MARGIN = 64
+"""Least margin kept around the target, in px, so that a wider window can still be measured."""
+
+
+class Target:
+    """The first frame's target, kept with a margin.
+
+    References can be rebuilt from it when window, bins or features change while tracking, without
+    learning whatever hides the target by then.
+
+    Parameters
+    ----------
+    frame : (H, W, 3) array
+        The first frame; the part that is kept is copied.
+    box : Box
+        The target in it.
+    """
+
+    def __init__(self, frame: Frame, box: Box) -> None:
+        width, height = frame_size(frame)
+        margin = max(_MARGIN, math.ceil(max(box.width, box.height)))
+        left = max(math.floor(box.x) - margin, 0)
+        top = max(math.floor(box.y) - margin, 0)
+        right = min(math.ceil(box.x + box.width) + margin, width)
+        bottom = min(math.ceil(box.y + box.height) + margin, height)
+        self.box = box
+        self.patch: Frame = frame[top:bottom, left:right].copy()
+        self.centre = box.centre[0] - left, box.centre[1] - top
+
+    def window(self, width: float, height: float) -> Window:
+        """Window of the given size in px; 0 takes the target's own."""
+        return Window.of_size(width or self.box.width, height or self.box.height)
+
+    def joint_histogram(self, window: Window, bits: int) -> Histogram:
+        """Joint RGB histogram of the target as first seen."""
+        return joint_histogram(self.patch, self.centre, window, bits)
