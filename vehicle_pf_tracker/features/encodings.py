@@ -1,0 +1,186 @@
+"""Camera images of every common ROS encoding as RGB frames.
+
+The encoding names are those of `sensor_msgs/image_encodings.hpp`. The node and the offline tools
+call these same functions, so that both see the same numbers.
+"""
+
+from __future__ import annotations
+
+import array
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame
+
+Bytes: TypeAlias = npt.NDArray[np.uint8]
+Buffer: TypeAlias = "bytes | bytearray | memoryview | array.array[int] | Bytes"
+
+MAX_SIDE = 32767
+"""Longest side in px: the limit of OpenCV's 16-bit coordinates."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Encoding:
+    """How the bytes of an encoding lie in memory and become RGB.
+
+    `rows` is the height of the data in units of the image's height (NV12 has its colour plane
+    below the grey one); `even` says that chroma is shared by pixel pairs.
+    """
+
+    pixel_bytes: int
+    convert: Callable[[Bytes, bool], Any]
+    rows: float = 1.0
+    even: bool = False
+
+
+def to_rgb(
+    encoding: str, height: int, width: int, step: int, is_bigendian: bool, data: Buffer
+) -> Frame:
+    """Read the data of a `sensor_msgs/Image` as an RGB frame.
+
+    `rgb8` is returned as a view of `data`, rows `step` bytes apart; everything else is converted
+    into a new array. 16-bit values keep their high byte.
+
+    Parameters
+    ----------
+    encoding : str
+        Name of the encoding, one of `ENCODINGS`.
+    height, width : int
+        Size in px.
+    step : int
+        Distance of two rows in bytes.
+    is_bigendian : bool
+        Byte order of 16-bit values.
+    data : buffer
+        The image's bytes, at least ``step * height`` (NV12: half as many again).
+
+    Returns
+    -------
+    Frame
+        RGB, shape (height, width, 3).
+
+    Raises
+    ------
+    InputError
+        If the encoding is unknown, the size is zero, odd where pixels share their colour, or above
+        `MAX_SIDE`, `step` is shorter than a row, or `data` is shorter than the image.
+    """
+    layout = ENCODINGS.get(encoding)
+    if layout is None:
+        known = " ".join(ENCODINGS)
+        raise InputError(f"the image encoding {encoding!r} is unknown; these are read: {known}")
+    _check_layout(encoding, layout, height, width, step)
+    return layout.convert(_pixels(layout, height, width, step, data), bool(is_bigendian))
+
+
+def decode_compressed(format: str, data: Buffer) -> Frame:  # noqa: A002 (the ROS field's name)
+    """Decode the data of a `sensor_msgs/CompressedImage` (JPEG or PNG) to an RGB frame.
+
+    Parameters
+    ----------
+    format : str
+        The message's format, for the error only: the data say themselves what they are.
+    data : buffer
+        The file's bytes.
+
+    Raises
+    ------
+    InputError
+        If the data are empty, cut off, or no image that OpenCV can decode.
+    """
+    coded = _flat(data)
+    if coded.size == 0:
+        raise InputError(f"a compressed image (format {format!r}) holds no data")
+    if _is_cut_jpeg(coded):
+        raise InputError(f"a compressed image (format {format!r}) is cut off before its end")
+    try:
+        image = cv2.imdecode(coded, cv2.IMREAD_COLOR)
+    except cv2.error:
+        image = None
+    if image is None:
+        raise InputError(f"a compressed image (format {format!r}) cannot be decoded; is it JPEG?")
+    return cv2.cvtColor(image, cv2.COLOR_BGR2RGB, dst=image)  # type: ignore[return-value]
+
+
+def _flat(data: Buffer) -> Bytes:
+    if isinstance(data, np.ndarray):
+        return data.reshape(-1)
+    return np.frombuffer(data, np.uint8)
+
+
+def _is_cut_jpeg(coded: Bytes) -> bool:
+    """Tell whether a JPEG has no end marker, which its decoder would fill up with grey.
+
+    The marker cannot occur within the coded pixels; a thumbnail has its own in the first half.
+    """
+    data = coded.tobytes()
+    return data.startswith(b"\xff\xd8") and data.find(b"\xff\xd9", len(data) // 2) < 0
+
+
+def _check_layout(encoding: str, layout: _Encoding, height: int, width: int, step: int) -> None:
+    size = f"{width}x{height} px in {encoding}"
+    if height <= 0 or width <= 0:
+        raise InputError(f"an image of {size} has no pixels")
+    if max(height, width) > MAX_SIDE:
+        raise InputError(f"an image of {size} is larger than {MAX_SIDE} px; is the message broken?")
+    if layout.even and (width % 2 or (layout.rows > 1 and height % 2)):
+        raise InputError(f"an image of {size} is odd, but pixels share their colour in pairs")
+    if step < width * layout.pixel_bytes:
+        raise InputError(f"an image of {size} has a step of {step} bytes, shorter than one row")
+
+
+def _pixels(layout: _Encoding, height: int, width: int, step: int, data: Buffer) -> Bytes:
+    """View the data without row padding: (rows, width) or (rows, width, bytes of a pixel)."""
+    flat = _flat(data)
+    rows = int(height * layout.rows)
+    if flat.size < step * rows:
+        raise InputError(
+            f"an image of {width}x{height} px with a step of {step} bytes needs {step * rows} "
+            f"bytes of data, but has {flat.size}"
+        )
+    packed = flat[: step * rows].reshape(rows, step)[:, : width * layout.pixel_bytes]
+    return packed if layout.pixel_bytes == 1 else packed.reshape(rows, width, layout.pixel_bytes)
+
+
+def _high_byte(pixels: Bytes, is_bigendian: bool) -> Bytes:
+    return np.ascontiguousarray(pixels[..., 0 if is_bigendian else 1])
+
+
+def _by_opencv(code: int, pixel_bytes: int, **layout: Any) -> _Encoding:
+    return _Encoding(pixel_bytes, lambda pixels, _: cv2.cvtColor(pixels, code), **layout)
+
+
+def _by_opencv_16(code: int) -> _Encoding:
+    return _Encoding(2, lambda pixels, big: cv2.cvtColor(_high_byte(pixels, big), code))
+
+
+# ROS names a Bayer pattern by its first two rows; OpenCV by the second row's second and third pixel.
+_BAYER = {
+    "bayer_rggb": cv2.COLOR_BayerBG2RGB,
+    "bayer_bggr": cv2.COLOR_BayerRG2RGB,
+    "bayer_gbrg": cv2.COLOR_BayerGR2RGB,
+    "bayer_grbg": cv2.COLOR_BayerGB2RGB,
+}
+
+ENCODINGS: dict[str, _Encoding] = {
+    "rgb8": _Encoding(3, lambda pixels, _: pixels),
+    "bgr8": _by_opencv(cv2.COLOR_BGR2RGB, 3),
+    "rgba8": _by_opencv(cv2.COLOR_RGBA2RGB, 4),
+    "bgra8": _by_opencv(cv2.COLOR_BGRA2RGB, 4),
+    "mono8": _by_opencv(cv2.COLOR_GRAY2RGB, 1),
+    "mono16": _by_opencv_16(cv2.COLOR_GRAY2RGB),
+    **{f"{name}8": _by_opencv(code, 1) for name, code in _BAYER.items()},
+    **{f"{name}16": _by_opencv_16(code) for name, code in _BAYER.items()},
+    "yuv422": _by_opencv(cv2.COLOR_YUV2RGB_UYVY, 2, even=True),
+    "uyvy": _by_opencv(cv2.COLOR_YUV2RGB_UYVY, 2, even=True),
+    "yuv422_yuy2": _by_opencv(cv2.COLOR_YUV2RGB_YUY2, 2, even=True),
+    "yuyv": _by_opencv(cv2.COLOR_YUV2RGB_YUY2, 2, even=True),
+    "nv12": _by_opencv(cv2.COLOR_YUV2RGB_NV12, 1, rows=1.5, even=True),
+}
+"""Every encoding that is read, by its ROS name."""

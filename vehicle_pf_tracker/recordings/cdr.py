@@ -1,0 +1,89 @@
+"""ROS messages and their CDR bytes, definitions and hashes, without ROS."""
+
+from __future__ import annotations
+
+import struct
+from functools import cache
+from typing import Any
+
+from rosbags.serde import SerdeError
+from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys.store import Typestore
+
+from vehicle_pf_tracker.features.errors import InputError
+
+_HEADER_TYPES = {"std_msgs/Header", "std_msgs/msg/Header", "Header"}
+
+
+@cache
+def _store() -> Typestore:
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+def message_class(type_name: str) -> Any:
+    """Return the class of a type like ``geometry_msgs/msg/PointStamped``.
+
+    Raises
+    ------
+    InputError
+        If ROS 2 Jazzy's common interfaces have no such type.
+    """
+    try:
+        return _store().types[type_name]
+    except KeyError:
+        raise InputError(f"the message type {type_name!r} is unknown") from None
+
+
+def serialize(message: Any, type_name: str) -> memoryview:
+    """Serialize `message` to CDR, its encapsulation header included."""
+    return _store().serialize_cdr(message, type_name)
+
+
+def deserialize(data: memoryview, type_name: str) -> Any:
+    """Read a message from CDR; arrays in it are views of `data`.
+
+    Raises
+    ------
+    InputError
+        If the bytes are no message of this type.
+    """
+    message_class(type_name)
+    try:
+        return _store().deserialize_cdr(data, type_name)
+    except (SerdeError, IndexError) as error:
+        raise InputError(f"a message is no valid {type_name}: {error}") from error
+
+
+@cache
+def definition(type_name: str) -> str:
+    """Return the type's full definition, the types it is made of appended (`ros2msg`)."""
+    message_class(type_name)
+    return _store().generate_msgdef(type_name, ros_version=2)[0]
+
+
+@cache
+def type_hash(type_name: str) -> str:
+    """Return the type's hash as ROS 2 computes it (REP 2011, ``RIHS01_...``)."""
+    message_class(type_name)
+    return _store().hash_rihs01(type_name)
+
+
+def starts_with_header(type_name: str, definition: str) -> bool:
+    """Tell whether a message begins with a `std_msgs/Header`, by its type or its `.msg` text."""
+    known = _store().fielddefs.get(type_name)
+    if known is not None:
+        fields = known[1]
+        return bool(fields) and fields[0][1][1] == "std_msgs/msg/Header"
+    for line in definition.splitlines():
+        words = line.partition("#")[0].split()
+        if words and "=" not in line:
+            return words[0] in _HEADER_TYPES
+    return False
+
+
+def header_stamp_ns(data: memoryview) -> int | None:
+    """Read the stamp of a serialized message that begins with a header; None if it is too short."""
+    if len(data) < 12:
+        return None
+    seconds, nanoseconds = struct.unpack_from("<iI" if data[1] & 1 else ">iI", data, 4)
+    return int(seconds * 1_000_000_000 + nanoseconds)

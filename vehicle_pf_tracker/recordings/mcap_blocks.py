@@ -1,0 +1,157 @@
+"""The parts of an MCAP file that hold messages, also damaged and cut ones.
+
+The `mcap` package's reader stops with an exception where a file is cut, and loads files without
+chunks into memory whole; a recording of a crashed computer is often both. See the MCAP format
+specification, sections Records and Chunk (op=0x06).
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import lz4.frame
+import zstandard
+from mcap.opcode import Opcode
+
+RECORD_HEAD = 9
+"""Bytes before a record's content: its opcode (1) and its length (8)."""
+
+_MESSAGE_HEAD = struct.Struct("<HIQQ")
+_CHUNK_HEAD = struct.Struct("<QQQII")
+_MAX_CHUNK = 4 * 2**30
+
+
+class DamageError(Exception):
+    """A part of a file cannot be read."""
+
+
+class Message(NamedTuple):
+    """A message as it lies in the file; `data` is a view of its chunk."""
+
+    channel_id: int
+    log_time_ns: int
+    data: memoryview
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A chunk, or a message outside of chunks, and where it lies in the file.
+
+    Attributes
+    ----------
+    offset, length : int
+        Place of the record in the file, in bytes, its head included.
+    start_ns, end_ns : int
+        Smallest and largest log time in it.
+    channels : frozenset of int or None
+        The channels that have messages in it; None where that is not known.
+    is_cut : bool
+        The file ends within this block.
+    """
+
+    offset: int
+    length: int
+    start_ns: int
+    end_ns: int
+    channels: frozenset[int] | None
+    is_cut: bool = False
+
+
+def read_span(path: Path, offset: int, length: int) -> bytes:
+    """Read `length` bytes of a file, fewer where it ends before."""
+    with path.open("rb") as stream:
+        stream.seek(offset)
+        return stream.read(length)
+
+
+def read_block(path: Path, block: Block) -> Iterator[Message]:
+    """Read the messages of a block in the order of the file.
+
+    Raises
+    ------
+    DamageError
+        If the block is no longer what the index says, or its content is damaged.
+    """
+    record = memoryview(read_span(path, block.offset, block.length))
+    if len(record) < RECORD_HEAD or (len(record) < block.length and not block.is_cut):
+        raise DamageError("the file ends before it")
+    for opcode, content in block_records(record[0], record[RECORD_HEAD:], block.is_cut):
+        if opcode == Opcode.MESSAGE:
+            yield parse_message(content)
+
+
+def block_records(
+    opcode: int, content: memoryview, is_cut: bool
+) -> Iterator[tuple[int, memoryview]]:
+    """Split a chunk into its records; any other record is returned as it is.
+
+    Raises
+    ------
+    DamageError
+        If a chunk that is whole by its length cannot be unpacked.
+    """
+    if opcode != Opcode.CHUNK:
+        if not is_cut:
+            yield opcode, content
+        return
+    records = _unpack_chunk(content, is_cut)
+    position = 0
+    while position + RECORD_HEAD <= len(records):
+        opcode, length = struct.unpack_from("<BQ", records, position)
+        position += RECORD_HEAD
+        if position + length > len(records):
+            break
+        yield opcode, records[position : position + length]
+        position += length
+
+
+def parse_message(content: memoryview) -> Message:
+    """Split the content of a message record.
+
+    Raises
+    ------
+    DamageError
+        If it is shorter than a message's head.
+    """
+    if len(content) < _MESSAGE_HEAD.size:
+        raise DamageError("a message is too short")
+    channel_id, _, log_time, _ = _MESSAGE_HEAD.unpack_from(content)
+    return Message(channel_id, log_time, content[_MESSAGE_HEAD.size :])
+
+
+def _unpack_chunk(content: memoryview, is_cut: bool) -> memoryview:
+    try:
+        _, _, size, checksum, name_length = _CHUNK_HEAD.unpack_from(content)
+        name_end = _CHUNK_HEAD.size + name_length
+        compression = bytes(content[_CHUNK_HEAD.size : name_end]).decode()
+        (packed_size,) = struct.unpack_from("<Q", content, name_end)
+    except (struct.error, UnicodeDecodeError):
+        if is_cut:
+            return memoryview(b"")
+        raise DamageError("its head is broken") from None
+    packed = content[name_end + 8 : name_end + 8 + packed_size]
+    records = _decompress(compression, packed, size)
+    if not is_cut and (len(records) != size or (checksum and zlib.crc32(records) != checksum)):
+        raise DamageError("its checksum is wrong")
+    return records
+
+
+def _decompress(compression: str, packed: memoryview, size: int) -> memoryview:
+    """Unpack as much as there is: both decoders return what they have when the input ends."""
+    if size > _MAX_CHUNK:
+        raise DamageError(f"it claims to hold {size} bytes")
+    try:
+        if compression == "lz4":
+            return memoryview(lz4.frame.LZ4FrameDecompressor().decompress(packed))
+        if compression == "zstd":
+            return memoryview(zstandard.ZstdDecompressor().decompressobj().decompress(packed))
+    except (RuntimeError, EOFError, zstandard.ZstdError) as error:
+        raise DamageError(f"it cannot be decompressed ({error})") from error
+    if compression:
+        raise DamageError(f"its compression {compression!r} is unknown")
+    return packed

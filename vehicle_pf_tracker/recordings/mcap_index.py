@@ -1,0 +1,198 @@
+"""Where the messages of an MCAP file are: from its summary, or from a pass over a cut file."""
+
+from __future__ import annotations
+
+import io
+import struct
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.reader import SeekingReader
+from mcap.records import Channel, Schema
+from mcap.summary import Summary
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings.mcap_blocks import (
+    RECORD_HEAD,
+    Block,
+    DamageError,
+    block_records,
+    parse_message,
+    read_span,
+)
+
+MAGIC = b"\x89MCAP0\r\n"
+_FOOTER = struct.pack("<BQ", Opcode.FOOTER, 20)
+_TAIL = len(_FOOTER) + 20 + len(MAGIC)
+
+
+@dataclass
+class McapIndex:
+    """The table of contents of an MCAP file.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    channels, schemas : dict
+        By their numbers in the file.
+    blocks : list of Block
+        In the order of the file.
+    counts : Counter
+        Number of messages by channel.
+    is_truncated : bool
+        The file was cut: it lacks its end, or stops within a record.
+    damages : list of str
+        What else could not be read, one clause each.
+    """
+
+    path: Path
+    channels: dict[int, Channel] = field(default_factory=dict)
+    schemas: dict[int, Schema] = field(default_factory=dict)
+    blocks: list[Block] = field(default_factory=list)
+    counts: Counter[int] = field(default_factory=Counter)
+    is_truncated: bool = False
+    damages: list[str] = field(default_factory=list)
+
+
+def read_index(path: Path) -> McapIndex:
+    """Find out where the messages of an MCAP file are.
+
+    A whole file tells it in its summary. A file without one is read once from begin to end.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be opened or is no MCAP file.
+    """
+    try:
+        with path.open("rb") as stream:
+            size = stream.seek(0, io.SEEK_END)
+            stream.seek(0)
+            if stream.read(len(MAGIC)) != MAGIC:
+                raise InputError(f"the recording {path} is not an MCAP file")
+            return _from_summary(path, stream, size) or _Scan(path, stream, size).run()
+    except OSError as error:
+        raise InputError(f"cannot read the recording {path}: {error.strerror}") from error
+
+
+def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
+    """Read the summary, if the file has its end and a summary that indexes every message."""
+    if size < len(MAGIC) + _TAIL:
+        return None
+    stream.seek(-_TAIL, io.SEEK_END)
+    tail = stream.read(_TAIL)
+    if not (tail.startswith(_FOOTER) and tail.endswith(MAGIC)):
+        return None
+    stream.seek(0)
+    try:
+        summary = SeekingReader(stream, record_size_limit=size).get_summary()
+    except (McapError, struct.error, ValueError, KeyError):
+        return None
+    if summary is None or summary.statistics is None:
+        return None
+    counts = Counter(summary.statistics.channel_message_counts)
+    if not _is_complete(summary, counts):
+        return None
+    blocks = [
+        Block(
+            chunk.chunk_start_offset,
+            chunk.chunk_length,
+            chunk.message_start_time,
+            chunk.message_end_time,
+            frozenset(chunk.message_index_offsets) or None,
+        )
+        for chunk in summary.chunk_indexes
+    ]
+    return McapIndex(path, summary.channels, summary.schemas, blocks, counts)
+
+
+def _is_complete(summary: Summary, counts: Counter[int]) -> bool:
+    """Tell whether the channels, their schemas and the chunks of all messages are listed."""
+    statistics = summary.statistics
+    return (
+        statistics is not None
+        and sum(counts.values()) == statistics.message_count
+        and (bool(summary.chunk_indexes) or statistics.message_count == 0)
+        and len(summary.chunk_indexes) == statistics.chunk_count
+        and all(channel_id in summary.channels for channel_id in counts)
+        and all(
+            channel.schema_id in summary.schemas
+            for channel in summary.channels.values()
+            if channel.schema_id
+        )
+    )
+
+
+class _Scan:
+    """One pass over a file that says nothing, or nothing true, about its content."""
+
+    def __init__(self, path: Path, stream: BinaryIO, size: int) -> None:
+        self.path, self.stream, self.size = path, stream, size
+        self.index = McapIndex(path)
+
+    def run(self) -> McapIndex:
+        offset = len(MAGIC)
+        while True:
+            self.stream.seek(offset)
+            head = self.stream.read(RECORD_HEAD)
+            opcode, length = struct.unpack("<BQ", head) if len(head) == RECORD_HEAD else (0, 0)
+            end = offset + RECORD_HEAD + length
+            if opcode == Opcode.DATA_END and end <= self.size:
+                self.index.is_truncated = not self._has_end()
+                return self.index
+            is_cut = opcode == 0 or end > self.size
+            if opcode in _READERS:
+                self._read(opcode, offset, min(end, self.size) - offset, is_cut)
+            if is_cut:
+                self.index.is_truncated = True
+                return self.index
+            offset = end
+
+    def _has_end(self) -> bool:
+        return read_span(self.path, self.size - len(MAGIC), len(MAGIC)) == MAGIC
+
+    def _read(self, opcode: int, offset: int, length: int, is_cut: bool) -> None:
+        content = memoryview(self.stream.read(length - RECORD_HEAD))
+        times: list[int] = []
+        channels: Counter[int] = Counter()
+        try:
+            for kind, record in block_records(opcode, content, is_cut):
+                if kind == Opcode.MESSAGE:
+                    message = parse_message(record)
+                    times.append(message.log_time_ns)
+                    channels[message.channel_id] += 1
+                elif kind in _DEFINITIONS:
+                    _DEFINITIONS[kind](self.index, record)
+        except DamageError as error:
+            if not is_cut:
+                self.index.damages.append(f"a part at byte {offset} was skipped: {error}")
+                return
+        if times:
+            ids = frozenset(channels)
+            block = Block(offset, length, min(times), max(times), ids, is_cut)
+            self.index.blocks.append(block)
+            self.index.counts.update(channels)
+
+
+def _add_schema(index: McapIndex, record: memoryview) -> None:
+    schema = Schema.read(ReadDataStream(io.BytesIO(record)))
+    index.schemas[schema.id] = schema
+
+
+def _add_channel(index: McapIndex, record: memoryview) -> None:
+    channel = Channel.read(ReadDataStream(io.BytesIO(record)))
+    index.channels[channel.id] = channel
+
+
+_DEFINITIONS: dict[int, Callable[[McapIndex, memoryview], None]] = {
+    Opcode.SCHEMA: _add_schema,
+    Opcode.CHANNEL: _add_channel,
+}
+_READERS = {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.CHUNK, Opcode.MESSAGE}

@@ -1,0 +1,166 @@
+"""Writing a recording: a rosbag2 folder with one MCAP file."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
+from mcap.writer import CompressionType, Writer
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.recordings import messages, topics, truth_messages
+from vehicle_pf_tracker.recordings.bag_metadata import (
+    TopicSummary,
+    bag_information,
+    information_yaml,
+    metadata_yaml,
+    qos_text,
+)
+from vehicle_pf_tracker.recordings.cdr import definition, serialize, type_hash
+from vehicle_pf_tracker.recordings.output_folder import OutputFolder, output_errors
+from vehicle_pf_tracker.recordings.truth import Truth
+
+COMPRESSIONS = {
+    "lz4": CompressionType.LZ4,
+    "zstd": CompressionType.ZSTD,
+    "none": CompressionType.NONE,
+}
+
+
+@dataclass(slots=True)
+class _Channel:
+    channel_id: int
+    type_name: str
+    count: int = 0
+
+
+class RecordingWriter:
+    """Writes a recording; a context manager.
+
+    The folder appears when the block ends well. If it ends with an error nothing is left behind.
+    Messages are logged at their stamp.
+
+    Parameters
+    ----------
+    folder : Path
+        The rosbag2 folder to make.
+    compression : str
+        ``lz4``, ``zstd`` or ``none``: how the chunks of the MCAP file are compressed.
+    overwrite : bool
+        Replace a recording that is already there.
+
+    Raises
+    ------
+    InputError
+        If the compression is unknown, or the folder is not empty or cannot be written; also
+        later, when the disk is full.
+    """
+
+    def __init__(self, folder: Path, *, compression: str = "lz4", overwrite: bool = False) -> None:
+        if compression not in COMPRESSIONS:
+            names = ", ".join(COMPRESSIONS)
+            raise InputError(f"the compression {compression!r} is unknown; choose from {names}")
+        self.folder = Path(folder)
+        self._output = OutputFolder(self.folder, overwrite)
+        self._file_name = f"{self._output.target.name}_0.mcap"
+        self._channels: dict[str, _Channel] = {}
+        self._schemas: dict[str, int] = {}
+        self._times: tuple[int, int] | None = None
+        self._stream = (self._output.partial / self._file_name).open("wb")
+        self._mcap = Writer(self._stream, compression=COMPRESSIONS[compression])
+        self._mcap.start(profile=Profile.ROS2, library="vehicle_pf_tracker")
+
+    def __enter__(self) -> RecordingWriter:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        try:
+            if kind is None:
+                self._finish()
+        finally:
+            # What could not be written was told already; closing tries to flush it once more.
+            with suppress(OSError):
+                self._stream.close()
+            self._output.discard()
+
+    def write_image(self, stamp_ns: int, frame: Frame) -> None:
+        """Write an RGB frame as a raw image."""
+        self.write(topics.IMAGE_TOPIC, topics.IMAGE, stamp_ns, messages.image(stamp_ns, frame))
+
+    def write_compressed(self, stamp_ns: int, image_format: str, data: bytes) -> None:
+        """Write the bytes of a ``jpeg`` or ``png`` file as a compressed image."""
+        message = messages.compressed_image(stamp_ns, image_format, data)
+        self.write(topics.COMPRESSED_TOPIC, topics.COMPRESSED_IMAGE, stamp_ns, message)
+
+    def write_truth(self, truth: Truth) -> None:
+        """Write the truth of one frame, at the stamp of its image."""
+        for topic, message in truth_messages.to_messages(truth).items():
+            self.write(topic, truth_messages.TYPES[topic], truth.stamp_ns, message)
+
+    def write(self, topic: str, type_name: str, stamp_ns: int, message: Any) -> None:
+        """Write any message of a type that `cdr.message_class` knows.
+
+        Raises
+        ------
+        InputError
+            If the type is unknown, another type was written to the topic, or the disk is full.
+        """
+        self.write_serialized(topic, type_name, stamp_ns, serialize(message, type_name))
+
+    def write_serialized(
+        self, topic: str, type_name: str, stamp_ns: int, data: bytes | memoryview
+    ) -> None:
+        """Write a message that is serialized already, as a reader returned it."""
+        channel = self._channel(topic, type_name)
+        with output_errors(self.folder):
+            self._mcap.add_message(
+                channel.channel_id, stamp_ns, data, stamp_ns, sequence=channel.count
+            )
+        channel.count += 1
+        first, last = self._times or (stamp_ns, stamp_ns)
+        self._times = min(first, stamp_ns), max(last, stamp_ns)
+
+    def _channel(self, topic: str, type_name: str) -> _Channel:
+        if topic not in self._channels:
+            metadata = {"offered_qos_profiles": qos_text(), "topic_type_hash": type_hash(type_name)}
+            channel_id = self._mcap.register_channel(
+                topic, MessageEncoding.CDR, self._schema(type_name), metadata
+            )
+            self._channels[topic] = _Channel(channel_id, type_name)
+        channel = self._channels[topic]
+        if channel.type_name != type_name:
+            raise InputError(f"the topic {topic} carries {channel.type_name}, not {type_name}")
+        return channel
+
+    def _schema(self, type_name: str) -> int:
+        if type_name not in self._schemas:
+            text = definition(type_name).encode()
+            self._schemas[type_name] = self._mcap.register_schema(
+                type_name, SchemaEncoding.ROS2, text
+            )
+        return self._schemas[type_name]
+
+    def _finish(self) -> None:
+        first, last = self._times or (0, 0)
+        summaries = [
+            TopicSummary(topic, channel.type_name, type_hash(channel.type_name), channel.count)
+            for topic, channel in self._channels.items()
+        ]
+        information = bag_information(self._file_name, first, last - first, summaries)
+        with output_errors(self.folder):
+            self._mcap.add_metadata("rosbag2", {"serialized_metadata": information_yaml(information)})
+            self._mcap.finish()
+            self._stream.close()
+            text = metadata_yaml(information)
+            (self._output.partial / "metadata.yaml").write_text(text, encoding="utf-8")
+        self._output.publish()
