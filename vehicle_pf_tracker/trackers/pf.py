@@ -1,7 +1,7 @@
 """`pf`: the colour particle filter of Perez et al. 2002, as P1 compares itself with it (its [5]).
 
-Resample, propagate with a Normal density, weight with ``exp(-d_B² / (2 sigma_v²))`` against the first
-histogram, take the mean. It has no occlusion branch.
+Resample, propagate with a Normal density, weight by the distance to the first histogram, take the
+mean. It has no occlusion branch.
 """
 
 from __future__ import annotations

@@ -8,7 +8,8 @@ from types import MappingProxyType
 from typing import Any
 
 from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.trackers.apf import ApfParameters, ApfTracker
+from vehicle_pf_tracker.trackers.apf import ApfTracker
+from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
 from vehicle_pf_tracker.trackers.base import ParticleTracker
 from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
 

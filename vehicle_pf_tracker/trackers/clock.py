@@ -1,0 +1,91 @@
+"""Elapsed time from image stamps, the same offline and in the node.
+
+Trackers count in nominal frame periods, so that a dropped frame or a slow camera does not change
+speeds in px per second.
+"""
+
+from __future__ import annotations
+
+import statistics
+from dataclasses import dataclass
+from enum import Enum
+
+_LEARNING_INTERVALS = 10
+_LONGEST_GAP = 5.0
+"""Seconds; a longer gap counts as this long, since no motion can be carried over it."""
+
+
+class StampEvent(str, Enum):
+    """What is remarkable about a stamp."""
+
+    REPEATED = "repeated stamp"
+    GAP = "gap in time"
+    JUMP_BACK = "time jumped back"
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """Time since the frame before, in nominal frame periods, and what is remarkable about it."""
+
+    elapsed: float
+    event: StampEvent | None = None
+
+
+class StampClock:
+    """Turns stamps into elapsed nominal frame periods.
+
+    Parameters
+    ----------
+    frame_rate : float
+        Nominal rate in 1/s. 0 takes the median of the first ten intervals; until those are known
+        every frame counts as one period.
+    """
+
+    def __init__(self, frame_rate: float) -> None:
+        self._given = 1 / frame_rate if frame_rate else None
+        self._learned: float | None = None
+        self._intervals: list[float] = []
+        self._last_ns: int | None = None
+        self._repeats = 0
+
+    @property
+    def period(self) -> float | None:
+        """Nominal frame period in s; None while it is not known."""
+        return self._given or self._learned
+
+    def set_frame_rate(self, frame_rate: float) -> None:
+        """Take a nominal rate in 1/s, or go back to the measured one with 0."""
+        self._given = 1 / frame_rate if frame_rate else None
+
+    def tick(self, stamp_ns: int) -> Tick:
+        """Take the stamp of the next frame, in ns."""
+        last, self._last_ns = self._last_ns, stamp_ns
+        if last is None:
+            return Tick(1.0)
+        seconds = (stamp_ns - last) * 1e-9
+        if seconds < 0:
+            return Tick(1.0, StampEvent.JUMP_BACK)
+        if seconds == 0:
+            return self._repeated()
+        self._repeats = 0
+        if seconds > _LONGEST_GAP:
+            return Tick(self._periods(_LONGEST_GAP), StampEvent.GAP)
+        elapsed = self._periods(seconds)
+        self._learn(seconds)
+        return Tick(elapsed)
+
+    def _periods(self, seconds: float) -> float:
+        return seconds / self.period if self.period else 1.0
+
+    def _repeated(self) -> Tick:
+        # One repeat is a frame delivered twice; a run of them is a camera without a clock, and
+        # freezing the target for that would be worse than taking the nominal rate.
+        self._repeats += 1
+        return Tick(0.0 if self._repeats == 1 else 1.0, StampEvent.REPEATED)
+
+    def _learn(self, seconds: float) -> None:
+        if self._learned is not None:
+            return
+        self._intervals.append(seconds)
+        if len(self._intervals) == _LEARNING_INTERVALS:
+            self._learned = statistics.median(self._intervals)

@@ -1,0 +1,171 @@
+"""One target followed through one stream of stamped images.
+
+Offline runs and the node both drive their tracker through this, and so give the same estimates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from vehicle_pf_tracker.features.box import Box, check_target
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.trackers.clock import StampClock, StampEvent
+from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.parameters import group, parameter
+from vehicle_pf_tracker.trackers.registry import Variant
+
+_LARGEST = 1e5
+
+
+@dataclass(frozen=True, slots=True)
+class TargetParameters:
+    """The box to start on."""
+
+    x: float = parameter(
+        0.0, "Left edge of the target.", minimum=-_LARGEST, maximum=_LARGEST, unit="px"
+    )
+    y: float = parameter(
+        0.0, "Top edge of the target.", minimum=-_LARGEST, maximum=_LARGEST, unit="px"
+    )
+    width: float = parameter(
+        0.0,
+        "Width of the target; all four 0 waits for a target.",
+        minimum=0.0,
+        maximum=_LARGEST,
+        unit="px",
+    )
+    height: float = parameter(
+        0.0,
+        "Height of the target; all four 0 waits for a target.",
+        minimum=0.0,
+        maximum=_LARGEST,
+        unit="px",
+    )
+
+    @property
+    def box(self) -> Box | None:
+        """The box, or None where there is none to start on."""
+        if not any((self.x, self.y, self.width, self.height)):
+            return None
+        return Box(self.x, self.y, self.width, self.height)
+
+
+@dataclass(frozen=True, slots=True)
+class SessionParameters:
+    """What a stream needs besides its variant's parameters."""
+
+    target: TargetParameters = group(TargetParameters)
+    reset_on_time_jump: bool = parameter(
+        True, "Start again on the configured target when stamps go back (a recording that loops)."
+    )
+
+    def validate(self) -> None:
+        """Refuse a target without a size."""
+        box = self.target.box
+        if box is not None and min(box.width, box.height) < 1:
+            raise InputError(
+                f"the target {box} is smaller than one pixel; "
+                "set target.width and target.height, or all four to 0 to wait for a target"
+            )
+
+
+class Session:
+    """Starts, steps and restarts the tracker of one variant.
+
+    Parameters
+    ----------
+    variant : Variant
+        From the registry.
+    parameters : Any
+        An instance of `variant.parameters`.
+    settings : SessionParameters
+        The configured target among them.
+
+    Attributes
+    ----------
+    events : list of str
+        What was remarkable about the last frame fed, for logs and diagnostics.
+    """
+
+    def __init__(
+        self, variant: Variant, parameters: Any, settings: SessionParameters | None = None
+    ) -> None:
+        self.variant = variant
+        self.settings = settings or SessionParameters()
+        self.events: list[str] = []
+        self.tracker = variant.tracker(parameters)
+        self._clock = StampClock(parameters.frame_rate)
+        self._pending: Box | None = self.settings.target.box
+        self._size: tuple[int, int] | None = None
+
+    @property
+    def waiting(self) -> bool:
+        """Whether there is no target to follow."""
+        return self._size is None and self._pending is None
+
+    def set_target(self, box: Box) -> None:
+        """Start, or start again, on `box` in the next frame."""
+        self._pending = box
+
+    def reset(self) -> None:
+        """Go back to the configured target, or to waiting for one, and forget the stream's time."""
+        self._clock = StampClock(self.tracker.parameters.frame_rate)
+        self._forget()
+
+    def reconfigure(self, parameters: Any, settings: SessionParameters) -> None:
+        """Take new parameters between two frames; a changed target starts on it."""
+        if settings.target != self.settings.target:
+            self._pending = settings.target.box
+        self.settings = settings
+        self.tracker.reconfigure(parameters)
+        self._clock.set_frame_rate(parameters.frame_rate)
+
+    def feed(self, frame: Frame, stamp_ns: int) -> Estimate | None:
+        """Take the next image; None while there is no target.
+
+        Parameters
+        ----------
+        frame : (H, W, 3) array
+            RGB; not kept and not written to.
+        stamp_ns : int
+            The image's stamp in ns.
+
+        Raises
+        ------
+        InputError
+            If the frame or the target to start on is not usable. A track that was there goes on
+            with the next frame.
+        """
+        self.events = []
+        size = frame_size(check_frame(frame))
+        tick = self._clock.tick(stamp_ns)
+        if tick.event is not None:
+            self.events.append(tick.event.value)
+        if tick.event is StampEvent.JUMP_BACK and self.settings.reset_on_time_jump:
+            self._forget()
+        if self._size is not None and size != self._size:
+            self.events.append(
+                f"image size changed from {self._size[0]}x{self._size[1]} to {size[0]}x{size[1]}; "
+                "starting again on the configured target"
+            )
+            self._forget()
+        if self._clock.period is not None:
+            self.tracker.frame_period = self._clock.period
+        if self._pending is not None:
+            return self._start(frame, size)
+        return None if self._size is None else self.tracker.step(frame, tick.elapsed)
+
+    def _start(self, frame: Frame, size: tuple[int, int]) -> Estimate:
+        box, self._pending = self._pending, None
+        assert box is not None
+        check_target(box, *size)
+        estimate = self.tracker.start(frame, box)
+        self._size = size
+        return estimate
+
+    def _forget(self) -> None:
+        # A box that was just set is newer than the one configured.
+        self._size = None
+        self._pending = self._pending or self.settings.target.box
