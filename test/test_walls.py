@@ -1,0 +1,276 @@
+"""The rules of the house, read from the source: who may import whom, and how long things may be."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+NAME = "vehicle_pf_tracker"
+SOURCE = Path(__file__).resolve().parents[1] / NAME
+
+MAX_FILE_LINES = 400
+MAX_FUNCTION_LINES = 60
+
+CORE = {"filtering", "features", "trackers", "recordings", "scenes", "evaluation"}
+MAY_IMPORT = {
+    "filtering": {"filtering"},
+    "features": {"features"},
+    "trackers": {"trackers", "filtering", "features"},
+    "recordings": {"recordings", "features"},
+    "scenes": {"scenes", "features", "recordings.truth", "trackers.parameters"},
+    "evaluation": CORE,
+    "ros": {*CORE, "ros"},
+    "cli": {*CORE, "cli", "ros"},
+}
+MESSAGES = {
+    "builtin_interfaces", "diagnostic_msgs", "geometry_msgs", "lifecycle_msgs", "rcl_interfaces",
+    "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs",
+}  # fmt: skip
+ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", *MESSAGES}
+ON_A_ROBOT = {"rclpy", *MESSAGES, "numpy", "cv2", "yaml", "numba"}
+
+
+class Import(NamedTuple):
+    """One module named by an import statement; ``name`` is absolute."""
+
+    name: str
+    line: int
+    at_start: bool  # runs when the module is imported, not when a function is called
+
+
+class Module(NamedTuple):
+    name: str  # dotted, below the package: "ros.node", "" for the package itself
+    path: Path
+    tree: ast.Module
+    imports: list[Import]
+
+    @property
+    def room(self) -> str:
+        return self.name.partition(".")[0]
+
+    def at(self, line: int) -> str:
+        return f"{self.path.name}:{line} ({self.name})"
+
+
+def read_modules(source: Path) -> dict[str, Module]:
+    """Parse every file of the package: {dotted name below the package: module}."""
+    modules = {}
+    for path in sorted(source.rglob("*.py")):
+        parts = path.relative_to(source).with_suffix("").parts
+        package = parts[:-1]
+        name = ".".join(package if parts[-1] == "__init__" else parts)
+        tree = ast.parse(path.read_text(encoding="utf-8"), str(path))
+        modules[name] = Module(name, path, tree, list(imports_of(tree, package)))
+    return modules
+
+
+def imports_of(tree: ast.Module, package: tuple[str, ...]) -> Iterator[Import]:
+    for node, at_start in statements(tree, at_start=True):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield Import(alias.name, node.lineno, at_start)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                above = (NAME, *package)[: len(package) + 2 - node.level]
+                base = ".".join([*above, base]).rstrip(".")
+            for alias in node.names:  # the name may be a module or something inside one
+                yield Import(f"{base}.{alias.name}", node.lineno, at_start)
+
+
+def statements(node: ast.AST, *, at_start: bool) -> Iterator[tuple[ast.AST, bool]]:
+    """Walk the tree in order; what stands in a function or under TYPE_CHECKING runs later."""
+    for child in ast.iter_child_nodes(node):
+        later = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+        later = later or (isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test))
+        yield child, at_start
+        yield from statements(child, at_start=at_start and not later)
+
+
+def inside(name: str) -> str | None:
+    """``vehicle_pf_tracker.a.b`` as ``a.b``; None for a module of somebody else."""
+    head, _, rest = name.partition(".")
+    return rest if head == NAME else None
+
+
+def covers(allowed: set[str], name: str) -> bool:
+    return any(name == entry or name.startswith(f"{entry}.") for entry in allowed)
+
+
+def broken_walls(modules: dict[str, Module]) -> list[str]:
+    """Imports that reach through a wall of DESIGN.md 1."""
+    return [
+        f"{module.at(found.line)} imports {found.name}"
+        for module in modules.values()
+        for found in module.imports
+        if not allowed_here(module, found)
+    ]
+
+
+def allowed_here(module: Module, found: Import) -> bool:
+    target = inside(found.name)
+    if target is None:
+        in_core = module.room not in {"ros", "cli"}
+        return not (in_core and found.name.partition(".")[0] in ROS)
+    if target.partition(".")[0] == "ros" and module.room == "cli":
+        return not found.at_start
+    is_room = target.partition(".")[0] in MAY_IMPORT
+    return not is_room or covers(MAY_IMPORT.get(module.room, set()), target)
+
+
+def node_closure(modules: dict[str, Module]) -> set[str]:
+    """Names of all modules of the package that starting a node may load, packages included."""
+    waiting = [name for name, module in modules.items() if module.room == "ros"]
+    seen: set[str] = set()
+    while waiting:
+        name = waiting.pop()
+        if name in modules and name not in seen:
+            seen.add(name)
+            waiting.append(name.rpartition(".")[0])
+            for found in modules[name].imports:
+                target = inside(found.name)
+                if target is not None:
+                    waiting += [target, target.rpartition(".")[0]]
+    return seen
+
+
+def missing_on_a_robot(modules: dict[str, Module]) -> list[str]:
+    """Imports of the node's modules that a robot does not have from apt."""
+    allowed = {*ON_A_ROBOT, *sys.stdlib_module_names, NAME}
+    return [
+        f"{modules[name].at(found.line)} imports {found.name}"
+        for name in sorted(node_closure(modules))
+        for found in modules[name].imports
+        if found.name.partition(".")[0] not in allowed
+    ]
+
+
+def too_long(modules: dict[str, Module]) -> list[str]:
+    rows = []
+    for module in modules.values():
+        lines = module.path.read_text(encoding="utf-8").count("\n")
+        if lines > MAX_FILE_LINES:
+            rows.append(f"{module.path.name} ({module.name}): {lines} lines")
+        for node in ast.walk(module.tree):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                length = (node.end_lineno or node.lineno) - node.lineno + 1
+                if length > MAX_FUNCTION_LINES:
+                    rows.append(f"{module.at(node.lineno)} {node.name}: {length} lines")
+    return rows
+
+
+@pytest.fixture(scope="module")
+def modules() -> dict[str, Module]:
+    return read_modules(SOURCE)
+
+
+def test_every_room_is_known(modules):
+    rooms = {module.room for name, module in modules.items() if "." in name}
+    assert rooms <= set(MAY_IMPORT)
+    assert CORE | {"ros", "cli"} <= {module.room for module in modules.values()}
+
+
+def test_nothing_reaches_through_a_wall(modules):
+    assert broken_walls(modules) == []
+
+
+def test_nodes_import_only_what_a_robot_has(modules):
+    assert missing_on_a_robot(modules) == []
+
+
+def test_files_and_functions_stay_short(modules):
+    assert too_long(modules) == []
+
+
+# The checker itself, on made-up packages.
+
+
+def made_up(folder: Path, **files: str) -> dict[str, Module]:
+    for name, text in {"__init__": "", **files}.items():
+        path = folder.joinpath(*name.split("__", 1) if name != "__init__" else [name])
+        path = path.with_suffix(".py")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return read_modules(folder)
+
+
+@pytest.mark.parametrize(
+    ("file", "line"),
+    [
+        ("filtering__weights", "import rclpy"),
+        ("recordings__reader", "def read():\n    from sensor_msgs.msg import Image"),
+        ("evaluation__tables", "from geometry_msgs import msg"),
+        ("filtering__weights", "from vehicle_pf_tracker.features import box"),
+        ("filtering__weights", "from vehicle_pf_tracker import features"),
+        ("filtering__weights", "import vehicle_pf_tracker.features.box"),
+        ("features__box", "from ..trackers.base import Tracker"),
+        ("features__box", "from .. import cli"),
+        ("trackers__apf", "from vehicle_pf_tracker.recordings.truth import Truth"),
+        ("trackers__apf", "def late():\n    import vehicle_pf_tracker.scenes"),
+        ("recordings__reader", "from vehicle_pf_tracker.filtering.weights import normalised"),
+        ("scenes__road", "from vehicle_pf_tracker.recordings.writer import write"),
+        ("scenes__road", "from vehicle_pf_tracker.recordings import writer"),
+        ("scenes__road", "from vehicle_pf_tracker.trackers.parameters_of_all import table"),
+        ("evaluation__tables", "from vehicle_pf_tracker.ros.node import Node"),
+        ("evaluation__tables", "from vehicle_pf_tracker.cli.main import main"),
+        ("ros__node", "from vehicle_pf_tracker.cli.main import main"),
+        ("cli__replay", "from vehicle_pf_tracker.ros.player import play"),
+        ("cli__replay", "import math\nif math.pi:\n    from vehicle_pf_tracker import ros"),
+        ("cli__replay", "class Verb:\n    from vehicle_pf_tracker.ros.player import play"),
+    ],
+)
+def test_checker_sees_a_broken_wall(tmp_path, file, line):
+    assert len(broken_walls(made_up(tmp_path, **{file: line}))) == 1
+
+
+@pytest.mark.parametrize(
+    ("file", "line"),
+    [
+        (
+            "filtering__weights",
+            "import numpy as np\nfrom . import motion\nfrom .motion import step",
+        ),
+        ("trackers__apf", "from ..filtering.weights import normalised"),
+        ("trackers__apf", "from vehicle_pf_tracker.features.box import Box"),
+        ("scenes__road", "from vehicle_pf_tracker.recordings.truth import Truth"),
+        ("scenes__road", "from vehicle_pf_tracker.recordings import truth"),
+        ("evaluation__runs", "from vehicle_pf_tracker import __version__"),
+        ("cli__replay", "def run():\n    from vehicle_pf_tracker.ros.player import play"),
+        ("cli__main", "from vehicle_pf_tracker.cli import replay"),
+        ("ros__node", "import rclpy\nfrom sensor_msgs.msg import Image"),
+    ],
+)
+def test_checker_lets_the_permitted_pass(tmp_path, file, line):
+    assert broken_walls(made_up(tmp_path, **{file: line})) == []
+
+
+def test_checker_follows_the_node_to_what_it_loads(tmp_path):
+    modules = made_up(
+        tmp_path,
+        ros__node="import rclpy, json\nfrom vehicle_pf_tracker.trackers import apf",
+        trackers____init__="from .plots import draw",
+        trackers__apf="import numpy",
+        trackers__plots="def draw():\n    import matplotlib.pyplot",
+        evaluation__tables="import rich",
+    )
+    assert missing_on_a_robot(modules) == ["plots.py:2 (trackers.plots) imports matplotlib.pyplot"]
+
+
+def test_checker_measures_files_and_functions(tmp_path):
+    body = "    pass\n"
+    modules = made_up(
+        tmp_path,
+        ros__long="x = 1\n" * 401,
+        ros__full="x = 1\n" * 400,
+        ros__function="def f():\n" + body * 60,
+        ros__fitting="class C:\n async def f():\n" + "  pass\n" * 59,
+    )
+    assert too_long(modules) == [
+        "function.py:1 (ros.function) f: 61 lines",
+        "long.py (ros.long): 401 lines",
+    ]
