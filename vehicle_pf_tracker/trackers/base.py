@@ -82,7 +82,7 @@ class ParticleTracker(ABC, Generic[ParametersT]):
 
     def __init__(self, parameters: ParametersT) -> None:
         self.parameters = parameters
-        self.frame_period = 1 / parameters.frame_rate if parameters.frame_rate else DEFAULT_PERIOD
+        self.frame_period = DEFAULT_PERIOD
         self._seed = _draw_seed(parameters.seed)
         self._rng = np.random.default_rng(self._seed)
         self._target: Target | None = None
@@ -145,8 +145,6 @@ class ParticleTracker(ABC, Generic[ParametersT]):
         """Take new parameters; see `Tracker.reconfigure`."""
         changed = _changed_effects(self.parameters, parameters)
         self.parameters = parameters
-        if parameters.frame_rate:
-            self.frame_period = 1 / parameters.frame_rate
         if "restarts" in changed:
             self._seed = _draw_seed(parameters.seed)
             self._rng = np.random.default_rng(self._seed)

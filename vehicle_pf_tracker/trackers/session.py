@@ -11,6 +11,7 @@ from typing import Any
 from vehicle_pf_tracker.features.box import Box, check_target
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.trackers.base import DEFAULT_PERIOD
 from vehicle_pf_tracker.trackers.clock import StampClock, StampEvent
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.parameters import group, parameter
@@ -144,15 +145,15 @@ class Session:
         if tick.event is not None:
             self.events.append(tick.event.value)
         if tick.event is StampEvent.JUMP_BACK and self.settings.reset_on_time_jump:
-            self._forget()
+            self.reset()
+            tick = self._clock.tick(stamp_ns)
         if self._size is not None and size != self._size:
             self.events.append(
                 f"image size changed from {self._size[0]}x{self._size[1]} to {size[0]}x{size[1]}; "
                 "starting again on the configured target"
             )
             self._forget()
-        if self._clock.period is not None:
-            self.tracker.frame_period = self._clock.period
+        self.tracker.frame_period = self._clock.period or DEFAULT_PERIOD
         if self._pending is not None:
             return self._start(frame, size)
         return None if self._size is None else self.tracker.step(frame, tick.elapsed)
