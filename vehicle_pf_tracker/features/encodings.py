@@ -76,7 +76,8 @@ def to_rgb(
         known = " ".join(ENCODINGS)
         raise InputError(f"the image encoding {encoding!r} is unknown; these are read: {known}")
     _check_layout(encoding, layout, height, width, step)
-    return layout.convert(_pixels(layout, height, width, step, data), bool(is_bigendian))
+    frame: Frame = layout.convert(_pixels(layout, height, width, step, data), bool(is_bigendian))
+    return frame
 
 
 def decode_compressed(format: str, data: Buffer) -> Frame:  # noqa: A002 (the ROS field's name)
@@ -160,7 +161,8 @@ def _by_opencv_16(code: int) -> _Encoding:
     return _Encoding(2, lambda pixels, big: cv2.cvtColor(_high_byte(pixels, big), code))
 
 
-# ROS names a Bayer pattern by its first two rows; OpenCV by the second row's second and third pixel.
+# ROS names a Bayer pattern by its first two pixels of the first two rows, OpenCV by the second
+# and third pixels of the second and third rows.
 _BAYER = {
     "bayer_rggb": cv2.COLOR_BayerBG2RGB,
     "bayer_bggr": cv2.COLOR_BayerRG2RGB,

@@ -93,7 +93,7 @@ def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
     stream.seek(0)
     try:
         summary = SeekingReader(stream, record_size_limit=size).get_summary()
-    except (McapError, struct.error, ValueError, KeyError):
+    except (McapError, struct.error, ValueError, KeyError, OverflowError):
         return None
     if summary is None or summary.statistics is None:
         return None
@@ -170,7 +170,7 @@ class _Scan:
                     channels[message.channel_id] += 1
                 elif kind in _DEFINITIONS:
                     _DEFINITIONS[kind](self.index, record)
-        except DamageError as error:
+        except (DamageError, McapError, struct.error, ValueError) as error:
             if not is_cut:
                 self.index.damages.append(f"a part at byte {offset} was skipped: {error}")
                 return

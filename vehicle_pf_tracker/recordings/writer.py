@@ -124,7 +124,11 @@ class RecordingWriter:
         channel = self._channel(topic, type_name)
         with output_errors(self.folder):
             self._mcap.add_message(
-                channel.channel_id, stamp_ns, data, stamp_ns, sequence=channel.count
+                channel.channel_id,
+                stamp_ns,
+                data,  # type: ignore[arg-type]  # any buffer is written as it is
+                stamp_ns,
+                sequence=channel.count,
             )
         channel.count += 1
         first, last = self._times or (stamp_ns, stamp_ns)
@@ -158,8 +162,10 @@ class RecordingWriter:
         ]
         information = bag_information(self._file_name, first, last - first, summaries)
         with output_errors(self.folder):
-            self._mcap.add_metadata("rosbag2", {"serialized_metadata": information_yaml(information)})
-            self._mcap.finish()
+            self._mcap.add_metadata(
+                "rosbag2", {"serialized_metadata": information_yaml(information)}
+            )
+            self._mcap.finish()  # type: ignore[no-untyped-call]
             self._stream.close()
             text = metadata_yaml(information)
             (self._output.partial / "metadata.yaml").write_text(text, encoding="utf-8")

@@ -1,0 +1,297 @@
+"""Reading recordings: rosbag2 folders and bare MCAP files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from vehicle_pf_tracker.features.encodings import decode_compressed, to_rgb
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.recordings import messages, truth_messages
+from vehicle_pf_tracker.recordings import topics as names
+from vehicle_pf_tracker.recordings.bag_folder import recording_files
+from vehicle_pf_tracker.recordings.cdr import deserialize, header_stamp_ns
+from vehicle_pf_tracker.recordings.mcap_blocks import Block, DamageError, Message
+from vehicle_pf_tracker.recordings.mcap_index import McapIndex, read_index
+from vehicle_pf_tracker.recordings.mcap_stream import merged_messages
+from vehicle_pf_tracker.recordings.topic_table import TopicInfo, choose_image_topic, list_topics
+from vehicle_pf_tracker.recordings.truth import Truth
+
+_UNREADABLE_IN_A_ROW = 10
+"""So many unreadable images at the very beginning mean that none can be read."""
+
+
+@dataclass(frozen=True, slots=True)
+class StampedFrame:
+    """An image and the stamp of its header in ns."""
+
+    stamp_ns: int
+    frame: Frame
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedMessage:
+    """A message as it was recorded.
+
+    Attributes
+    ----------
+    topic, type_name : str
+        Its topic and its type, empty where the recording does not say the type.
+    log_time_ns : int
+        When it was recorded, in ns.
+    stamp_ns : int or None
+        Stamp of its header in ns; None where its type has no header.
+    data : bytes
+        The message in CDR, encapsulation header included.
+    """
+
+    topic: str
+    type_name: str
+    log_time_ns: int
+    stamp_ns: int | None
+    data: bytes
+
+
+class Recording:
+    """A rosbag2 folder or a bare MCAP file.
+
+    Reading streams: no more than the chunks that overlap in time are in memory. Each call of
+    `frames`, `messages` and `truth` starts anew, and several may be under way at once.
+
+    Parameters
+    ----------
+    path : Path or str
+        The folder or the file.
+    topic : str or None
+        The image topic; None takes the only one there is.
+
+    Attributes
+    ----------
+    path : Path
+        As given.
+    image_topic, image_type : str
+        The image topic chosen and its ROS type, Image or CompressedImage.
+    topics : tuple of TopicInfo
+        All topics, in the order in which they were recorded first.
+    start_ns, end_ns : int
+        Log times of the first and the last message of any topic, in ns.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it is not MCAP, nothing in it can be read, or no image topic can
+        be chosen.
+    """
+
+    def __init__(self, path: Path | str, topic: str | None = None) -> None:
+        self.path = Path(path)
+        files, self._notices = recording_files(self.path)
+        self._files = [read_index(file) for file in files]
+        self._unreadable: dict[int, str] = {}
+        self._damages: dict[tuple[Path, int], str] = {}
+        self._check_readable()
+        self.topics: tuple[TopicInfo, ...] = list_topics(self._files)
+        chosen = choose_image_topic(self.path, self.topics, topic)
+        self.image_topic, self.image_type = chosen.name, chosen.type_name
+        self._frame_count = chosen.message_count
+        blocks = [block for index in self._files for block in index.blocks]
+        self.start_ns = min(block.start_ns for block in blocks)
+        self.end_ns = max(block.end_ns for block in blocks)
+        self._note_damage()
+
+    @property
+    def frame_count(self) -> int:
+        """Number of messages on the image topic."""
+        return self._frame_count
+
+    @property
+    def duration_ns(self) -> int:
+        """Time from the first to the last message in ns."""
+        return self.end_ns - self.start_ns
+
+    @property
+    def notices(self) -> list[str]:
+        """What was not as it should be, a sentence each; it grows while reading."""
+        notices = [*self._notices, *self._damages.values()]
+        if self._unreadable:
+            first = next(iter(self._unreadable.values()))
+            count = len(self._unreadable)
+            notices.append(f"skipped {count} images of {self.image_topic} in {self.path}; {first}")
+        return notices
+
+    def frames(
+        self, start_offset: float = 0.0, duration: float | None = None
+    ) -> Iterator[StampedFrame]:
+        """Yield the images as RGB frames, in the order of their log times.
+
+        An image that cannot be read is skipped; `notices` counts it.
+
+        Parameters
+        ----------
+        start_offset : float
+            Begin so many seconds (log time) after the start of the recording.
+        duration : float or None
+            End so many seconds later; None reads to the end.
+
+        Raises
+        ------
+        InputError
+            If no image can be read, or an option is negative or not finite.
+        """
+        readable = 0
+        selected = self._select({self.image_topic}, start_offset, duration)
+        for number, (_, message) in enumerate(selected, start=1):
+            frame = self._decode_or_note(message)
+            if frame is not None:
+                readable += 1
+                yield frame
+            elif readable == 0 and number == _UNREADABLE_IN_A_ROW:
+                break
+        if self._unreadable and not readable:
+            reason = next(iter(self._unreadable.values()))
+            raise InputError(f"no image of {self.image_topic} in {self.path} can be read; {reason}")
+
+    def truth(self) -> tuple[Truth, ...]:
+        """Read the true state of the vehicle in each frame that has one, by stamp.
+
+        Empty where the recording has no truth topics.
+
+        Raises
+        ------
+        InputError
+            If the truth topics are empty, of another type or broken.
+        """
+        if not self._has_truth():
+            return ()
+        return self._assemble(self._select(names.TRUTH_TOPICS, 0.0, None))
+
+    def first_truth(self) -> Truth | None:
+        """Read the earliest truth alone, without reading the whole recording."""
+        if not self._has_truth():
+            return None
+        first: list[tuple[McapIndex, Message]] = []
+        for found in self._select(names.TRUTH_TOPICS, 0.0, None):
+            # Topics of one stamp may be recorded some time apart.
+            if first and found[1].log_time_ns > first[0][1].log_time_ns + 500_000_000:
+                break
+            first.append(found)
+        return self._assemble(first)[0]
+
+    def messages(
+        self,
+        topics: Collection[str] | None = None,
+        start_offset: float = 0.0,
+        duration: float | None = None,
+    ) -> Iterator[RecordedMessage]:
+        """Yield messages as they were recorded, in the order of their log times.
+
+        Parameters
+        ----------
+        topics : collection of str or None
+            The topics wanted; None for all.
+        start_offset, duration : float
+            As for `frames`.
+        """
+        types = {info.name: info for info in self.topics}
+        for index, message in self._select(topics, start_offset, duration):
+            info = types[index.channels[message.channel_id].topic]
+            stamp = header_stamp_ns(message.data) if info.has_header else None
+            yield RecordedMessage(
+                info.name, info.type_name, message.log_time_ns, stamp, bytes(message.data)
+            )
+
+    def _select(
+        self, topics: Collection[str] | None, start_offset: float, duration: float | None
+    ) -> Iterator[tuple[McapIndex, Message]]:
+        first = self.start_ns + _nanoseconds("start offset", start_offset)
+        end = self.end_ns + 1
+        if duration is not None:
+            end = min(end, first + _nanoseconds("duration", duration))
+        return merged_messages(self._files, topics, first, end, self._note_block)
+
+    def _decode_or_note(self, message: Message) -> StampedFrame | None:
+        try:
+            return _decode(self.image_type, message.data)
+        except InputError as error:
+            seconds = (message.log_time_ns - self.start_ns) / 1e9
+            self._unreadable[message.log_time_ns] = f"{seconds:.3f} s after the start: {error}"
+            return None
+
+    def _has_truth(self) -> bool:
+        """Tell whether there is truth; raise if its topics are there but cannot hold any."""
+        found = [info for info in self.topics if info.name in names.TRUTH_TOPICS]
+        for info in found:
+            expected = truth_messages.TYPES[info.name]
+            if not info.is_cdr or info.type_name != expected:
+                kind = info.type_name or "an unknown type"
+                raise InputError(f"the truth topic {info.name} carries {kind}, not {expected}")
+        if found and not any(info.message_count for info in found):
+            raise InputError(f"the truth topics of {self.path} are empty")
+        return bool(found)
+
+    def _assemble(self, found: Iterable[tuple[McapIndex, Message]]) -> tuple[Truth, ...]:
+        def received() -> Iterator[tuple[str, Any]]:
+            for index, message in found:
+                topic = index.channels[message.channel_id].topic
+                yield topic, deserialize(message.data, truth_messages.TYPES[topic])
+
+        try:
+            return truth_messages.from_messages(received())
+        except InputError as error:
+            raise InputError(f"the truth of {self.path} is broken: {error}") from error
+
+    def _check_readable(self) -> None:
+        if any(index.blocks for index in self._files):
+            return
+        if any(index.is_truncated or index.damages for index in self._files):
+            raise InputError(
+                f"the recording {self.path} is truncated or damaged before its first message; "
+                "nothing in it can be used"
+            )
+        raise InputError(f"the recording {self.path} holds no messages")
+
+    def _note_damage(self) -> None:
+        frames = 0
+        for index in self._files:
+            frames += sum(
+                index.counts[channel_id]
+                for channel_id, channel in index.channels.items()
+                if channel.topic == self.image_topic
+            )
+            self._notices += [f"recording {index.path}: {damage}" for damage in index.damages]
+            if index.is_truncated:
+                self._notices.append(
+                    f"recording {index.path} is truncated after frame {frames}; "
+                    "what was readable is used"
+                )
+
+    def _note_block(self, index: McapIndex, block: Block, error: DamageError) -> None:
+        self._damages[index.path, block.offset] = (
+            f"recording {index.path}: a part at byte {block.offset} was skipped: {error}"
+        )
+
+
+def _decode(type_name: str, data: memoryview) -> StampedFrame:
+    message = deserialize(data, type_name)
+    if type_name == names.COMPRESSED_IMAGE:
+        frame = decode_compressed(message.format, message.data)
+    else:
+        frame = to_rgb(
+            message.encoding,
+            message.height,
+            message.width,
+            message.step,
+            bool(message.is_bigendian),
+            message.data,
+        )
+    return StampedFrame(messages.stamp_ns(message), frame)
+
+
+def _nanoseconds(name: str, seconds: float) -> int:
+    if not math.isfinite(seconds) or seconds < 0:
+        raise InputError(f"the {name} must be a number of seconds from 0, not {seconds}")
+    return round(seconds * 1e9)

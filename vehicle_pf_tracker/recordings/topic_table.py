@@ -1,0 +1,102 @@
+"""The topics of a recording, and which of them is the camera's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from mcap.records import Channel
+from mcap.well_known import MessageEncoding
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings.cdr import starts_with_header
+from vehicle_pf_tracker.recordings.mcap_index import McapIndex
+from vehicle_pf_tracker.recordings.topics import IMAGE_TYPES
+
+
+@dataclass(frozen=True, slots=True)
+class TopicInfo:
+    """A topic: its ROS type (empty where it is not said), what its messages are, and how many.
+
+    `is_cdr` says that the messages are serialized as ROS 2 does it, `has_header` that they begin
+    with a header.
+    """
+
+    name: str
+    type_name: str
+    message_count: int
+    is_cdr: bool
+    has_header: bool
+
+    @property
+    def is_image(self) -> bool:
+        """Whether these are images that we can read."""
+        return self.is_cdr and self.type_name in IMAGE_TYPES
+
+
+def list_topics(files: Sequence[McapIndex]) -> tuple[TopicInfo, ...]:
+    """List the topics of a recording, several channels of one topic added up."""
+    found: dict[str, TopicInfo] = {}
+    for index in files:
+        for channel_id, channel in index.channels.items():
+            count = index.counts[channel_id]
+            known = found.get(channel.topic) or _describe(index, channel)
+            found[channel.topic] = replace(known, message_count=known.message_count + count)
+    return tuple(found.values())
+
+
+def choose_image_topic(path: Path, topics: Sequence[TopicInfo], wanted: str | None) -> TopicInfo:
+    """Return the topic `wanted`, or the only image topic that has messages.
+
+    Raises
+    ------
+    InputError
+        If it does not exist, is empty or carries no images, or several could be meant.
+    """
+    images = [topic for topic in topics if topic.is_image]
+    if wanted is not None:
+        return _named_topic(path, topics, images, wanted)
+    filled = [topic for topic in images if topic.message_count]
+    if not filled:
+        names = _listed(topics)
+        raise InputError(f"the recording {path} has no images; its topics are: {names}")
+    if len(filled) > 1:
+        raise InputError(
+            f"the recording {path} has several image topics, choose one with --topic: "
+            f"{_listed(filled)}"
+        )
+    return filled[0]
+
+
+def _named_topic(
+    path: Path, topics: Sequence[TopicInfo], images: Sequence[TopicInfo], wanted: str
+) -> TopicInfo:
+    by_name = {topic.name: topic for topic in topics}
+    topic = by_name.get(wanted)
+    if topic is None:
+        raise InputError(
+            f"the recording {path} has no topic {wanted}; its image topics are: {_listed(images)}"
+        )
+    if not topic.is_image:
+        raise InputError(
+            f"the topic {wanted} of {path} carries {topic.type_name or 'an unknown type'}, "
+            f"no images; the image topics are: {_listed(images)}"
+        )
+    if not topic.message_count:
+        raise InputError(f"the image topic {wanted} of {path} has no messages")
+    return topic
+
+
+def _describe(index: McapIndex, channel: Channel) -> TopicInfo:
+    schema = index.schemas.get(channel.schema_id)
+    is_cdr = channel.message_encoding == MessageEncoding.CDR
+    if schema is None:
+        return TopicInfo(channel.topic, "", 0, is_cdr, has_header=False)
+    definition = schema.data.decode(errors="replace")
+    has_header = is_cdr and starts_with_header(schema.name, definition)
+    return TopicInfo(channel.topic, schema.name, 0, is_cdr, has_header)
+
+
+def _listed(topics: Sequence[TopicInfo]) -> str:
+    return ", ".join(topic.name for topic in topics) or "none"
