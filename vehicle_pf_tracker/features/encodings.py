@@ -161,8 +161,8 @@ def _by_opencv_16(code: int) -> _Encoding:
     return _Encoding(2, lambda pixels, big: cv2.cvtColor(_high_byte(pixels, big), code))
 
 
-# ROS names a Bayer pattern by its first two pixels of the first two rows, OpenCV by the second
-# and third pixels of the second and third rows.
+# ROS names a Bayer pattern by the first two pixels of the first two rows, OpenCV by the second and
+# third pixel of the second row.
 _BAYER = {
     "bayer_rggb": cv2.COLOR_BayerBG2RGB,
     "bayer_bggr": cv2.COLOR_BayerRG2RGB,

@@ -1,0 +1,96 @@
+"""Footage in a frame folder: `img/000001.jpg`..., `sequence.json`, `groundtruth.csv`."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+from vehicle_pf_tracker.features.encodings import decode_compressed
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings.footage import Picture, stamp_of
+from vehicle_pf_tracker.recordings.truth import Truth
+from vehicle_pf_tracker.recordings.truth_table import TruthRow, read_truth_table
+
+FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
+"""The image files that are read, and what a CompressedImage calls them."""
+
+
+class FrameFolder:
+    """A folder of numbered images with their frame rate, and with truth if there is any.
+
+    A gap in the numbers is a gap in the stamps. Truth belongs to the image of its number.
+
+    Raises
+    ------
+    InputError
+        If there are no images, two have one number, the frame rate is missing, or the truth is
+        faulty or belongs to none of the images.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._images = _numbered_images(folder)
+        self.total: int | None = len(self._images)
+        self.fps = _frame_rate(folder / "sequence.json")
+        truth_path = folder / "groundtruth.csv"
+        self._truth = read_truth_table(truth_path) if truth_path.exists() else {}
+        if self._truth and not self._truth.keys() & self._images.keys():
+            raise InputError(f"no frame of the truth {truth_path} has an image")
+
+    def pictures(self) -> Iterator[Picture]:
+        """Yield the images by their numbers; the first is at the start, whatever its number."""
+        first = min(self._images)
+        for number, path in self._images.items():
+            stamp = stamp_of(number - first, self.fps)
+            yield _picture(path, stamp, self._truth.get(number))
+
+    def notices(self) -> list[str]:
+        """Tell of truth without an image."""
+        lost = len(self._truth.keys() - self._images.keys())
+        return [f"{lost} frames of the truth have no image"] if lost else []
+
+
+def _numbered_images(folder: Path) -> dict[int, Path]:
+    images: dict[int, Path] = {}
+    for path in sorted((folder / "img").glob("*")):
+        if path.suffix.lower() not in FORMATS or not path.stem.isdecimal():
+            continue
+        number = int(path.stem)
+        if number in images:
+            raise InputError(f"{path} and {images[number].name} have the same number")
+        images[number] = path
+    if not images:
+        raise InputError(f"the folder {folder} has no images img/000001.jpg, ... (jpg or png)")
+    return dict(sorted(images.items()))
+
+
+def _frame_rate(path: Path) -> float:
+    try:
+        fps = json.loads(path.read_text(encoding="utf-8"))["fps"]
+    except OSError as error:
+        raise InputError(
+            f"cannot read {path}: {error.strerror}; the frame rate is needed, "
+            'a file with {"fps": 30} will do'
+        ) from error
+    except (ValueError, KeyError, TypeError):
+        raise InputError(
+            f'{path} does not say the frame rate; it must hold {{"fps": 30}}'
+        ) from None
+    is_number = isinstance(fps, int | float) and not isinstance(fps, bool)
+    if not is_number or not math.isfinite(fps) or fps <= 0:
+        raise InputError(f"the fps in {path} is {fps!r}; it must be a number above 0")
+    return float(fps)
+
+
+def _picture(path: Path, stamp_ns: int, row: TruthRow | None) -> Picture:
+    coded_format = FORMATS[path.suffix.lower()]
+    try:
+        coded = path.read_bytes()
+        frame = decode_compressed(coded_format, coded)
+    except OSError as error:
+        raise InputError(f"cannot read the image {path}: {error.strerror}") from error
+    except InputError as error:
+        raise InputError(f"the image {path} cannot be read: {error}") from error
+    truth = None if row is None else Truth(stamp_ns, row.box, row.occlusion)
+    return Picture(stamp_ns, frame, str(path), coded_format, coded, truth)

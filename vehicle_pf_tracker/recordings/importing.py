@@ -1,0 +1,126 @@
+"""Making recordings of video files and frame folders."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.recordings.footage import Footage, Picture
+from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
+from vehicle_pf_tracker.recordings.video import VideoFile
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
+
+FORMATS = ("compressed", "raw")
+JPEG_QUALITY = 95
+
+
+@dataclass(frozen=True, slots=True)
+class ImportSummary:
+    """What was imported.
+
+    Attributes
+    ----------
+    path : Path
+        The recording.
+    frames, truths : int
+        Number of images, and of those with truth.
+    fps : float
+        Frame rate of the source in 1/s.
+    width, height : int
+        Size of the images in px.
+    notices : tuple of str
+        What was not as it should be, a sentence each.
+    """
+
+    path: Path
+    frames: int
+    truths: int
+    fps: float
+    width: int
+    height: int
+    notices: tuple[str, ...]
+
+
+def import_recording(
+    source: Path,
+    out: Path,
+    *,
+    format: str | None = None,  # noqa: A002 (named as the option of the command)
+    progress: Callable[[int, int | None], None] | None = None,
+    overwrite: bool = False,
+) -> ImportSummary:
+    """Make a recording of a video file, or of a frame folder and its truth.
+
+    Parameters
+    ----------
+    source : Path
+        The video file or the frame folder.
+    out : Path
+        The rosbag2 folder to make.
+    format : str or None
+        ``compressed`` keeps JPEG and PNG files as they are and codes the frames of a video as JPEG;
+        ``raw`` writes pixels. None keeps JPEG files and writes everything else raw.
+    progress : callable or None
+        Called after each image with the number done and the total, None where that is unknown.
+    overwrite : bool
+        Replace a recording that is there.
+
+    Raises
+    ------
+    InputError
+        For every fault of the source, and if `out` cannot be written.
+    """
+    if format is not None and format not in FORMATS:
+        raise InputError(f"the format {format!r} is unknown; choose from {', '.join(FORMATS)}")
+    footage = _open(source)
+    frames, truths, size = 0, 0, (0, 0)
+    with RecordingWriter(out, overwrite=overwrite) as writer:
+        for picture in footage.pictures():
+            size = _check_size(picture, size if frames else frame_size(picture.frame))
+            _write_picture(writer, picture, format)
+            if picture.truth is not None:
+                writer.write_truth(picture.truth)
+                truths += 1
+            frames += 1
+            if progress is not None:
+                progress(frames, footage.total)
+    return ImportSummary(out, frames, truths, footage.fps, *size, tuple(footage.notices()))
+
+
+def _open(source: Path) -> Footage:
+    if not source.exists():
+        raise InputError(f"there is no file or folder {source} to import")
+    is_bag = source.is_dir() and (source / "metadata.yaml").exists()
+    if is_bag or source.suffix in {".mcap", ".db3", ".bag"}:
+        raise InputError(f"{source} is a recording already")
+    return FrameFolder(source) if source.is_dir() else VideoFile(source)
+
+
+def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:
+    width, height = frame_size(picture.frame)
+    if (width, height) != size:
+        raise InputError(
+            f"{picture.name} is {width}x{height} px, those before it {size[0]}x{size[1]}; "
+            "a recording needs one size"
+        )
+    return size
+
+
+def _write_picture(writer: RecordingWriter, picture: Picture, wanted: str | None) -> None:
+    if wanted == "raw" or (wanted is None and picture.coded_format != "jpeg"):
+        writer.write_image(picture.stamp_ns, picture.frame)
+    elif picture.coded_format is not None:
+        writer.write_compressed(picture.stamp_ns, picture.coded_format, picture.coded)
+    else:
+        writer.write_compressed(picture.stamp_ns, "jpeg", _jpeg(picture.frame))
+
+
+def _jpeg(frame: Frame) -> bytes:
+    image = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
+    _, coded = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    return coded.tobytes()

@@ -1,0 +1,71 @@
+"""Footage in a video file."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.recordings.footage import Picture, stamp_of
+
+# The decoder's own complaints would go to the terminal beside our sentence.
+os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+
+
+class VideoFile:
+    """The frames of a video file, at the frame rate that the file states.
+
+    Raises
+    ------
+    InputError
+        If the file is no video, has no frame, or states no frame rate.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._read = 0
+        video = self._open()
+        self.fps = float(video.get(cv2.CAP_PROP_FPS))
+        stated = video.get(cv2.CAP_PROP_FRAME_COUNT)
+        self.total = int(stated) if math.isfinite(stated) and stated > 0 else None
+        video.release()
+        if not math.isfinite(self.fps) or self.fps <= 0:
+            raise InputError(f"the video {path} states no frame rate; convert it to MP4 first")
+
+    def pictures(self) -> Iterator[Picture]:
+        """Yield the frames, stamped by their index."""
+        video = self._open()
+        try:
+            self._read = 0
+            while (frame := _next_frame(video)) is not None:
+                name = f"frame {self._read + 1} of {self._path}"
+                yield Picture(stamp_of(self._read, self.fps), frame, name)
+                self._read += 1
+        finally:
+            video.release()
+        if not self._read:
+            raise InputError(f"no frame of the video {self._path} can be decoded")
+
+    def notices(self) -> list[str]:
+        """Tell whether the file has fewer frames than it states."""
+        if self.total is None or self._read >= self.total:
+            return []
+        return [f"the video {self._path} states {self.total} frames, {self._read} could be read"]
+
+    def _open(self) -> cv2.VideoCapture:
+        video = cv2.VideoCapture(str(self._path))
+        if not video.isOpened():
+            raise InputError(f"{self._path} is no video file that can be decoded")
+        return video
+
+
+def _next_frame(video: cv2.VideoCapture) -> Frame | None:
+    is_read, image = video.read()
+    if not is_read:
+        return None
+    return cv2.cvtColor(image, cv2.COLOR_BGR2RGB)  # type: ignore[return-value]
