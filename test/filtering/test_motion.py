@@ -1,0 +1,115 @@
+"""Equations 7 to 22 of P1, read with READINGS 2 to 4."""
+
+import math
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.filtering.motion import (
+    expected_drift,
+    normal_pdf,
+    normal_rayleigh_pdf,
+    rayleigh_pdf,
+    sample_normal,
+    sample_normal_rayleigh,
+)
+
+DRAWS = 200_000
+
+
+def integral(density, low, high, steps=801):
+    """Sum over the middles of a square's cells."""
+    edges = np.linspace(low, high, steps)
+    middles = (edges[1:] + edges[:-1]) / 2
+    grid = np.stack(np.meshgrid(middles, middles, indexing="ij"), axis=-1)
+    return density(grid).sum() * (edges[1] - edges[0]) ** 2
+
+
+def test_normal_density_by_hand():
+    # Equation 7 at (sigma, 0): exp(-1/2) / (2 pi sigma²).
+    expected = math.exp(-0.5) / (2 * math.pi * 4)
+    assert normal_pdf(np.array([2.0, 0.0]), 2.0) == pytest.approx(expected)
+
+
+def test_rayleigh_density_by_hand():
+    # Equation 9 at its mode k1 = sigma_R: exp(-1/2) / sigma_R.
+    assert rayleigh_pdf(np.array(3.0), 3.0) == pytest.approx(math.exp(-0.5) / 3)
+    assert rayleigh_pdf(np.array([-1.0, 0.0]), 3.0).tolist() == [0.0, 0.0]
+
+
+def test_joint_density_by_hand_has_sigma_r_along_and_sigma_n_across():
+    along, across, sigma_r, sigma_n = 1.0, 2.0, 2.0, 4.0
+    expected = (
+        along
+        / (math.sqrt(2 * math.pi) * sigma_n * sigma_r**2)
+        * math.exp(-(along**2) / (2 * sigma_r**2) - across**2 / (2 * sigma_n**2))
+    )
+    assert normal_rayleigh_pdf(
+        np.array(along), np.array(across), sigma_r, sigma_n
+    ) == pytest.approx(expected)
+
+
+def test_densities_integrate_to_one():
+    assert integral(lambda d: normal_pdf(d, 2.0), -16, 16) == pytest.approx(1, abs=1e-3)
+    joint = integral(lambda d: normal_rayleigh_pdf(d[..., 0], d[..., 1], 2.0, 3.0), -24, 24)
+    assert joint == pytest.approx(1, abs=1e-3)
+
+
+def test_normal_sampler_has_the_moments_of_equation_7():
+    moves = sample_normal(np.random.default_rng(0), DRAWS, 3.0)
+    assert moves.shape == (DRAWS, 2)
+    assert np.abs(moves.mean(axis=0)).max() < 5 * 3.0 / math.sqrt(DRAWS)
+    assert np.cov(moves.T) == pytest.approx(np.diag([9.0, 9.0]), abs=0.15)
+
+
+@pytest.mark.parametrize("direction", [(1.0, 0.0), (0.0, 2.0), (-3.0, 4.0)])
+def test_normal_rayleigh_sampler_has_the_moments_of_equations_9_to_12(direction):
+    sigma_r, sigma_n = 2.0, 5.0
+    rng = np.random.default_rng(1)
+    moves = sample_normal_rayleigh(rng, DRAWS, direction, sigma_r, sigma_n)
+    unit = np.array(direction) / np.hypot(*direction)
+    along, across = moves @ unit, moves @ np.array([-unit[1], unit[0]])
+    assert along.min() >= -1e-9, "nothing drifts against the motion"
+    assert along.mean() == pytest.approx(math.sqrt(math.pi / 2) * sigma_r, abs=0.02)
+    assert along.var() == pytest.approx((2 - math.pi / 2) * sigma_r**2, rel=0.03)
+    assert across.mean() == pytest.approx(0.0, abs=5 * sigma_n / math.sqrt(DRAWS))
+    assert across.var() == pytest.approx(sigma_n**2, rel=0.03)
+
+
+def test_sampler_draws_from_the_density():
+    rng = np.random.default_rng(2)
+    moves = sample_normal_rayleigh(rng, DRAWS, (1.0, 0.0), 2.0, 3.0)
+    counts, edges_x, edges_y = np.histogram2d(
+        moves[:, 0], moves[:, 1], bins=(20, 20), range=((0, 8), (-9, 9))
+    )
+    middle_x, middle_y = (edges_x[1:] + edges_x[:-1]) / 2, (edges_y[1:] + edges_y[:-1]) / 2
+    along, across = np.meshgrid(middle_x, middle_y, indexing="ij")
+    area = (edges_x[1] - edges_x[0]) * (edges_y[1] - edges_y[0])
+    expected = normal_rayleigh_pdf(along, across, 2.0, 3.0) * area * DRAWS
+    well_filled = expected > 100
+    assert counts[well_filled] == pytest.approx(expected[well_filled], rel=0.35)
+    assert counts.sum() == pytest.approx(expected.sum(), rel=0.01)
+
+
+def test_drift_after_t_steps_is_t_times_the_rayleigh_mean():
+    # Equations 18 to 20 with all T terms (READINGS 4), and 21 and 22 across the motion.
+    steps, sigma = 12, 4.0
+    rng = np.random.default_rng(3)
+    position = np.zeros((20_000, 2))
+    for _ in range(steps):
+        position += sample_normal_rayleigh(rng, len(position), (1.0, 0.0), sigma, sigma)
+    assert expected_drift(steps, sigma) == pytest.approx(12 * math.sqrt(math.pi / 2) * 4.0)
+    assert position[:, 0].mean() == pytest.approx(expected_drift(steps, sigma), rel=0.01)
+    assert position[:, 1].mean() == pytest.approx(0.0, abs=0.5)
+
+
+def test_without_a_direction_the_drift_goes_everywhere():
+    moves = sample_normal_rayleigh(np.random.default_rng(4), 50_000, (0.0, 0.0), 2.0, 1.0)
+    assert np.abs(moves.mean(axis=0)).max() < 0.06
+    assert np.hypot(*moves.T).mean() > 2.0
+
+
+def test_same_seed_gives_the_same_draws():
+    first = sample_normal_rayleigh(np.random.default_rng(5), 10, (1.0, 1.0), 2.0, 1.0)
+    second = sample_normal_rayleigh(np.random.default_rng(5), 10, (1.0, 1.0), 2.0, 1.0)
+    assert np.array_equal(first, second)
