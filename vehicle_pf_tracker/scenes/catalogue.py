@@ -8,6 +8,7 @@ from typing import Any
 
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.scenes.bar import BarParameters, bar
+from vehicle_pf_tracker.scenes.highway import HighwayParameters, highway
 from vehicle_pf_tracker.scenes.randomness import check_seed
 from vehicle_pf_tracker.scenes.scene import Scene
 from vehicle_pf_tracker.trackers.parameters import from_mapping, parse_assignments, specs
@@ -34,6 +35,9 @@ class SceneKind:
 
 SCENES: dict[str, SceneKind] = {
     "bar": SceneKind(BarParameters, bar, "a vehicle passes behind a dark vertical bar"),
+    "highway": SceneKind(
+        HighwayParameters, highway, "traffic; a bridge, then a lorry that overtakes hide the target"
+    ),
 }
 
 

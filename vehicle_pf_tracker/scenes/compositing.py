@@ -70,6 +70,7 @@ class Sprite:
         rows, columns, channels = cells.shape
         self._integral: Array = np.zeros((rows + 1, columns + 1, channels))
         self._integral[1:, 1:] = cells.cumsum(axis=0).cumsum(axis=1)
+        self._last: tuple[Box, PixelWindow, Image] | None = None
 
     @classmethod
     def plain(cls, colour: Colour, opacity: float = 1.0) -> Sprite:
@@ -81,15 +82,20 @@ class Sprite:
         rows, columns = self._integral.shape[0] - 1, self._integral.shape[1] - 1
         return float(self._integral[-1, -1, 3] * box.area / (rows * columns))
 
-    def layer(self, box: Box, window: PixelWindow) -> Array:
+    def layer(self, box: Box, window: PixelWindow) -> Image:
         """Mean of the sprite over each pixel of `window` when it fills `box`.
+
+        The last answer is kept, because bridges stand still.
 
         Returns
         -------
         array of shape (rows, columns, 4)
             Red, green and blue already multiplied with opacity, and opacity.
         """
-        return self._means(self._integral, box, window)
+        if self._last is None or self._last[:2] != (box, window):
+            means = self._means(self._integral, box, window).astype(np.float32)
+            self._last = box, window, means
+        return self._last[2]
 
     def coverage(self, box: Box, window: PixelWindow) -> Array:
         """Opacity alone of `layer`, shape (rows, columns)."""
@@ -108,14 +114,13 @@ class Sprite:
 
 def _interpolate(grid: Array, y: Array, x: Array) -> Array:
     """Bilinear values of `grid` at every (y, x), which is exact for an integral of cells."""
-    row = np.minimum(y.astype(np.intp), grid.shape[0] - 2)
+    row = np.minimum(y.astype(np.intp), grid.shape[0] - 2)[:, np.newaxis]
     column = np.minimum(x.astype(np.intp), grid.shape[1] - 2)
     depth = (1,) * (grid.ndim - 2)
-    down = (y - row).reshape(-1, 1, *depth)
+    down = (y[:, np.newaxis] - row).reshape(-1, 1, *depth)
     right = (x - column).reshape(1, -1, *depth)
-    upper, lower = grid[row], grid[row + 1]
-    left: Array = upper[:, column] * (1 - down) + lower[:, column] * down
-    beyond: Array = upper[:, column + 1] * (1 - down) + lower[:, column + 1] * down
+    left: Array = grid[row, column] * (1 - down) + grid[row + 1, column] * down
+    beyond: Array = grid[row, column + 1] * (1 - down) + grid[row + 1, column + 1] * down
     values: Array = left * (1 - right) + beyond * right
     return values
 
@@ -125,7 +130,7 @@ def paint(canvas: Image, sprite: Sprite, box: Box) -> None:
     window = PixelWindow.of(box, canvas.shape[1], canvas.shape[0])
     if window.empty:
         return
-    layer = sprite.layer(box, window).astype(np.float32)
+    layer = sprite.layer(box, window)
     region = canvas[window.slices]
     region *= 1 - layer[..., 3:]
     region += layer[..., :3]

@@ -14,15 +14,18 @@ from itertools import pairwise
 import cv2
 import numpy as np
 
+from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.scenes.compositing import Array, Colour, Sprite
 
 ELEVATION = math.radians(35)
 """Angle of the view above the horizon."""
+SHADE: Colour = (12, 14, 20)
+"""Colour that shadows are tinted with."""
 OVERSAMPLING = 6
 """Cells drawn per pixel and axis."""
 
 _VIEW = np.array([0.0, -math.cos(ELEVATION), math.sin(ELEVATION)])
-_SUN = np.array([0.25, -0.5, 0.83])
+_SUN = np.array([0.35, 0.4, 0.85])
 _SUBCELL_BITS = 8
 
 Point = tuple[float, float, float]
@@ -61,28 +64,49 @@ def disc(x: float, z: float, radius: float, colour: Colour, y: float = 0.0) -> F
     return side_panel(contour, y, colour)
 
 
-def draw(faces: Iterable[Face], width: float, height: float, *, mirrored: bool = False) -> Sprite:
+def mirrored(faces: Iterable[Face]) -> list[Face]:
+    """Turn a solid round so that it heads to the left."""
+    return [
+        Face(tuple((-x, y, z) for x, y, z in face.points), face.colour, face.glow) for face in faces
+    ]
+
+
+def shadow(faces: Iterable[Face]) -> list[Face]:
+    """Cast every face along the sun's rays onto the ground (z = 0)."""
+    east, away, up = (float(part) for part in _SUN)
+    return [
+        Face(tuple((x - z * east / up, y - z * away / up, 0.0) for x, y, z in face.points),
+             SHADE, glow=True)
+        for face in faces
+    ]  # fmt: skip
+
+
+def extent(faces: Iterable[Face]) -> Box:
+    """Tight box of a solid as it is seen, in metres of the view plane."""
+    every = np.concatenate([_project(face) for face in faces])
+    (left, top), (right, bottom) = every.min(axis=0).tolist(), every.max(axis=0).tolist()
+    return Box(left, top, right - left, bottom - top)
+
+
+def draw(faces: Sequence[Face], width: float, height: float, opacity: float = 1.0) -> Sprite:
     """Draw `faces` in the order given, far to near.
 
     The silhouette is stretched to touch all four sides of the sprite, so that the box the sprite
     fills is the tight box of the vehicle. `width` and `height` (px) are the size it is meant for
-    and set the fineness. `mirrored` turns it to drive to the left.
+    and set the fineness.
     """
-    faces = list(faces)
-    outlines = [_project(face) for face in faces]
-    every = np.concatenate(outlines)
-    low, extent = every.min(axis=0), np.ptp(every, axis=0)
+    bounds = extent(faces)
     columns, rows = math.ceil(width * OVERSAMPLING), math.ceil(height * OVERSAMPLING)
+    cells_per_metre = columns / bounds.width, rows / bounds.height
     colour = np.zeros((rows, columns, 3), np.uint8)
     mask = np.zeros((rows, columns), np.uint8)
-    for face, outline in zip(faces, outlines, strict=True):
+    for face in faces:
         # OpenCV puts integer coordinates in the middle of a cell, we at its edge.
-        cells = (outline - low) / extent * (columns, rows) - 0.5
+        cells = (_project(face) - (bounds.x, bounds.y)) * cells_per_metre - 0.5
         polygon = [np.rint(cells * 2**_SUBCELL_BITS).astype(np.int32)]
         cv2.fillPoly(colour, polygon, _shaded(face), cv2.LINE_8, _SUBCELL_BITS)
         cv2.fillPoly(mask, polygon, (1,), cv2.LINE_8, _SUBCELL_BITS)
-    step = -1 if mirrored else 1
-    return Sprite(colour[:, ::step], mask[:, ::step])
+    return Sprite(colour, mask * opacity)
 
 
 def _project(face: Face) -> Array:
@@ -93,7 +117,7 @@ def _project(face: Face) -> Array:
 def _shaded(face: Face) -> Colour:
     if face.glow:
         return face.colour
-    light = 0.5 + 0.55 * max(0.0, float(_normal(face) @ _SUN))
+    light = 0.68 + 0.42 * max(0.0, float(_normal(face) @ _SUN))
     red, green, blue = (min(255.0, round(level * light)) for level in face.colour)
     return red, green, blue
 

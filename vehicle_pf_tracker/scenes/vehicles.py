@@ -73,27 +73,27 @@ def van(paint: Colour) -> list[Face]:
 
 
 def lorry(cab: Colour, box: Colour, stripe: Colour) -> list[Face]:
-    """Build a box lorry, 12.2 m long: a closed box of 9.9 m behind a cab with a wind deflector."""
+    """Build a box lorry, 10.6 m long: a closed box of 8.3 m behind a cab with a wind deflector."""
     width, floor, top = 2.5, 1.1, 4.0
-    load = [(0.0, floor), (0.0, top), (9.9, top), (9.9, floor)]
-    tractor = [(10.0, 0.7), (10.0, 3.8), (10.7, 3.7), (11.8, 2.9), (12.15, 1.9), (12.2, 0.7)]
-    screen = Face(((11.75, 0.15, 2.85), (12.12, 0.15, 1.95), (12.12, 2.35, 1.95),
-                   (11.75, 2.35, 2.85)), SCREEN)  # fmt: skip
+    load = [(0.0, floor), (0.0, top), (8.3, top), (8.3, floor)]
+    tractor = [(8.4, 0.7), (8.4, 3.8), (9.1, 3.7), (10.2, 2.9), (10.55, 1.9), (10.6, 0.7)]
+    screen = Face(((10.15, 0.15, 2.85), (10.52, 0.15, 1.95), (10.52, 2.35, 1.95),
+                   (10.15, 2.35, 2.85)), SCREEN)  # fmt: skip
     return [
-        side_panel([(0.1, 0.6), (0.1, 1.2), (12.0, 1.2), (12.0, 0.6)], 0.3, SILL),
+        side_panel([(0.1, 0.6), (0.1, 1.2), (10.4, 1.2), (10.4, 0.6)], 0.3, SILL),
         *_shell(tractor, width, cab),
         screen,
         side_panel(tractor, 0, cab),
-        side_panel([(10.7, 1.9), (10.7, 2.75), (11.5, 2.75), (11.85, 1.9)], 0, SIDE_GLASS),
+        side_panel([(9.1, 1.9), (9.1, 2.75), (9.9, 2.75), (10.25, 1.9)], 0, SIDE_GLASS),
         *strips(load[1:3], 0, width, box),
         side_panel(load, 0, box),
-        side_panel([(0.0, 2.0), (0.0, 2.5), (9.9, 2.5), (9.9, 2.0)], 0, stripe),
+        side_panel([(0.0, 2.0), (0.0, 2.5), (8.3, 2.5), (8.3, 2.0)], 0, stripe),
         *(side_panel([(x, 1.15), (x, 3.95), (x + 0.06, 3.95), (x + 0.06, 1.15)], 0, SILL)
-          for x in (0.02, 9.8)),
-        side_panel([(2.9, 0.5), (2.9, 1.05), (7.4, 1.05), (7.4, 0.5)], 0, (120, 122, 124)),
-        side_panel([(11.95, 0.8), (11.95, 1.1), (12.2, 1.1), (12.2, 0.8)], 0, HEAD_LAMP, glow=True),
+          for x in (0.02, 8.2)),
+        side_panel([(2.9, 0.5), (2.9, 1.05), (6.0, 1.05), (6.0, 0.5)], 0, (120, 122, 124)),
+        side_panel([(10.3, 0.8), (10.3, 1.1), (10.58, 1.1), (10.6, 0.8)], 0, HEAD_LAMP, glow=True),
         side_panel([(0.0, 0.8), (0.0, 1.05), (0.3, 1.05), (0.3, 0.8)], 0, TAIL_LAMP, glow=True),
-        *_wheels((1.0, 2.2, 8.6, 10.9), 0.5),
+        *_wheels((1.0, 2.2, 7.1, 9.4), 0.5),
     ]  # fmt: skip
 
 

@@ -1,0 +1,109 @@
+"""Traffic on a dual carriageway: the target passes a bridge, then a lorry overtakes and hides it.
+
+The target drives in the far slow lane. The bridge hides it for about 21 frames, and later a lorry
+in the next lane for about as long; each comes and goes over about 15 frames of partial occlusion.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehicle_pf_tracker.scenes.bridges import bridge
+from vehicle_pf_tracker.scenes.camera import Camera
+from vehicle_pf_tracker.scenes.paths import Driven, Straight, Wave
+from vehicle_pf_tracker.scenes.randomness import stream
+from vehicle_pf_tracker.scenes.roads import FAR_LANES, NEAR_LANES, dual_carriageway
+from vehicle_pf_tracker.scenes.scene import Actor, Scene
+from vehicle_pf_tracker.scenes.traffic import any_car, convoy, vehicle
+from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon
+from vehicle_pf_tracker.trackers.parameters import parameter
+
+WIDTH, HEIGHT, FRAME_COUNT = 640, 480, 200
+SPEED = 2.9
+"""Mean speed of the target, px/frame: it crosses the image in `FRAME_COUNT` frames."""
+OVERTAKING = 3.8
+"""Mean speed of the lorry over the target's, px/frame."""
+HIDDEN_AT = 133
+"""Frame in which the middle of the lorry's box is level with the target."""
+LOAD_MIDDLE = 0.39
+"""Where along the lorry its box has its middle."""
+
+
+@dataclass(frozen=True, slots=True)
+class HighwayParameters:
+    """What can be chosen about the highway."""
+
+    noise: float = parameter(
+        3.0, "more makes histograms differ from frame to frame",
+        minimum=0.0, maximum=60.0, unit="levels of 255",
+    )  # fmt: skip
+    frame_rate: float = parameter(
+        30.0, "changes the stamps only: speeds are per frame",
+        minimum=1.0, maximum=240.0, unit="frames/s",
+    )  # fmt: skip
+
+
+def highway(parameters: HighwayParameters, seed: int) -> Scene:
+    """Make the scene."""
+    rng = stream(seed, "traffic")
+    slow_lane, target = _slow_lane(rng)
+    actors = [
+        *slow_lane,
+        *_middle_lane(rng),
+        *convoy(FAR_LANES[2], rng.uniform(7.2, 8.4), FRAME_COUNT, WIDTH, rng),
+        *(
+            actor
+            for lane, speed in zip(NEAR_LANES, (9.5, 7.8, 6.2), strict=True)
+            for actor in convoy(lane, speed * rng.uniform(0.93, 1.07), FRAME_COUNT, WIDTH, rng)
+        ),
+        *bridge(150 + rng.uniform(-4, 4), 100, HEIGHT, stream(seed, "bridge")),
+    ]
+    return Scene(
+        name="highway",
+        width=WIDTH,
+        height=HEIGHT,
+        frame_rate=parameters.frame_rate,
+        frame_count=FRAME_COUNT,
+        backdrop=lambda: dual_carriageway(WIDTH, HEIGHT, stream(seed, "backdrop")),
+        actors=tuple(actors),
+        target=next(index for index, actor in enumerate(actors) if actor is target),
+        camera=Camera(parameters.noise, seed),
+    )
+
+
+def _slow_lane(rng: np.random.Generator) -> tuple[list[Actor], Actor]:
+    """Make the target, a saloon of a similar blue ahead of it, and a car behind; and the target."""
+    lane = FAR_LANES[0]
+    hatchback = vehicle(car((38, 92, 168)), lane)
+    start = hatchback.box(10 + rng.uniform(-2, 2), lane)
+    course = Straight(start, (SPEED, 0.0))
+    own = hatchback.on(Driven(course, _swing(2.0, 90, rng), _swing(0.7, 130, rng)))
+    ahead = vehicle(saloon((62, 84, 132)), lane)
+    leader = ahead.on(Straight(ahead.box(start.x + rng.uniform(105, 125), lane), (3.05, 0.0)))
+    behind = any_car(lane, rng)
+    follower = behind.on(Straight(behind.box(rng.uniform(-190, -150), lane), (2.75, 0.0)))
+    return [*leader, *follower, *own], own[1]
+
+
+def _swing(amplitude: float, period: float, rng: np.random.Generator) -> Wave:
+    return Wave(amplitude, period, rng.uniform(0, 2 * math.pi))
+
+
+def _middle_lane(rng: np.random.Generator) -> list[Actor]:
+    """Make the lorry that overtakes the target, with a car well ahead and one well behind."""
+    lane = FAR_LANES[1]
+    truck = vehicle(lorry((176, 120, 40), (204, 200, 190), (122, 40, 52)), lane)
+    speed = SPEED + OVERTAKING * rng.uniform(0.95, 1.05)
+    meeting = 33 + SPEED * HIDDEN_AT + rng.uniform(-6, 6)
+    left = meeting - LOAD_MIDDLE * truck.size[0] - speed * HIDDEN_AT
+    actors = list(truck.on(Straight(truck.box(left, lane), (speed, 0.0))))
+    gap = rng.uniform(130, 220)
+    for model, place in (
+        (vehicle(saloon((216, 214, 208)), lane), left + truck.size[0] + gap + 260),
+        (vehicle(car((150, 40, 38)), lane), left - gap - 45),
+    ):
+        actors += model.on(Straight(model.box(place, lane), (speed, 0.0)))
+    return actors
