@@ -1,0 +1,45 @@
+import math
+
+import pytest
+
+from vehicle_pf_tracker.features.box import Box, check_target, clip_position
+from vehicle_pf_tracker.features.errors import InputError
+
+
+def test_centre_is_the_corner_plus_half_the_size():
+    assert Box(10, 20, 41, 30).centre == (30.5, 35.0)
+    assert Box.around((30.5, 35.0), 41, 30) == Box(10, 20, 41, 30)
+
+
+def test_diagonal_area_corners():
+    box = Box(1, 2, 3, 4)
+    assert box.diagonal == 5
+    assert box.area == 12
+    assert box.corners == ((1, 2), (4, 2), (4, 6), (1, 6))
+
+
+@pytest.mark.parametrize(
+    "box",
+    [
+        Box(math.nan, 0, 5, 5),
+        Box(0, 0, math.inf, 5),
+        Box(0, 0, 0, 5),
+        Box(0, 0, 5, -1),
+        Box(100, 0, 10, 10),
+        Box(-20, 0, 10, 10),
+        Box(0, 60, 10, 10),
+    ],
+)
+def test_boxes_no_tracker_can_start_on(box):
+    with pytest.raises(InputError, match="target"):
+        check_target(box, 64, 48)
+
+
+@pytest.mark.parametrize("box", [Box(0, 0, 1, 1), Box(-5, -5, 10, 10), Box(59, 43, 10, 10)])
+def test_boxes_at_the_border_are_targets(box):
+    assert check_target(box, 64, 48) is box
+
+
+def test_clipping_moves_to_the_nearest_pixel_centre():
+    assert clip_position((-3, 50), 64, 48) == (0.5, 47.5)
+    assert clip_position((7.25, 8), 64, 48) == (7.25, 8)
