@@ -1,0 +1,142 @@
+"""`estimates.csv`: one row per frame of a recording, with every digit kept."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Mapping
+from dataclasses import astuple, dataclass, fields
+from pathlib import Path
+
+from vehicle_pf_tracker.evaluation.output_files import write_text
+from vehicle_pf_tracker.features.errors import InputError
+
+WAITING = "WAITING"
+"""Mode of a frame before there is a target; all numbers are empty."""
+REJECTED = "REJECTED"
+"""Mode of a frame that the tracker could not use; all numbers are empty."""
+
+
+@dataclass(frozen=True, slots=True)
+class EstimateRow:
+    """What was estimated in one frame.
+
+    Attributes
+    ----------
+    frame : int
+        Number of the frame in its recording, from 1.
+    stamp_ns : int
+        Stamp of its image in ns.
+    x, y : float or None
+        Centre of the vehicle in px; None, as all numbers, where there is no estimate.
+    width, height : float or None
+        Size of its box in px.
+    mode : str
+        ``TRACKING``, ``OCCLUDED``, ``LOST``, or `WAITING` or `REJECTED`.
+    confidence : float or None
+        0 to 1.
+    n_eff : float or None
+        Effective sample size.
+    step_ms : float or None
+        Time that the step took, in ms.
+    """
+
+    frame: int
+    stamp_ns: int
+    x: float | None
+    y: float | None
+    width: float | None
+    height: float | None
+    mode: str
+    confidence: float | None
+    n_eff: float | None
+    step_ms: float | None
+
+    @classmethod
+    def from_scalars(
+        cls, frame: int, stamp_ns: int, scalars: Mapping[str, float | int | str]
+    ) -> EstimateRow:
+        """Make a row from the scalars of an `Estimate`, or from their text in `~/mode`.
+
+        Scalars that are missing or empty are None; those that have no column are left out.
+
+        Raises
+        ------
+        InputError
+            If there is no mode, or the text of a number is none.
+        """
+        if "mode" not in scalars:
+            raise InputError(f"the estimate of frame {frame} has no mode")
+        numbers = {name: _number(name, scalars.get(name, "")) for name in _NUMBERS}
+        return cls(frame=frame, stamp_ns=stamp_ns, mode=str(scalars["mode"]), **numbers)
+
+    @classmethod
+    def without(cls, frame: int, stamp_ns: int, mode: str) -> EstimateRow:
+        """Make the row of a frame without an estimate."""
+        return cls.from_scalars(frame, stamp_ns, {"mode": mode})
+
+    @property
+    def position(self) -> tuple[float, float] | None:
+        """Centre (x, y) in px, None where there is no estimate."""
+        return None if self.x is None or self.y is None else (self.x, self.y)
+
+
+COLUMNS = tuple(field.name for field in fields(EstimateRow))
+_NUMBERS = ("x", "y", "width", "height", "confidence", "n_eff", "step_ms")
+
+
+def write_estimates(path: Path, rows: Iterable[EstimateRow]) -> None:
+    """Write `rows` to the file `path`.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    writer.writerows([_text(value) for value in astuple(row)] for row in rows)
+    write_text(path, text.getvalue())
+
+
+def read_estimates(path: Path) -> list[EstimateRow]:
+    """Read the rows of the file `path`.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or a line of it is not as `write_estimates` writes it.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is no text"
+        raise InputError(f"cannot read the estimates {path}: {reason}") from error
+    header, *lines = list(csv.reader(io.StringIO(text))) or [[]]
+    if tuple(header) != COLUMNS:
+        raise InputError(f"the estimates {path} must begin with the line {','.join(COLUMNS)}")
+    return [_read_row(path, number, line) for number, line in enumerate(lines, start=2)]
+
+
+def _read_row(path: Path, number: int, line: list[str]) -> EstimateRow:
+    try:
+        named = dict(zip(COLUMNS, line, strict=True))
+        return EstimateRow.from_scalars(int(named["frame"]), int(named["stamp_ns"]), named)
+    except ValueError as error:
+        raise InputError(f"line {number} of the estimates {path} is broken: {error}") from error
+
+
+def _number(name: str, value: float | str) -> float | None:
+    if isinstance(value, str) and not value:
+        return None
+    try:
+        return float(value)
+    except ValueError:
+        raise InputError(f"{name} is no number: {value!r}") from None
+
+
+def _text(value: float | str | None) -> str:
+    if value is None:
+        return ""
+    return value if isinstance(value, str) else repr(value)

@@ -1,0 +1,74 @@
+"""Result files that appear whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from vehicle_pf_tracker.features.errors import InputError
+
+
+@contextmanager
+def output_errors(path: Path) -> Iterator[None]:
+    """Tell what the system refuses as a mistake about `path`."""
+    try:
+        yield
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror or error}") from error
+
+
+def make_folder(path: Path) -> Path:
+    """Make the folder `path` where it is missing, and make sure that files can be put in it.
+
+    Raises
+    ------
+    InputError
+        If it is a file, or may not be made or written to.
+    """
+    with output_errors(path):
+        if path.exists() and not path.is_dir():
+            raise InputError(f"the output {path} is a file; name a folder")
+        path.mkdir(parents=True, exist_ok=True)
+        probe = _partial(path / "probe")
+        probe.touch()
+        probe.unlink()
+    return path
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give a path beside `path` to write to; it takes the place of `path` if all goes well.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    partial = _partial(path)
+    with output_errors(path):
+        try:
+            yield partial
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write `text` in one go; see `replacing`."""
+    with replacing(path) as partial:
+        partial.write_text(text, encoding="utf-8", newline="\n")
+
+
+def write_json(path: Path, document: Any) -> None:
+    """Write `document` as JSON, refusing numbers that JSON does not have."""
+    text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
+    write_text(path, text + "\n")
+
+
+def _partial(path: Path) -> Path:
+    # The suffix stays, since those who draw pictures choose the format by it.
+    return path.with_name(f".{path.stem}.{os.getpid()}.partial{path.suffix}")
