@@ -1,0 +1,134 @@
+"""P1, Algorithms 1 and 2, and each of its readings."""
+
+import itertools
+
+import numpy as np
+import pytest
+from street import Street, error, follow
+
+from vehicle_pf_tracker.trackers.apf import ApfTracker
+from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
+from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters, log_likelihood
+from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.parameters import from_mapping
+
+
+def make(**values):
+    return ApfTracker(from_mapping(ApfParameters, values))
+
+
+def test_likelihood_by_hand_squared_and_as_printed():
+    # rho 0.75 is a distance of 0.5: 0.25 / (2 * 0.01) = 12.5, and 0.5 / (2 * 2.25) = 1/9.
+    squared = log_likelihood(np.array([0.75, 1.0]), LikelihoodParameters(0.1, True))
+    assert squared == pytest.approx([-12.5, 0.0])
+    printed = log_likelihood(np.array([0.75, 1.0]), LikelihoodParameters(1.5, False))
+    assert printed == pytest.approx([-1 / 9, 0.0])
+
+
+def test_mean_velocity_by_hand():
+    velocity = MeanVelocity(2)
+    assert velocity.value == (0.0, 0.0)
+    velocity.add((0, 0), (9, 9), 1.0)
+    velocity.add((9, 9), (11, 9), 1.0)
+    velocity.add((11, 9), (19, 9), 3.0)
+    # The last two: 10 px in 4 periods.
+    assert velocity.value == pytest.approx((2.5, 0.0))
+
+
+def test_mean_velocity_over_all_as_printed_telescopes():
+    velocity = MeanVelocity(0)
+    velocity.add((0, 0), (30, 8), 1.0)
+    velocity.add((30, 8), (32, 8), 1.0)
+    assert velocity.value == pytest.approx((16.0, 4.0))
+
+
+def test_a_shorter_window_looks_at_the_same_moves():
+    velocity = MeanVelocity(4)
+    for step in range(1, 5):
+        velocity.add((0, 0), (step, 0), 1.0)
+    assert velocity.resized(2).value == pytest.approx((3.5, 0.0))
+    assert velocity.resized(0).value == pytest.approx((2.5, 0.0))
+
+
+def test_the_regime_follows_the_similarities_of_the_frame_before():
+    # Step 4: regular at t if both similarities at t - 1 are at least tau.
+    street = Street(hidden=(15, 22))
+    estimates = follow(make(), street, range(35))
+    tau = ApfParameters().occlusion.tau
+    for before, now in itertools.pairwise(estimates[1:]):
+        clear = min(before.similarities["pi"], before.similarities["pi_up"]) >= tau
+        assert now.regime == ("regular" if clear else "occlusion")
+        assert now.resampled_particles == (200 if clear else 0)
+    assert {"regular", "occlusion"} == {e.regime for e in estimates[1:]}
+
+
+def test_drifts_at_the_mean_velocity_while_hidden():
+    street = Street(speed=3.0, hidden=(20, 35))
+    estimates = follow(make(), street, range(45))
+    hidden = [error(e, street, t) for t, e in enumerate(estimates) if 22 <= t < 35]
+    assert np.median(hidden) < 20
+    assert error(estimates[-1], street, 44) < 10
+
+
+def moved_while_hidden(**values):
+    street = Street(speed=3.0, hidden=(20, 999))
+    estimates = follow(make(**values), street, range(30))
+    return estimates[29].particles[:, 0].mean() - estimates[22].particles[:, 0].mean()
+
+
+def test_reading_11_drift_is_the_velocity_or_the_printed_sigma():
+    # Seven steps: at 3 px a frame, or at sqrt(pi / 2) * 6 px a frame.
+    assert moved_while_hidden() == pytest.approx(7 * 3.0, rel=0.35)
+    fixed = {"motion.drift_from_velocity": False, "motion.sigma_r": 6.0}
+    assert moved_while_hidden(**fixed) == pytest.approx(7 * 7.52, rel=0.15)
+
+
+def test_reading_6_the_reference_is_frozen_while_occluded():
+    street = Street(speed=0.0, hidden=(10, 30))
+    kept, learned = make(), make(**{"reference.frozen_while_occluded": False})
+    before = []
+    for tracker in (kept, learned):
+        follow(tracker, street, range(11))
+        before.append(tracker._reference)
+        for time in range(11, 25):
+            tracker.step(street.frame(time))
+    assert np.array_equal(kept._reference, before[0])
+    assert not np.allclose(learned._reference, before[1], atol=0.05)
+
+
+def test_reading_7_the_blended_histogram_notices_an_occlusion_late():
+    street = Street(speed=0.0, hidden=(10, 30))
+    raw = follow(make(), street, range(14))
+    blended = follow(make(**{"occlusion.raw_histogram": False}), street, range(14))
+    assert raw[10].similarities["pi"] < 0.5
+    assert blended[10].similarities["pi"] > 0.7
+    assert min(e.similarities["pi_up"] for e in blended[1:]) > 0.7
+
+
+def test_reading_5_the_origin_counts_as_the_first_position():
+    street = Street(speed=0.0)
+    printed = make(**{"velocity.from_origin": True, "velocity.window": 0})
+    x, y = follow(printed, street, range(2))[-1].velocity
+    centre = street.box(0).centre
+    assert (x, y) == pytest.approx(centre, abs=6)
+    assert follow(make(), street, range(2))[-1].velocity == pytest.approx((0, 0), abs=6)
+
+
+def test_as_printed_overrides_every_reading():
+    settings = from_mapping(
+        ApfParameters, {"as_printed": True, "motion.sigma_w": 7.0, "motion.sigma_n": 2.0}
+    ).effective()
+    assert settings.likelihood == LikelihoodParameters(1.5, False)
+    assert not settings.reference.frozen_while_occluded
+    assert not settings.occlusion.raw_histogram
+    assert settings.velocity.from_origin
+    assert settings.velocity.window == 0
+    assert not settings.motion.drift_from_velocity
+    assert (settings.motion.sigma_n, settings.motion.sigma_r, settings.motion.sigma_w) == (0, 0, 7)
+
+
+def test_as_printed_weights_are_almost_flat():
+    # READINGS 1: target to background is 1.16 to 1.
+    estimates = follow(make(as_printed=True), Street(), range(5))
+    assert min(e.effective_sample_size for e in estimates) > 190
+    assert max(e.effective_sample_size for e in follow(make(), Street(), range(5))[1:]) < 150
