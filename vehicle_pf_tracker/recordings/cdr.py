@@ -35,7 +35,14 @@ def message_class(type_name: str) -> Any:
 
 
 def serialize(message: Any, type_name: str) -> memoryview:
-    """Serialize `message` to CDR, its encapsulation header included."""
+    """Serialize `message` to CDR, its encapsulation header included.
+
+    Raises
+    ------
+    InputError
+        If the type is unknown.
+    """
+    message_class(type_name)
     return _store().serialize_cdr(message, type_name)
 
 

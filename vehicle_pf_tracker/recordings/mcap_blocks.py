@@ -75,9 +75,12 @@ def read_block(path: Path, block: Block) -> Iterator[Message]:
     Raises
     ------
     DamageError
-        If the block is no longer what the index says, or its content is damaged.
+        If the block cannot be read, is cut shorter than the index says, or its content is damaged.
     """
-    record = memoryview(read_span(path, block.offset, block.length))
+    try:
+        record = memoryview(read_span(path, block.offset, block.length))
+    except OSError as error:
+        raise DamageError(f"it cannot be read ({error.strerror})") from error
     if len(record) < RECORD_HEAD or (len(record) < block.length and not block.is_cut):
         raise DamageError("the file ends before it")
     for opcode, content in block_records(record[0], record[RECORD_HEAD:], block.is_cut):

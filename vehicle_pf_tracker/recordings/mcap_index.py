@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import struct
+import zlib
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -90,6 +91,8 @@ def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
     tail = stream.read(_TAIL)
     if not (tail.startswith(_FOOTER) and tail.endswith(MAGIC)):
         return None
+    if not _has_true_checksum(stream, tail, size):
+        return None
     stream.seek(0)
     try:
         summary = SeekingReader(stream, record_size_limit=size).get_summary()
@@ -98,7 +101,7 @@ def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
     if summary is None or summary.statistics is None:
         return None
     counts = Counter(summary.statistics.channel_message_counts)
-    if not _is_complete(summary, counts):
+    if not _is_complete(summary, counts, size):
         return None
     blocks = [
         Block(
@@ -113,14 +116,27 @@ def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
     return McapIndex(path, summary.channels, summary.schemas, blocks, counts)
 
 
-def _is_complete(summary: Summary, counts: Counter[int]) -> bool:
-    """Tell whether the channels, their schemas and the chunks of all messages are listed."""
-    statistics = summary.statistics
+def _has_true_checksum(stream: BinaryIO, tail: bytes, size: int) -> bool:
+    """Check the summary against the footer's checksum, which covers the footer up to itself."""
+    start, _, checksum = struct.unpack_from("<QQI", tail, len(_FOOTER))
+    end = size - len(MAGIC) - 4
+    if not len(MAGIC) <= start < end:
+        return False
+    if checksum == 0:
+        return True
+    stream.seek(start)
+    return zlib.crc32(stream.read(end - start)) == checksum
+
+
+def _is_complete(summary: Summary, counts: Counter[int], size: int) -> bool:
+    """Tell whether the channels, schemas and chunks of all messages are listed and in the file."""
+    statistics, chunks = summary.statistics, summary.chunk_indexes
     return (
         statistics is not None
         and sum(counts.values()) == statistics.message_count
-        and (bool(summary.chunk_indexes) or statistics.message_count == 0)
-        and len(summary.chunk_indexes) == statistics.chunk_count
+        and (bool(chunks) or statistics.message_count == 0)
+        and len(chunks) == statistics.chunk_count
+        and all(chunk.chunk_start_offset + chunk.chunk_length <= size for chunk in chunks)
         and all(channel_id in summary.channels for channel_id in counts)
         and all(
             channel.schema_id in summary.schemas

@@ -1,0 +1,207 @@
+"""Cut and damaged recordings: everything readable is used, and the loss is said."""
+
+import struct
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from mcap.writer import CompressionType, IndexType
+from recording_samples import BareMcap, frame_of, stamp_of
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings import messages, topics
+from vehicle_pf_tracker.recordings.reader import Recording
+
+COUNT = 12
+COMPRESSIONS = list(CompressionType)
+LAYOUTS = [
+    *({"compression": compression, "chunk_size": 8000} for compression in COMPRESSIONS),
+    {"compression": CompressionType.LZ4, "chunk_size": 10**6},
+    {"compression": CompressionType.NONE, "chunk_size": 10**6},
+    {"use_chunking": False},
+    {"index_types": IndexType.NONE, "chunk_size": 8000},
+]
+
+
+def stamps(recording, **span):
+    return [found.stamp_ns for found in recording.frames(**span)]
+
+
+class Wholes(list):
+    """Files as bytes; does not print them."""
+
+    __repr__ = object.__repr__
+
+
+@pytest.fixture(scope="module")
+def wholes(tmp_path_factory):
+    """Whole files of 12 images in every layout, as bytes."""
+    files = Wholes()
+    for number, layout in enumerate(LAYOUTS):
+        bag = BareMcap(tmp_path_factory.mktemp("whole") / f"{number}.mcap", **layout)
+        camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+        for index in range(COUNT):
+            bag.image(camera, index)
+        files.append(bag.close().read_bytes())
+    return files
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=150)
+@given(layout=st.integers(0, len(LAYOUTS) - 1), share=st.floats(0, 1))
+def test_a_file_cut_anywhere_gives_the_frames_before_the_cut(wholes, tmp_path, layout, share):
+    whole = wholes[layout]
+    path = tmp_path / "cut.mcap"
+    path.write_bytes(whole[: int(share * (len(whole) - 1))])
+    try:
+        recording = Recording(path)
+    except InputError as error:
+        assert "not an MCAP" in str(error) or "nothing in it can be used" in str(error)
+        return
+    found = list(recording.frames())
+    assert [f.stamp_ns for f in found] == [stamp_of(index) for index in range(len(found))]
+    assert all((f.frame == frame_of(index)).all() for index, f in enumerate(found))
+    assert recording.frame_count == len(found)
+    assert recording.notices == [
+        f"recording {path} is truncated after frame {len(found)}; what was readable is used"
+    ]
+
+
+@pytest.mark.parametrize("layout", [0, 4, 5, 6])
+def test_no_whole_image_before_the_cut_is_lost(wholes, tmp_path, layout):
+    """Uncompressed files, cut in the middle of the last image: the eleven before are there."""
+    whole = wholes[layout]
+    last = whole.index(frame_of(COUNT - 1).tobytes())
+    path = tmp_path / "cut.mcap"
+    path.write_bytes(whole[: last + 1000])
+    assert len(stamps(Recording(path))) == COUNT - 1
+
+
+@pytest.mark.parametrize("compression", [CompressionType.LZ4, CompressionType.ZSTD])
+def test_the_images_at_the_beginning_of_a_cut_compressed_chunk_are_used(tmp_path, compression):
+    """One chunk of 40 images of 12 kB; what is decoded comes in blocks of up to 128 kB."""
+    bag = BareMcap(tmp_path / "cut.mcap", compression=compression, chunk_size=10**6)
+    camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+    for index in range(40):
+        message = messages.image(stamp_of(index), frame_of(index, 64, 64))
+        bag.add(camera, stamp_of(index), message, topics.IMAGE)
+    whole = bag.close().read_bytes()
+    bag.path.write_bytes(whole[: int(0.8 * len(whole))])
+    assert 20 <= len(stamps(Recording(bag.path))) <= 32
+
+
+@pytest.mark.parametrize("lost", [1, 8, 9, 36, 37, 100])
+@pytest.mark.parametrize("layout", range(len(LAYOUTS)))
+def test_a_lost_end_alone_loses_no_frame(wholes, tmp_path, layout, lost):
+    path = tmp_path / "cut.mcap"
+    path.write_bytes(wholes[layout][:-lost])
+    recording = Recording(path)
+    assert len(stamps(recording)) == COUNT
+    assert f"truncated after frame {COUNT}" in recording.notices[0]
+
+
+def test_a_tail_of_zeros_is_a_cut(wholes, tmp_path):
+    """What a file system leaves after a power failure."""
+    path = tmp_path / "cut.mcap"
+    path.write_bytes(wholes[0][: len(wholes[0]) // 2] + bytes(5000))
+    recording = Recording(path)
+    assert 0 < len(stamps(recording)) < COUNT
+    assert any("truncated" in notice for notice in recording.notices)
+
+
+@pytest.mark.parametrize("layout", [0, 1, 2])
+def test_a_damaged_chunk_is_skipped_and_said(wholes, tmp_path, layout):
+    damaged = bytearray(wholes[layout])
+    start = len(damaged) // 2
+    damaged[start : start + 50] = bytes(50)
+    path = tmp_path / "damaged.mcap"
+    path.write_bytes(damaged)
+    recording = Recording(path)
+    assert COUNT - 4 <= len(stamps(recording)) < COUNT
+    assert len(stamps(recording)) < COUNT  # reading again does not repeat the notice
+    (notice,) = recording.notices
+    assert "was skipped" in notice
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=150)
+@given(
+    layout=st.integers(0, len(LAYOUTS) - 1),
+    share=st.floats(0, 1),
+    rubbish=st.binary(min_size=1, max_size=12),
+)
+def test_rubbish_anywhere_never_escapes_as_another_error(
+    wholes, tmp_path, layout, share, rubbish
+):
+    damaged = bytearray(wholes[layout])
+    start = int(share * (len(damaged) - len(rubbish)))
+    damaged[start : start + len(rubbish)] = rubbish
+    path = tmp_path / "damaged.mcap"
+    path.write_bytes(damaged)
+    try:
+        recording = Recording(path)
+        assert len(list(recording.frames())) <= COUNT
+        list(recording.messages())
+    except InputError:
+        pass
+
+
+def test_an_absurd_chunk_size_is_not_believed(wholes, tmp_path):
+    damaged = bytearray(wholes[2])
+    chunk = damaged.index(b"lz4" if b"lz4" in damaged else b"zstd")
+    struct.pack_into("<Q", damaged, chunk - 16, 2**62)
+    path = tmp_path / "damaged.mcap"
+    path.write_bytes(damaged)
+    recording = Recording(path)
+    assert len(stamps(recording)) < COUNT
+    assert "claims to hold" in recording.notices[0]
+
+
+def test_a_cut_part_of_a_split_recording_is_named(wholes, tmp_path):
+    folder = tmp_path / "bag"
+    folder.mkdir()
+    (folder / "bag_0.mcap").write_bytes(wholes[0][: len(wholes[0]) // 2])
+    (folder / "bag_1.mcap").write_bytes(b"")
+    with pytest.raises(InputError, match=r"bag_1\.mcap is not an MCAP file"):
+        Recording(folder)
+    (folder / "bag_1.mcap").unlink()
+    assert "bag_0.mcap is truncated after frame" in " ".join(Recording(folder).notices)
+
+
+def image_bag(bare_mcap, broken):
+    """Ten images of which those in `broken` hold too few bytes."""
+    bag = bare_mcap()
+    camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+    for index in range(10):
+        message = messages.image(stamp_of(index), frame_of(index))
+        if index in broken:
+            message.data = message.data[:-1]
+        bag.add(camera, stamp_of(index), message, topics.IMAGE)
+    return bag.close()
+
+
+def test_a_broken_image_is_skipped_counted_and_said_once(bare_mcap):
+    recording = Recording(image_bag(bare_mcap, {0, 4}))
+    expected = [stamp_of(index) for index in range(10) if index not in {0, 4}]
+    assert stamps(recording) == expected
+    assert stamps(recording) == expected
+    (notice,) = recording.notices
+    assert notice.startswith("skipped 2 images of /camera/image_raw")
+    assert "0.000 s after the start" in notice
+    assert "but has 2303" in notice
+
+
+def test_images_of_which_none_can_be_read_are_an_input_error(bare_mcap):
+    recording = Recording(image_bag(bare_mcap, set(range(10))))
+    with pytest.raises(InputError, match=r"no image of /camera/image_raw .* can be read"):
+        list(recording.frames())
+
+
+def test_a_broken_message_is_a_broken_image(bare_mcap):
+    bag = bare_mcap()
+    camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+    for number, data in enumerate((b"", b"\0", b"\0\1\0\0", b"\0\1\0\0" + bytes(30), b"\xff" * 99)):
+        bag.raw(camera, number, data)
+    bag.image(camera, 7)
+    recording = Recording(bag.close())
+    assert stamps(recording) == [stamp_of(7)]
+    assert recording.notices[0].startswith("skipped 5 images")
+    assert len(list(recording.messages())) == 6
