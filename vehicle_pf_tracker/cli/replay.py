@@ -1,0 +1,212 @@
+"""`replay`: feed a recording to ROS nodes; also installed as `bag_replay`."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vehicle_pf_tracker.cli.replay_progress import progress_view
+from vehicle_pf_tracker.evaluation.estimates import write_estimates
+from vehicle_pf_tracker.evaluation.output_files import make_folder
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.recordings.reader import Recording
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.ros.replay_options import NodeReport, ReplayOptions, ReplayReport
+
+_USAGE = 2
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of this verb, named as the rosbag2 player's where it has them."""
+    add = parser.add_argument
+    add("recording", type=Path, help="rosbag2 folder or MCAP file")
+    add("-r", "--rate", type=_positive, metavar="X", help="speed, 1.0 is as recorded")
+    add("--start-offset", type=_seconds, default=0.0, metavar="S", help="skip so many seconds")
+    add("--playback-duration", type=_seconds, metavar="S", help="play so many seconds only")
+    add("-l", "--loop", action="store_true", help="begin again at the end")
+    add("-d", "--delay", type=_seconds, default=0.0, metavar="S", help="wait before playing")
+    add("--topics", nargs="+", default=[], metavar="TOPIC", help="play these topics only")
+    add(
+        "-m", "--remap", nargs="+", action="extend", default=[], type=_remapping,
+        metavar="FROM:=TO", help="publish a recorded topic under another name",
+    )  # fmt: skip
+    add(
+        "--clock", nargs="?", type=_positive, const=40.0, metavar="HZ",
+        help="publish /clock, 40 times a second unless said otherwise",
+    )  # fmt: skip
+    add(
+        "--wait-for-subscribers", action="store_true",
+        help="begin when somebody subscribes to the images",
+    )  # fmt: skip
+    add(
+        "--lockstep", action="store_true",
+        help="publish an image only when every node has answered the one before",
+    )  # fmt: skip
+    add("--decompress", action="store_true", help="publish compressed images as raw ones")
+    _add_tracking_arguments(parser)
+
+
+def _add_tracking_arguments(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("--topic", metavar="TOPIC", help="the image topic, if the recording has several")
+    add(
+        "--node", action="append", default=[], metavar="NAME",
+        help="a tracker node that takes part, repeatable; all that subscribe if none is named",
+    )  # fmt: skip
+    target = parser.add_mutually_exclusive_group()
+    target.add_argument(
+        "--target", type=_box, metavar="X,Y,W,H",
+        help="box to start on in px, top-left corner and size; otherwise the first true box",
+    )  # fmt: skip
+    target.add_argument(
+        "--no-target", action="store_true", help="neither set the nodes' targets nor reset them"
+    )
+    add(
+        "--timeout", type=_positive, default=10.0, metavar="S",
+        help="longest wait for a node in seconds (default: 10)",
+    )  # fmt: skip
+    add(
+        "-o", "--output", type=Path, metavar="DIR",
+        help="write what the nodes answered: estimates.csv, in a folder for each of several nodes",
+    )  # fmt: skip
+    add(
+        "--ros-args", nargs=argparse.REMAINDER, default=[], metavar="...",
+        help="all words after this go to ROS",
+    )  # fmt: skip
+
+
+def run(args: argparse.Namespace) -> int:
+    """Play the recording; 0 also when the user ends it with Ctrl-C."""
+    if args.loop and args.output:
+        return _refuse("-o needs an end, so it cannot go with --loop")
+    from vehicle_pf_tracker.ros.replaying import NoTargetError, replay
+
+    recording = Recording(args.recording, args.topic)
+    for notice in recording.notices:
+        _tell(notice)
+    if args.output:
+        make_folder(args.output)
+    known = set(recording.notices)
+    with progress_view() as on_progress:
+        try:
+            report = replay(recording, options_of(args), on_progress, _tell)
+        except NoTargetError as error:
+            return _refuse(str(error))
+    for notice in (*(set(recording.notices) - known), *report.notices):
+        _tell(notice)
+    print(summary(report))
+    if args.output:
+        write_answers(args.output, report.nodes)
+    return 0
+
+
+def options_of(args: argparse.Namespace) -> ReplayOptions:
+    """Collect the options of a parsed command line."""
+    from vehicle_pf_tracker.ros.replay_options import ReplayOptions
+
+    return ReplayOptions(
+        rate=args.rate,
+        start_offset=args.start_offset,
+        playback_duration=args.playback_duration,
+        loop=args.loop,
+        delay=args.delay,
+        topics=tuple(map(_absolute, args.topics)),
+        remap=dict(args.remap),
+        clock=args.clock,
+        wait_for_subscribers=args.wait_for_subscribers,
+        lockstep=args.lockstep,
+        decompress=args.decompress,
+        nodes=tuple(args.node),
+        target=args.target,
+        set_target=not args.no_target,
+        timeout=args.timeout,
+        ros_args=tuple(args.ros_args),
+    )
+
+
+def write_answers(folder: Path, nodes: Sequence[NodeReport]) -> list[Path]:
+    """Write ``estimates.csv`` into `folder`, or for several nodes into a folder for each.
+
+    Returns
+    -------
+    list of Path
+        The files, in the order of `nodes`.
+
+    Raises
+    ------
+    InputError
+        If one cannot be written.
+    """
+    paths = []
+    for node in nodes:
+        place = folder if len(nodes) == 1 else folder / node.name.strip("/").replace("/", "_")
+        paths.append(make_folder(place) / "estimates.csv")
+        write_estimates(paths[-1], node.rows)
+    return paths
+
+
+def summary(report: ReplayReport) -> str:
+    """Say what was played and answered, a line for each node."""
+    rate = report.frames / report.seconds if report.seconds else 0.0
+    end = "interrupted after" if report.interrupted else "played"
+    lines = [f"{end} {report.frames} frames in {report.seconds:.1f} s ({rate:.1f} frames/s)"]
+    for node in report.nodes:
+        unanswered = report.frames - node.answered
+        lines.append(f"{node.name}: {node.answered} answered, {unanswered} not")
+    return "\n".join(lines)
+
+
+def _refuse(sentence: str) -> int:
+    print(f"vehicle-pf-tracker replay: {sentence}", file=sys.stderr)
+    return _USAGE
+
+
+def _tell(sentence: str) -> None:
+    print(sentence, file=sys.stderr, flush=True)
+
+
+def _seconds(text: str) -> float:
+    value = _number(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"{text} is less than 0")
+    return value
+
+
+def _positive(text: str) -> float:
+    value = _number(text)
+    if value <= 0:
+        raise argparse.ArgumentTypeError(f"{text} is not more than 0")
+    return value
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is no number")
+    return value
+
+
+def _box(text: str) -> Box:
+    numbers = [_number(word) for word in text.split(",")]
+    if len(numbers) != 4:
+        raise argparse.ArgumentTypeError(f"{text!r} is not x,y,w,h")
+    return Box(*numbers)
+
+
+def _remapping(text: str) -> tuple[str, str]:
+    old, separator, new = text.partition(":=")
+    if not (separator and old and new):
+        raise argparse.ArgumentTypeError(f"{text!r} is not FROM:=TO")
+    return _absolute(old), new
+
+
+def _absolute(topic: str) -> str:
+    return "/" + topic.lstrip("/")

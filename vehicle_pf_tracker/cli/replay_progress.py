@@ -1,0 +1,92 @@
+"""Progress of a replay: a bar on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TextIO
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.ros.replay_options import Progress as ReplayProgress
+
+_LINE_SECONDS = 5.0
+
+
+@contextmanager
+def progress_view(
+    stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
+) -> Iterator[Callable[[ReplayProgress], None]]:
+    """Give a function that shows how far the replay has come.
+
+    Parameters
+    ----------
+    stream : text stream or None
+        Where to show it; None is standard error.
+    clock : callable
+        The monotonic clock in s.
+    """
+    stream = stream or sys.stderr
+    if not stream.isatty():
+        yield _Lines(stream, clock)
+        return
+    columns = (
+        BarColumn(),
+        TextColumn("{task.percentage:3.0f} %  {task.fields[frames]} frames  {task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(file=stream)) as bar:
+        yield _Bar(bar, clock)
+
+
+class _Bar:
+    """A bar that is made with the first image, so that it does not stand before it."""
+
+    def __init__(self, bar: Progress, clock: Callable[[], float]) -> None:
+        self._bar = bar
+        self._clock = clock
+        self._began = clock()
+        self._task = bar.add_task("replay", total=None, frames=0, rate="")
+
+    def __call__(self, progress: ReplayProgress) -> None:
+        if progress.frames == 1:
+            self._began = self._clock()
+        self._bar.update(
+            self._task,
+            completed=progress.position,
+            total=progress.length,
+            frames=progress.frames,
+            rate=_rate(progress, self._clock() - self._began),
+        )
+
+
+class _Lines:
+    """A line about every five seconds."""
+
+    def __init__(self, stream: TextIO, clock: Callable[[], float]) -> None:
+        self._stream = stream
+        self._clock = clock
+        self._began = self._said = clock()
+
+    def __call__(self, progress: ReplayProgress) -> None:
+        now = self._clock()
+        if progress.frames == 1:
+            self._began = self._said = now
+        if now - self._said < _LINE_SECONDS:
+            return
+        self._said = now
+        elapsed = now - self._began
+        line = f"{progress.frames} frames, {_rate(progress, elapsed)}"
+        if progress.position > 0:
+            left = elapsed * (progress.length / progress.position - 1)
+            share = progress.position / progress.length
+            line = f"{share:4.0%}, {line}, {left:.0f} s left"
+        print(line, file=self._stream, flush=True)
+
+
+def _rate(progress: ReplayProgress, elapsed: float) -> str:
+    return f"{(progress.frames - 1) / elapsed:.1f} frames/s" if elapsed > 0 else ""

@@ -1,0 +1,66 @@
+"""Which images a node has answered, and what it said."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+from vehicle_pf_tracker.evaluation.estimates import EstimateRow
+
+DROPPED = "DROPPED"
+"""Mode of a frame that a node never answered; all numbers are empty."""
+
+
+class Answers:
+    """Pairs the `~/mode` messages of one node with the images published, by stamp.
+
+    Images of the same stamp are answered in the order in which they were published.
+
+    Attributes
+    ----------
+    count : int
+        Images answered, in all passes.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._stamps: dict[int, int] = {}
+        self._waiting: dict[int, deque[int]] = {}
+        self._rows: dict[int, EstimateRow] = {}
+
+    def begin_pass(self) -> None:
+        """Forget the frames before; a loop begins again with their stamps."""
+        self._stamps.clear()
+        self._waiting.clear()
+        self._rows.clear()
+
+    def expect(self, frame: int, stamp_ns: int) -> None:
+        """Note that the image number `frame` was published."""
+        self._stamps[frame] = stamp_ns
+        self._waiting.setdefault(stamp_ns, deque()).append(frame)
+
+    def receive(self, message: Any) -> None:
+        """Take a `DiagnosticArray` of `~/mode`; answers to other images are passed over."""
+        stamp = message.header.stamp
+        stamp_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
+        frames = self._waiting.get(stamp_ns)
+        if not frames or not message.status:
+            return
+        frame = frames.popleft()
+        if not frames:
+            del self._waiting[stamp_ns]
+        status = message.status[0]
+        scalars = {"mode": status.message, **{pair.key: pair.value for pair in status.values}}
+        self._rows[frame] = EstimateRow.from_scalars(frame, stamp_ns, scalars)
+        self.count += 1
+
+    def has(self, frame: int) -> bool:
+        """Whether image number `frame` of this pass was answered."""
+        return frame in self._rows
+
+    def rows(self) -> tuple[EstimateRow, ...]:
+        """One row for each image of this pass, in order."""
+        return tuple(
+            self._rows.get(frame) or EstimateRow.without(frame, stamp_ns, DROPPED)
+            for frame, stamp_ns in self._stamps.items()
+        )

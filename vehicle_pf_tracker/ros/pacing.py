@@ -1,0 +1,46 @@
+"""When to publish a message that was recorded at some log time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+
+class Pace:
+    """Maps log times to the monotonic clock.
+
+    Parameters
+    ----------
+    rate : float or None
+        Seconds of log time per second; None does not pace: everything is due at once.
+    clock : callable
+        The monotonic clock in s.
+    """
+
+    def __init__(self, rate: float | None, clock: Callable[[], float] = time.monotonic) -> None:
+        self._rate = rate
+        self._clock = clock
+        self._begin: tuple[int, float] | None = None
+        self._latest_ns = 0
+
+    def restart(self) -> None:
+        """Take the next log time as now; a loop does this when it begins again."""
+        self._begin = None
+
+    def due(self, log_time_ns: int) -> float:
+        """Moment on the clock, in s, at which a message with this log time is due."""
+        now = self._clock()
+        if self._begin is None:
+            self._begin = log_time_ns, now
+        self._latest_ns = log_time_ns
+        if self._rate is None:
+            return now
+        first_ns, began = self._begin
+        return began + (log_time_ns - first_ns) * 1e-9 / self._rate
+
+    def log_time_ns(self) -> int:
+        """Log time that it is now, never beyond the message that was asked for last."""
+        if self._begin is None or self._rate is None:
+            return self._latest_ns
+        first_ns, began = self._begin
+        return min(first_ns + round((self._clock() - began) * self._rate * 1e9), self._latest_ns)

@@ -1,0 +1,86 @@
+"""What the player needs of a recording; `recordings.reader.Recording` has it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from typing import Protocol
+
+from vehicle_pf_tracker.recordings.truth import Truth
+
+
+class PlayableTopic(Protocol):
+    """A topic of a recording."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def type_name(self) -> str:
+        """Its ROS type, empty where it is not known."""
+
+    @property
+    def is_cdr(self) -> bool:
+        """Whether its messages are serialized as ROS 2 does it."""
+
+
+class PlayableMessage(Protocol):
+    """A message as it was recorded."""
+
+    @property
+    def topic(self) -> str:
+        """Its topic."""
+
+    @property
+    def log_time_ns(self) -> int:
+        """When it was recorded, in ns."""
+
+    @property
+    def stamp_ns(self) -> int | None:
+        """Stamp of its header in ns, None without one."""
+
+    @property
+    def data(self) -> bytes:
+        """The message in CDR."""
+
+
+class Playable(Protocol):
+    """A recording, read anew by each call of `messages`."""
+
+    @property
+    def path(self) -> object:
+        """Where it is, for messages to the user."""
+
+    @property
+    def image_topic(self) -> str:
+        """The topic whose images are tracked."""
+
+    @property
+    def image_type(self) -> str:
+        """Its ROS type."""
+
+    @property
+    def topics(self) -> Sequence[PlayableTopic]:
+        """All topics."""
+
+    @property
+    def start_ns(self) -> int:
+        """Log time of the first message in ns."""
+
+    @property
+    def end_ns(self) -> int:
+        """Log time of the last message in ns."""
+
+    def messages(
+        self,
+        topics: Collection[str] | None = None,
+        start_offset: float = 0.0,
+        duration: float | None = None,
+    ) -> Iterator[PlayableMessage]:
+        """Yield messages in the order of their log times."""
+
+    def truth(self) -> tuple[Truth, ...]:
+        """Read all truth."""
+
+    def first_truth(self) -> Truth | None:
+        """Read the earliest truth."""

@@ -1,0 +1,121 @@
+"""What can be chosen about a replay, and what it reports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from vehicle_pf_tracker.evaluation.estimates import EstimateRow
+from vehicle_pf_tracker.features.box import Box
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayOptions:
+    """How to play a recording; named as the rosbag2 player's options where it has them.
+
+    Attributes
+    ----------
+    rate : float or None
+        Speed, 1.0 is as recorded. None: as recorded, but in lock-step as fast as the nodes answer.
+    start_offset, playback_duration : float, float or None
+        Which part to play, in s of log time; None plays to the end.
+    loop : bool
+        Begin again at the end; stamps go back then.
+    delay : float
+        Wait so many seconds before the first message.
+    topics : tuple of str
+        Play these topics only; empty for all. The image topic is among them only if named.
+    remap : mapping of str to str
+        Recorded topic to the name it is published under.
+    clock : float or None
+        Publish `/clock` so many times a second.
+    wait_for_subscribers : bool
+        Begin when somebody subscribes to the images, however long that takes.
+    lockstep : bool
+        Publish an image only when every node has answered the one before.
+    decompress : bool
+        Publish compressed images as raw ones.
+    nodes : tuple of str
+        Tracker nodes that take part; empty for all that are found.
+    target : Box or None
+        The box to start on; None takes the first true box.
+    set_target : bool
+        Whether to set the nodes' targets and reset them.
+    timeout : float
+        Longest wait for a node, in s.
+    ros_args : tuple of str
+        What follows ``--ros-args`` on the command line.
+    """
+
+    rate: float | None = None
+    start_offset: float = 0.0
+    playback_duration: float | None = None
+    loop: bool = False
+    delay: float = 0.0
+    topics: tuple[str, ...] = ()
+    remap: Mapping[str, str] = field(default_factory=dict)
+    clock: float | None = None
+    wait_for_subscribers: bool = False
+    lockstep: bool = False
+    decompress: bool = False
+    nodes: tuple[str, ...] = ()
+    target: Box | None = None
+    set_target: bool = True
+    timeout: float = 10.0
+    ros_args: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a replay has come: images published, and s of the recording played, of how many."""
+
+    frames: int
+    position: float
+    length: float
+
+
+@dataclass(frozen=True, slots=True)
+class NodeReport:
+    """What one node made of the images.
+
+    Attributes
+    ----------
+    name : str
+        Its full name.
+    answered : int
+        How many images it answered, in all passes of a loop.
+    rows : tuple of EstimateRow
+        One for each image of the last pass, in order; mode `DROPPED` where no answer came.
+    """
+
+    name: str
+    answered: int
+    rows: tuple[EstimateRow, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayReport:
+    """What was played.
+
+    Attributes
+    ----------
+    frames : int
+        Images published, in all passes of a loop.
+    messages : int
+        Messages published, the images among them.
+    seconds : float
+        From the first message to the last answer.
+    nodes : tuple of NodeReport
+        The tracker nodes that took part.
+    notices : tuple of str
+        What was not as it should be, a sentence each.
+    interrupted : bool
+        Whether the user ended it.
+    """
+
+    frames: int
+    messages: int
+    seconds: float
+    nodes: tuple[NodeReport, ...]
+    notices: tuple[str, ...] = ()
+    interrupted: bool = False

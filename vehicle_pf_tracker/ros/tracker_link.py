@@ -1,0 +1,121 @@
+"""The player's side of one tracker node: its answers, its target and its reset."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import GetParameters, SetParametersAtomically
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from std_srvs.srv import Trigger
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.ros.answers import Answers
+from vehicle_pf_tracker.ros.spinner import Spinner
+
+_DEEP = QoSProfile(depth=1000)
+
+
+class TrackerLink:
+    """Talks to the tracker node `name`.
+
+    Make the links after the publishers of the images. A participant tells others about its
+    endpoints in the order in which it made them, so that a node which answers a service call
+    (`greet`) already knows the image publishers and the subscription to its `~/mode`, and neither
+    the first image nor its answer can be lost.
+
+    Parameters
+    ----------
+    node : Node
+        The player's own node.
+    spinner : Spinner
+        Runs the callbacks while waiting.
+    name : str
+        Full name of the tracker node.
+    timeout : float
+        Longest wait for one answer in s.
+    """
+
+    def __init__(self, node: Node, spinner: Spinner, name: str, timeout: float) -> None:
+        self.name = name
+        self.answers = Answers()
+        self._spinner = spinner
+        self._timeout = timeout
+        self._mode = node.create_subscription(
+            DiagnosticArray, f"{name}/mode", self.answers.receive, _DEEP
+        )
+        self._get = node.create_client(GetParameters, f"{name}/get_parameters")
+        self._set = node.create_client(SetParametersAtomically, f"{name}/set_parameters_atomically")
+        self._reset = node.create_client(Trigger, f"{name}/reset")
+
+    def greet(self) -> None:
+        """Wait until the node and the player know all of each other's endpoints.
+
+        Raises
+        ------
+        InputError
+            If that takes longer than the timeout.
+        """
+        if not self._spinner.until(self._is_matched, self._timeout):
+            raise InputError(
+                f"the node {self.name} did not offer {self.name}/mode within {self._timeout:g} s; "
+                "is it an active tracker node?"
+            )
+        self._call(self._get, GetParameters.Request())
+
+    def set_target(self, box: Box | None) -> None:
+        """Set the node's configured target; None makes it wait for one after the next reset.
+
+        Raises
+        ------
+        InputError
+            If the node refuses it or does not answer.
+        """
+        values = (box.x, box.y, box.width, box.height) if box else (0.0, 0.0, 0.0, 0.0)
+        names = ("target.x", "target.y", "target.width", "target.height")
+        request = SetParametersAtomically.Request(
+            parameters=_doubles(dict(zip(names, values, strict=True)))
+        )
+        result = self._call(self._set, request).result
+        if not result.successful:
+            raise InputError(f"the node {self.name} refuses the target {box}: {result.reason}")
+
+    def reset(self) -> None:
+        """Send the node back to its configured target.
+
+        Raises
+        ------
+        InputError
+            If the node refuses or does not answer.
+        """
+        result = self._call(self._reset, Trigger.Request())
+        if not result.success:
+            raise InputError(f"the node {self.name} refuses to reset: {result.message}")
+
+    def _is_matched(self) -> bool:
+        return bool(self._mode.get_publisher_count())
+
+    def _call(self, client: Any, request: Any) -> Any:
+        if not self._spinner.until(client.service_is_ready, self._timeout):
+            raise InputError(
+                f"the service {client.srv_name} is not there after {self._timeout:g} s; "
+                f"is {self.name} an active tracker node?"
+            )
+        future = client.call_async(request)
+        if not self._spinner.until(future.done, self._timeout):
+            raise InputError(f"no answer from {client.srv_name} within {self._timeout:g} s")
+        return future.result()
+
+
+def _doubles(values: Mapping[str, float]) -> list[Parameter]:
+    return [
+        Parameter(
+            name=name,
+            value=ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value)),
+        )
+        for name, value in values.items()
+    ]

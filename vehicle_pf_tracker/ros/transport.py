@@ -1,0 +1,121 @@
+"""A shared-memory segment that whole images fit into, for Fast DDS.
+
+The default segment of half a megabyte loses most of the images that best-effort subscribers are
+sent. The publisher's segment decides, and it can be set only before the process makes its first
+participant.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping, MutableMapping
+from contextlib import contextmanager
+from pathlib import Path
+
+PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
+USER_VARIABLES = (
+    PROFILE_VARIABLE,
+    "FASTDDS_DEFAULT_PROFILES_FILE",
+    "FASTDDS_BUILTIN_TRANSPORTS",
+)
+"""Where a user chooses transports; nothing is changed if one of them is set."""
+
+SHARED_MEMORY = Path("/dev/shm")  # noqa: S108 (the system's place for it)
+IMAGES_PER_SEGMENT = 4
+SMALLEST_SEGMENT = 4 * 1024 * 1024
+_LARGEST_SEGMENT = 2**31
+
+_PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <transport_descriptors>
+    <transport_descriptor>
+      <transport_id>images_shared_memory</transport_id>
+      <type>SHM</type>
+      <segment_size>{segment_size}</segment_size>
+    </transport_descriptor>
+    <transport_descriptor>
+      <transport_id>images_udp</transport_id>
+      <type>UDPv4</type>
+    </transport_descriptor>
+  </transport_descriptors>
+  <participant profile_name="images" is_default_profile="true">
+    <rtps>
+      <userTransports>
+        <transport_id>images_shared_memory</transport_id>
+        <transport_id>images_udp</transport_id>
+      </userTransports>
+      <useBuiltinTransports>false</useBuiltinTransports>
+    </rtps>
+  </participant>
+</profiles>
+"""
+
+
+def segment_size(image_bytes: int, free_bytes: int) -> int | None:
+    """Size of the segment for images of `image_bytes`, or None where there is no room for one.
+
+    Four images, at least 4 MB, and never more than half of what is free in shared memory; a
+    segment that does not hold two images is of no use.
+    """
+    wanted = max(IMAGES_PER_SEGMENT * image_bytes, SMALLEST_SEGMENT)
+    size = min(wanted, free_bytes // 2, _LARGEST_SEGMENT)
+    return size if size >= max(2 * image_bytes, SMALLEST_SEGMENT // 2) else None
+
+
+def profile(size: int) -> str:
+    """Write the XML profile with a shared-memory segment of `size` bytes and UDP beside it."""
+    return _PROFILE.format(segment_size=size)
+
+
+def is_free_to_choose(environment: Mapping[str, str], middleware: str) -> bool:
+    """Tell whether the middleware is Fast DDS and the user has not chosen its transports."""
+    is_fast_dds = middleware.startswith("rmw_fastrtps")
+    return is_fast_dds and not any(environment.get(name) for name in USER_VARIABLES)
+
+
+@contextmanager
+def image_transport(
+    image_bytes: int,
+    middleware: str,
+    environment: MutableMapping[str, str] = os.environ,
+) -> Iterator[list[str]]:
+    """Give the participants that are made meanwhile a segment that fits the images.
+
+    Child processes that are started meanwhile inherit it. A profile of the user's own is never
+    overridden, and other middlewares than Fast DDS are left alone.
+
+    Parameters
+    ----------
+    image_bytes : int
+        Size of the largest message.
+    middleware : str
+        As ``rclpy.get_rmw_implementation_identifier()`` names it.
+    environment : mutable mapping
+        Where the profile is named, that of this process unless said otherwise.
+
+    Yields
+    ------
+    list of str
+        What the user should know, a sentence each.
+    """
+    if not is_free_to_choose(environment, middleware):
+        yield []
+        return
+    free = shutil.disk_usage(SHARED_MEMORY).free if SHARED_MEMORY.is_dir() else 0
+    size = segment_size(image_bytes, free)
+    if size is None:
+        yield [
+            f"{SHARED_MEMORY} has only {free / 1e6:.1f} MB free, too little for images of "
+            f"{image_bytes / 1e6:.1f} MB: frames may be lost on the way, so use --lockstep"
+        ]
+        return
+    with tempfile.TemporaryDirectory(prefix="vehicle_pf_tracker_") as folder:
+        path = Path(folder, "transport.xml")
+        path.write_text(profile(size), encoding="utf-8")
+        environment[PROFILE_VARIABLE] = str(path)
+        try:
+            yield []
+        finally:
+            environment.pop(PROFILE_VARIABLE, None)
