@@ -8,6 +8,7 @@ from street import Street, error, follow
 
 from vehicle_pf_tracker.trackers.apf import ApfTracker
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
+from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters, log_likelihood
 from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.parameters import from_mapping
@@ -132,3 +133,39 @@ def test_as_printed_weights_are_almost_flat():
     estimates = follow(make(as_printed=True), Street(), range(5))
     assert min(e.effective_sample_size for e in estimates) > 190
     assert max(e.effective_sample_size for e in follow(make(), Street(), range(5))[1:]) < 150
+
+
+def spread_after(elapsed, hidden):
+    street = Street(speed=3.0, hidden=(10, 99) if hidden else (99, 99))
+    tracker = make(num_particles=4000)
+    follow(tracker, street, range(12))
+    parents = tracker._cloud.positions
+    particles = tracker.step(street.frame(12), elapsed).particles
+    return particles, parents
+
+
+def test_equation_7_scales_with_the_elapsed_time():
+    def spread(elapsed):
+        particles, _ = spread_after(elapsed, hidden=False)
+        return particles[:, 1].std()
+
+    # Across the motion: the parents' own spread is small against 3 * 6 px.
+    assert spread(3.0) == pytest.approx(18.0, rel=0.15)
+    assert spread(1.0) < 9.0
+
+
+def test_the_drift_scales_with_the_elapsed_time():
+    def drift(elapsed):
+        particles, parents = spread_after(elapsed, hidden=True)
+        return (particles - parents)[:, 0].mean()
+
+    assert drift(4.0) == pytest.approx(4 * drift(1.0), rel=0.1)
+    assert drift(1.0) == pytest.approx(3.0, rel=0.3)
+
+
+def test_a_drift_out_of_the_image_is_lost_before_the_time_is_up():
+    street = Street(speed=6.0, hidden=(20, 99))
+    estimates = follow(make(lost_after=1000.0), street, range(40))
+    modes = [e.mode for e in estimates]
+    assert modes[22] is Mode.OCCLUDED
+    assert modes[-1] is Mode.LOST

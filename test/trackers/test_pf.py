@@ -1,0 +1,40 @@
+"""The colour particle filter of Perez et al. 2002."""
+
+import numpy as np
+import pytest
+from street import Street, error, follow
+
+from vehicle_pf_tracker.features.colour_kernel import joint_similarity
+from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
+
+
+def make(**values):
+    return PfTracker(from_mapping(PfParameters, values))
+
+
+def test_weights_are_perez_exponential_of_the_squared_distance():
+    street = Street()
+    tracker = make(num_particles=50)
+    estimate = follow(tracker, street, range(2))[-1]
+    reference = tracker.target.joint_histogram(tracker.window, 3)
+    rho = joint_similarity(street.frame(1), estimate.particles, tracker.window, reference, 3)
+    # sigma_v 0.158 is a lambda of 20.03: exp(-lambda d²) with d² = 1 - rho.
+    expected = np.exp(-(1 - rho) / (2 * 0.158**2))
+    assert estimate.weights == pytest.approx(expected / expected.sum())
+    mean = (estimate.weights[:, None] * estimate.particles).sum(axis=0)
+    assert estimate.position == pytest.approx(tuple(mean))
+
+
+def test_propagation_scales_with_the_elapsed_time():
+    street = Street(speed=0.0)
+    tracker = make(num_particles=4000)
+    follow(tracker, street, range(10))
+    assert tracker.step(street.frame(10), 3.0).particles[:, 0].std() == pytest.approx(24, rel=0.15)
+
+
+def test_it_stays_behind_where_the_vehicle_vanished():
+    street = Street(speed=3.0, hidden=(15, 40))
+    estimates = follow(make(sigma=3.0), street, range(50))
+    assert error(estimates[14], street, 14) < 6
+    assert error(estimates[-1], street, 49) > 40
