@@ -1,0 +1,66 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from vehicle_pf_tracker.features.window import Bounds, Window, bounds
+from vehicle_pf_tracker.features.window_sums import areas, bin_counts, covered_region
+
+
+def rectangles(*rows):
+    return Bounds(*np.asarray(rows, dtype=np.intp).T)
+
+
+def test_counts_by_hand():
+    indices = np.array([[0, 1, 1], [2, 1, 0]], np.uint8)
+    windows = rectangles((0, 0, 3, 2), (1, 0, 2, 2), (2, 1, 3, 2))
+    assert bin_counts(indices, np.array([0, 1]), 3, windows).tolist() == [[2, 3], [0, 2], [1, 0]]
+    assert areas(windows).tolist() == [6, 2, 1]
+
+
+def test_an_image_without_pixels_counts_nothing():
+    empty = np.zeros((4, 0), np.uint8)
+    assert bin_counts(empty, np.array([0]), 2, rectangles((0, 0, 0, 4))).tolist() == [[0]]
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    shape=st.tuples(st.integers(1, 40), st.integers(1, 40)),
+    bins=st.integers(1, 90),
+)
+def test_counts_are_those_of_each_window_alone(seed, shape, bins):
+    rng = np.random.default_rng(seed)
+    indices = rng.integers(0, bins, shape)
+    frame = np.zeros((*shape, 3), np.uint8)
+    windows = bounds(frame, rng.uniform(0, 40, (7, 2)), Window(4, 6))
+    active = np.flatnonzero(rng.random(bins) < 0.7)
+    expected = [
+        np.bincount(indices[top:bottom, left:right].ravel(), minlength=bins)[active]
+        for left, top, right, bottom in zip(*windows, strict=True)
+    ]
+    assert np.array_equal(bin_counts(indices, active, bins, windows), expected)
+
+
+def test_counts_stay_exact_where_lanes_are_widest():
+    # 2048 x 2048 px are counted in two lanes of 23 bits; each lane is filled to its last count.
+    indices = np.zeros((2048, 2048), np.uint8)
+    indices[:, :1024] = 1
+    whole = rectangles((0, 0, 2048, 2048))
+    half = 2048 * 1024
+    assert bin_counts(indices, np.array([0, 1]), 2, whole).tolist() == [[half, half]]
+
+
+@pytest.mark.parametrize(("margin", "shape"), [(0, (3, 5)), (1, (5, 6)), (50, (10, 20))])
+def test_the_region_keeps_a_margin_as_far_as_there_are_pixels(margin, shape):
+    frame = np.arange(10 * 20 * 3, dtype=np.uint16).astype(np.uint8).reshape(10, 20, 3)
+    windows = rectangles((0, 2, 3, 5), (2, 3, 5, 5))
+    region, local = covered_region(frame, windows, margin)
+    assert region.shape[:2] == shape
+    assert np.shares_memory(region, frame)
+    for number in range(2):
+        left, top, right, bottom = (side[number] for side in windows)
+        inner = [side[number] for side in local]
+        assert np.array_equal(
+            region[inner[1] : inner[3], inner[0] : inner[2]], frame[top:bottom, left:right]
+        )
