@@ -128,9 +128,7 @@ def test_a_damaged_chunk_is_skipped_and_said(wholes, tmp_path, layout):
     share=st.floats(0, 1),
     rubbish=st.binary(min_size=1, max_size=12),
 )
-def test_rubbish_anywhere_never_escapes_as_another_error(
-    wholes, tmp_path, layout, share, rubbish
-):
+def test_rubbish_anywhere_never_escapes_as_another_error(wholes, tmp_path, layout, share, rubbish):
     damaged = bytearray(wholes[layout])
     start = int(share * (len(damaged) - len(rubbish)))
     damaged[start : start + len(rubbish)] = rubbish
@@ -184,8 +182,8 @@ def test_a_broken_image_is_skipped_counted_and_said_once(bare_mcap):
     assert stamps(recording) == expected
     assert stamps(recording) == expected
     (notice,) = recording.notices
-    assert notice.startswith("skipped 2 images of /camera/image_raw")
-    assert "0.000 s after the start" in notice
+    assert notice.startswith("unreadable images of /camera/image_raw")
+    assert "skipped: 2; 0.000 s after the start" in notice
     assert "but has 2303" in notice
 
 
@@ -203,5 +201,5 @@ def test_a_broken_message_is_a_broken_image(bare_mcap):
     bag.image(camera, 7)
     recording = Recording(bag.close())
     assert stamps(recording) == [stamp_of(7)]
-    assert recording.notices[0].startswith("skipped 5 images")
+    assert "skipped: 5" in recording.notices[0]
     assert len(list(recording.messages())) == 6

@@ -7,10 +7,11 @@ import cv2
 import numpy as np
 import pytest
 import yaml
-from recording_samples import PERIOD_NS, frame_of, stamp_of, truth_of
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType, IndexType
+from recording_samples import PERIOD_NS, frame_of, stamp_of, truth_of
+from rosbags.typesys import Stores, get_typestore
 
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings import mcap_blocks, messages, topics
@@ -113,8 +114,6 @@ def test_stamps_are_the_headers_not_the_log_times(bare_mcap):
 
 
 def test_big_endian_messages_are_read(bare_mcap):
-    from rosbags.typesys import Stores, get_typestore
-
     bag = bare_mcap()
     camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
     message = messages.image(stamp_of(2), frame_of(2))
@@ -163,7 +162,7 @@ def test_several_image_topics_need_a_choice(bare_mcap):
         Recording(path, "/middle")
     with pytest.raises(InputError, match="PointStamped, no images"):
         Recording(path, "/point")
-    with pytest.raises(InputError, match="/never_published .*no messages"):
+    with pytest.raises(InputError, match=r"/never_published .*no messages"):
         Recording(path, "/never_published")
 
 

@@ -108,7 +108,7 @@ def test_truth_topics_without_messages_are_empty_truth(bare_mcap):
     bag = bare_mcap()
     bag.image(bag.channel(topics.IMAGE_TOPIC, topics.IMAGE), 0)
     bag.channel(topics.TRUTH_BOX_TOPIC, topics.POLYGON_STAMPED)
-    with pytest.raises(InputError, match="truth topics .* are empty"):
+    with pytest.raises(InputError, match=r"truth topics .* are empty"):
         Recording(bag.close()).truth()
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import yaml
-from recording_samples import frame_of, stamp_of, truth_of
 from mcap.reader import make_reader
+from recording_samples import frame_of, stamp_of, truth_of
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
@@ -157,7 +157,7 @@ def test_a_full_disk_is_an_input_error(tmp_path, monkeypatch):
     def full(*_args, **_kwargs):
         raise OSError(28, "No space left on device")
 
-    with (  # noqa: PT012
+    with (
         pytest.raises(InputError, match="No space left"),
         RecordingWriter(tmp_path / "out") as writer,
     ):

@@ -48,7 +48,7 @@ class FrameFolder:
     def notices(self) -> list[str]:
         """Tell of truth without an image."""
         lost = len(self._truth.keys() - self._images.keys())
-        return [f"{lost} frames of the truth have no image"] if lost else []
+        return [f"frames of the truth without an image: {lost}"] if lost else []
 
 
 def _numbered_images(folder: Path) -> dict[int, Path]:

@@ -84,20 +84,8 @@ def read_index(path: Path) -> McapIndex:
 
 
 def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
-    """Read the summary, if the file has its end and a summary that indexes every message."""
-    if size < len(MAGIC) + _TAIL:
-        return None
-    stream.seek(-_TAIL, io.SEEK_END)
-    tail = stream.read(_TAIL)
-    if not (tail.startswith(_FOOTER) and tail.endswith(MAGIC)):
-        return None
-    if not _has_true_checksum(stream, tail, size):
-        return None
-    stream.seek(0)
-    try:
-        summary = SeekingReader(stream, record_size_limit=size).get_summary()
-    except (McapError, struct.error, ValueError, KeyError, OverflowError):
-        return None
+    """Make the index of the summary, if there is one that can be trusted."""
+    summary = _read_summary(stream, size)
     if summary is None or summary.statistics is None:
         return None
     counts = Counter(summary.statistics.channel_message_counts)
@@ -116,16 +104,29 @@ def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
     return McapIndex(path, summary.channels, summary.schemas, blocks, counts)
 
 
+def _read_summary(stream: BinaryIO, size: int) -> Summary | None:
+    if size < len(MAGIC) + _TAIL:
+        return None
+    stream.seek(-_TAIL, io.SEEK_END)
+    tail = stream.read(_TAIL)
+    is_whole = tail.startswith(_FOOTER) and tail.endswith(MAGIC)
+    if not is_whole or not _has_true_checksum(stream, tail, size):
+        return None
+    stream.seek(0)
+    try:
+        return SeekingReader(stream, record_size_limit=size).get_summary()
+    except (McapError, struct.error, ValueError, KeyError, OverflowError):
+        return None
+
+
 def _has_true_checksum(stream: BinaryIO, tail: bytes, size: int) -> bool:
     """Check the summary against the footer's checksum, which covers the footer up to itself."""
     start, _, checksum = struct.unpack_from("<QQI", tail, len(_FOOTER))
     end = size - len(MAGIC) - 4
     if not len(MAGIC) <= start < end:
         return False
-    if checksum == 0:
-        return True
     stream.seek(start)
-    return zlib.crc32(stream.read(end - start)) == checksum
+    return checksum in {0, zlib.crc32(stream.read(end - start))}
 
 
 def _is_complete(summary: Summary, counts: Counter[int], size: int) -> bool:

@@ -120,7 +120,9 @@ class Recording:
         if self._unreadable:
             first = next(iter(self._unreadable.values()))
             count = len(self._unreadable)
-            notices.append(f"skipped {count} images of {self.image_topic} in {self.path}; {first}")
+            notices.append(
+                f"unreadable images of {self.image_topic} in {self.path} skipped: {count}; {first}"
+            )
         return notices
 
     def frames(

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import cv2
 
@@ -15,6 +17,9 @@ from vehicle_pf_tracker.recordings.footage import Picture, stamp_of
 
 # The decoder's own complaints would go to the terminal beside our sentence.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+
+_SILENT = 0
+"""OpenCV's log level that says nothing; not every version names it."""
 
 
 class VideoFile:
@@ -58,10 +63,30 @@ class VideoFile:
         return [f"the video {self._path} states {self.total} frames, {self._read} could be read"]
 
     def _open(self) -> cv2.VideoCapture:
-        video = cv2.VideoCapture(str(self._path))
+        with _quiet():
+            video = cv2.VideoCapture(str(self._path), _backend())
         if not video.isOpened():
             raise InputError(f"{self._path} is no video file that can be decoded")
         return video
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep OpenCV from complaining on the terminal."""
+    # OpenCV moved these functions between 4 and 5.
+    logging: Any = getattr(cv2.utils, "logging", cv2)
+    level = logging.getLogLevel()
+    logging.setLogLevel(_SILENT)
+    try:
+        yield
+    finally:
+        logging.setLogLevel(level)
+
+
+def _backend() -> int:
+    """Choose FFmpeg where OpenCV has it: the other decoders complain on the terminal."""
+    has_ffmpeg = cv2.CAP_FFMPEG in cv2.videoio_registry.getStreamBackends()
+    return cv2.CAP_FFMPEG if has_ffmpeg else cv2.CAP_ANY
 
 
 def _next_frame(video: cv2.VideoCapture) -> Frame | None:

@@ -1,0 +1,293 @@
+"""Videos and frame folders as recordings, and every fault they can have."""
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from recording_samples import frame_of
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings import topics
+from vehicle_pf_tracker.recordings.importing import import_recording
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.truth import Occlusion
+
+SEQUENCES = Path(__file__).parents[3] / "shared" / "sequences"
+HEADER = "frame,x,y,w,h,visible,occ\n"
+
+
+@pytest.fixture
+def frame_folder(tmp_path):
+    """Make a frame folder; None leaves a file out."""
+
+    def make(numbers=(1, 2, 3), fps=25.0, truth=None, extension="jpg"):
+        folder = tmp_path / "frames"
+        (folder / "img").mkdir(parents=True)
+        for number in numbers:
+            path = folder / "img" / f"{number:06d}.{extension}"
+            assert cv2.imwrite(str(path), frame_of(number)[..., ::-1])
+        if fps is not None:
+            (folder / "sequence.json").write_text(json.dumps({"fps": fps}))
+        if truth is not None:
+            (folder / "groundtruth.csv").write_text(truth)
+        return folder
+
+    return make
+
+
+def rows(count=3):
+    return HEADER + "".join(f"{n},{n}.5,2.0,7.0,5.0,1,0\n" for n in range(1, count + 1))
+
+
+def test_jpeg_files_keep_their_bytes(frame_folder, tmp_path):
+    folder = frame_folder()
+    summary = import_recording(folder, tmp_path / "bag")
+    recording = Recording(tmp_path / "bag")
+    assert recording.image_topic == topics.COMPRESSED_TOPIC
+    for number, message in enumerate(recording.messages({topics.COMPRESSED_TOPIC}), start=1):
+        assert (folder / "img" / f"{number:06d}.jpg").read_bytes() in message.data
+    assert (summary.frames, summary.truths, summary.fps) == (3, 0, 25.0)
+    assert (summary.width, summary.height, summary.notices) == (32, 24, ())
+    assert recording.truth() == ()
+
+
+def test_raw_and_compressed_imports_show_the_same_pixels(frame_folder, tmp_path):
+    folder = frame_folder(truth=rows())
+    import_recording(folder, tmp_path / "a", format="compressed")
+    import_recording(folder, tmp_path / "b", format="raw")
+    compressed, raw = Recording(tmp_path / "a"), Recording(tmp_path / "b")
+    assert raw.image_topic == topics.IMAGE_TOPIC
+    for one, other in zip(compressed.frames(), raw.frames(), strict=True):
+        assert one.stamp_ns == other.stamp_ns
+        assert np.array_equal(one.frame, other.frame)
+    assert compressed.truth() == raw.truth()
+
+
+@pytest.mark.parametrize(
+    ("wanted", "kind"), [(None, topics.IMAGE), ("compressed", topics.COMPRESSED_IMAGE)]
+)
+def test_png_files_are_raw_unless_asked_otherwise(frame_folder, tmp_path, wanted, kind):
+    import_recording(frame_folder(extension="png"), tmp_path / "bag", format=wanted)
+    recording = Recording(tmp_path / "bag")
+    assert recording.image_type == kind
+    for number, found in enumerate(recording.frames(), start=1):
+        assert np.array_equal(found.frame, frame_of(number))
+
+
+def test_stamps_begin_at_one_second_and_do_not_drift(frame_folder, tmp_path):
+    numbers = range(1, 32)
+    import_recording(frame_folder(numbers, fps=29.97), tmp_path / "bag")
+    stamps = [found.stamp_ns for found in Recording(tmp_path / "bag").frames()]
+    assert stamps[0] == 1_000_000_000
+    assert stamps[1] == 1_033_366_700  # 1e9 / 29.97 = 33366700.03
+    assert stamps[30] == 2_001_001_001  # 30e9 / 29.97 = 1001001001.0
+
+
+def test_a_gap_in_the_numbers_is_a_gap_in_time(frame_folder, tmp_path):
+    folder = frame_folder((5, 6, 9), truth=HEADER + "6,1,2,3,4,1,1\n9,1,2,3,4,0,2\n7,1,1,1,1,1,0\n")
+    summary = import_recording(folder, tmp_path / "bag")
+    recording = Recording(tmp_path / "bag")
+    assert [f.stamp_ns for f in recording.frames()] == [1_000_000_000, 1_040_000_000, 1_160_000_000]
+    assert [t.stamp_ns for t in recording.truth()] == [1_040_000_000, 1_160_000_000]
+    assert [t.occlusion for t in recording.truth()] == [Occlusion.PARTIAL, Occlusion.TOTAL]
+    assert summary.notices == ("frames of the truth without an image: 1",)
+
+
+def test_truth_is_exact_and_rows_without_a_box_are_no_truth(frame_folder, tmp_path):
+    truth = (
+        "\ufeffframe, x,y,w,h,occ\n1,10.5,20,30,40,2\n2,nan,nan,nan,nan,0\n3,,,,,\n4,1,2,0,0,0\n"
+    )
+    summary = import_recording(frame_folder(range(1, 7), truth=truth), tmp_path / "bag")
+    (found,) = Recording(tmp_path / "bag").truth()
+    assert found.box == Box(10.5, 20, 30, 40)
+    assert found.occlusion is Occlusion.TOTAL
+    assert found.visible_fraction is None
+    assert (summary.frames, summary.truths) == (6, 1)
+
+
+def test_progress_counts_to_the_total(frame_folder, tmp_path):
+    seen = []
+    import_recording(
+        frame_folder(), tmp_path / "bag", progress=lambda done, total: seen.append((done, total))
+    )
+    assert seen == [(1, 3), (2, 3), (3, 3)]
+
+
+@pytest.mark.parametrize(
+    ("truth", "said"),
+    [
+        ("", "is empty"),
+        (HEADER, "holds no box"),
+        (HEADER + "1,nan,nan,nan,nan,1,0\n", "holds no box"),
+        ("frame,x,y,w\n1,2,3,4\n", "lacks the column h"),
+        (HEADER + "1,two,3,4,5,1,0\n", "line 2 of .* 'two' as x"),
+        (HEADER + "1.5,2,3,4,5,1,0\n", "line 2 of .* no whole number"),
+        (HEADER + ",2,3,4,5,1,0\n", "line 2 of .* no whole number"),
+        (HEADER + "1,2,3,4,5,1,7\n", "line 2 of .* occ 7"),
+        (HEADER + "1,2,3,4,5,1,0\n1,2,3,4,5,1,0\n", "line 3 of .* frame 1 a second time"),
+        (HEADER + "70,2,3,4,5,1,0\n", "no frame of the truth .* has an image"),
+    ],
+)
+def test_faulty_truth_is_named(frame_folder, tmp_path, truth, said):
+    with pytest.raises(InputError, match=said):
+        import_recording(frame_folder(truth=truth), tmp_path / "bag")
+    assert not (tmp_path / "bag").exists()
+
+
+def test_truth_that_is_no_text_is_named(frame_folder, tmp_path):
+    folder = frame_folder()
+    (folder / "groundtruth.csv").write_bytes(b"\xff\xfe\x00\x80")
+    with pytest.raises(InputError, match="no table of text"):
+        import_recording(folder, tmp_path / "bag")
+
+
+@pytest.mark.parametrize("fps", [0, -1, "fast", True, None, float("nan")])
+def test_a_faulty_frame_rate_is_named(frame_folder, tmp_path, fps):
+    folder = frame_folder()
+    (folder / "sequence.json").write_text(json.dumps({"fps": fps}))
+    with pytest.raises(InputError, match=r"sequence\.json.*above 0"):
+        import_recording(folder, tmp_path / "bag")
+
+
+@pytest.mark.parametrize("text", ["", "[1]", "3", "{}", "not json"])
+def test_a_lacking_frame_rate_is_named(frame_folder, tmp_path, text):
+    folder = frame_folder()
+    (folder / "sequence.json").write_text(text)
+    with pytest.raises(InputError, match="does not say the frame rate"):
+        import_recording(folder, tmp_path / "bag")
+    (folder / "sequence.json").unlink()
+    with pytest.raises(InputError, match="frame rate is needed"):
+        import_recording(folder, tmp_path / "bag")
+
+
+def test_an_unreadable_image_is_named_and_nothing_is_left(frame_folder, tmp_path):
+    folder = frame_folder()
+    image = folder / "img" / "000002.jpg"
+    whole = image.read_bytes()
+    for content in (b"", b"no image", whole[: len(whole) // 2]):
+        image.write_bytes(content)
+        with pytest.raises(InputError, match=r"000002\.jpg cannot be read"):
+            import_recording(folder, tmp_path / "bag")
+        assert [path.name for path in tmp_path.iterdir()] == ["frames"]
+
+
+def test_images_of_two_sizes_or_one_number_are_refused(frame_folder, tmp_path):
+    folder = frame_folder()
+    cv2.imwrite(str(folder / "img" / "000004.jpg"), frame_of(4, 20, 20))
+    with pytest.raises(InputError, match=r"000004\.jpg is 20x20 px, those before it 32x24"):
+        import_recording(folder, tmp_path / "bag")
+    shutil.copy(folder / "img" / "000001.jpg", folder / "img" / "1.jpg")
+    with pytest.raises(InputError, match="the same number"):
+        import_recording(folder, tmp_path / "bag")
+
+
+def test_what_cannot_be_imported_is_said(frame_folder, tmp_path):
+    with pytest.raises(InputError, match="no file or folder"):
+        import_recording(tmp_path / "nothing", tmp_path / "bag")
+    with pytest.raises(InputError, match="has no images"):
+        import_recording(tmp_path, tmp_path / "bag")
+    folder = frame_folder()
+    with pytest.raises(InputError, match="compressed, raw"):
+        import_recording(folder, tmp_path / "bag", format="zip")
+    import_recording(folder, tmp_path / "bag")
+    with pytest.raises(InputError, match="a recording already"):
+        import_recording(tmp_path / "bag", tmp_path / "again")
+    with pytest.raises(InputError, match="not empty"):
+        import_recording(folder, tmp_path / "bag")
+    assert import_recording(folder, tmp_path / "bag", overwrite=True).frames == 3
+
+
+@pytest.fixture
+def video(tmp_path):
+    """A video of 20 frames, each of another brightness, at 12.5 frames per second."""
+    path = tmp_path / "video.avi"
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 12.5, (64, 48))
+    for index in range(20):
+        writer.write(np.full((48, 64, 3), (10 * index, 0, 200), np.uint8))
+    writer.release()
+    return path
+
+
+@pytest.mark.parametrize("wanted", [None, "compressed"])
+def test_a_video_becomes_a_recording(video, tmp_path, wanted):
+    totals = []
+    summary = import_recording(
+        video, tmp_path / "bag", format=wanted, progress=lambda _, total: totals.append(total)
+    )
+    recording = Recording(tmp_path / "bag")
+    frames = list(recording.frames())
+    assert (summary.frames, summary.fps, summary.notices) == (20, 12.5, ())
+    assert totals == [20] * 20
+    assert [f.stamp_ns for f in frames] == [1_000_000_000 + n * 80_000_000 for n in range(20)]
+    assert recording.image_type == (topics.IMAGE if wanted is None else topics.COMPRESSED_IMAGE)
+    for index, found in enumerate(frames):
+        expected = (200, 0, 10 * index)
+        assert np.abs(found.frame.astype(int) - expected).max() <= 6
+
+
+def test_what_is_no_video_is_said_in_one_line(tmp_path, video):
+    """No decoder may chatter on the terminal beside the sentence."""
+    (tmp_path / "text.mp4").write_text("no video at all")
+    (tmp_path / "empty.mp4").write_bytes(b"")
+    (tmp_path / "cut.avi").write_bytes(video.read_bytes()[:300])
+    script = (
+        "import sys; from pathlib import Path\n"
+        "from vehicle_pf_tracker.features.errors import InputError\n"
+        "from vehicle_pf_tracker.recordings.importing import import_recording\n"
+        "try: import_recording(Path(sys.argv[1]), Path(sys.argv[2]))\n"
+        "except InputError as error: print(error)\n"
+    )
+    (tmp_path / "text001.mp4").write_text("a number makes OpenCV look for a series of images")
+    for name in ("text.mp4", "empty.mp4", "cut.avi", "text001.mp4"):
+        done = subprocess.run(
+            [sys.executable, "-c", script, tmp_path / name, tmp_path / "bag"],
+            capture_output=True,
+            text=True,
+            check=True,
+            cwd=Path(__file__).parents[2],
+        )
+        assert done.stderr == ""
+        assert name in done.stdout
+        assert done.stdout.count("\n") == 1
+
+
+def test_a_video_shorter_than_it_states_is_imported_with_a_notice(video, tmp_path):
+    whole = video.read_bytes()
+    video.write_bytes(whole[: int(0.6 * len(whole))])
+    summary = import_recording(video, tmp_path / "bag")
+    assert 0 < summary.frames < 20
+    assert "states 20 frames" in summary.notices[0]
+
+
+def sequence_folders():
+    return sorted(SEQUENCES.glob("*/*/sequence.json"))
+
+
+@pytest.mark.skipif(not SEQUENCES.exists(), reason="../shared/sequences is not there")
+@pytest.mark.parametrize("wanted", [None, "raw"])
+def test_all_real_sequences_import(tmp_path, wanted):
+    folders = [path.parent for path in sequence_folders()]
+    assert len(folders) == 9
+    for folder in folders:
+        said = json.loads((folder / "sequence.json").read_text())
+        out = tmp_path / folder.parent.name / folder.name
+        summary = import_recording(folder, out, format=wanted)
+        recording = Recording(out)
+        truth = recording.truth()
+        assert summary.frames == recording.frame_count == said["frames"] == len(truth)
+        assert (summary.width, summary.height) == (said["width"], said["height"])
+        first = truth[0].box
+        assert (first.x, first.y) == pytest.approx(said["first_box"][:2], abs=1e-4)
+        total = [index + 1 for index, t in enumerate(truth) if t.occlusion is Occlusion.TOTAL]
+        spans = said["total_occlusion_frames"]
+        assert total == [n for first, last in spans for n in range(first, last + 1)]
+        stamps = [found.stamp_ns for found in recording.frames()]
+        assert stamps == [t.stamp_ns for t in truth]
+        assert recording.notices == []
+        shutil.rmtree(out)
