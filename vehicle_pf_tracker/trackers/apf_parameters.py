@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
-from vehicle_pf_tracker.trackers.contract import TrackerParameters
+from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.parameters import group, parameter
 
@@ -107,7 +107,7 @@ class ApfVelocityParameters:
 
 
 @dataclass(frozen=True, slots=True)
-class ApfParameters(TrackerParameters):
+class ApfParameters(ParticleParameters):
     """Parameters of `apf`."""
 
     as_printed: bool = parameter(

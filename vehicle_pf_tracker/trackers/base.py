@@ -1,4 +1,4 @@
-"""What all particle trackers share around the step that makes each of them itself."""
+"""What all trackers share around the step that makes each of them itself."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from vehicle_pf_tracker.features.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.features.window import Window, are_outside, keep_inside
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
-from vehicle_pf_tracker.trackers.contract import TrackerParameters
+from vehicle_pf_tracker.trackers.contract import CommonParameters, ParticleParameters
 from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 from vehicle_pf_tracker.trackers.parameters import specs, to_mapping
 from vehicle_pf_tracker.trackers.target import Target
 
-ParametersT = TypeVar("ParametersT", bound=TrackerParameters)
+ParametersT = TypeVar("ParametersT", bound=CommonParameters)
+ParticleParametersT = TypeVar("ParticleParametersT", bound=ParticleParameters)
 
 DEFAULT_PERIOD = 1 / 30
 """Frame period in s that is assumed until stamps or a parameter tell."""
@@ -71,7 +72,7 @@ class Outcome:
     left_image: bool = False
 
 
-class ParticleTracker(ABC, Generic[ParametersT]):
+class BaseTracker(ABC, Generic[ParametersT]):
     """Start, time, mode, reconfiguration; a variant adds `_learn` and `_advance`.
 
     Parameters
@@ -148,12 +149,7 @@ class ParticleTracker(ABC, Generic[ParametersT]):
         if "restarts" in changed:
             self._seed = _draw_seed(parameters.seed)
             self._rng = np.random.default_rng(self._seed)
-        if self._target is None:
-            return
-        if len(self._cloud.weights) != parameters.num_particles:
-            ancestors = systematic(self._cloud.weights, parameters.num_particles, self._rng)
-            self._cloud = Cloud.uniform(self._cloud.positions[ancestors])
-        if "relearns" in changed:
+        if self._target is not None and "relearns" in changed:
             self._learn()
 
     @abstractmethod
@@ -166,7 +162,7 @@ class ParticleTracker(ABC, Generic[ParametersT]):
 
     @abstractmethod
     def _scatter(self, centre: tuple[float, float]) -> Array:
-        """Draw the first particles around `centre`, shape (num_particles, 2) in px."""
+        """Draw the first particles around `centre`, shape (N, 2) in px."""
 
     def _move(self, frame: Frame, positions: Array, moves: Array) -> tuple[Array, bool]:
         """Displace particles inside the image; tells whether their mean went over its border."""
@@ -193,11 +189,22 @@ class ParticleTracker(ABC, Generic[ParametersT]):
         return replace(estimate, duration=time.perf_counter() - began)
 
 
+class ParticleTracker(BaseTracker[ParticleParametersT]):
+    """A tracker whose cloud has `num_particles` particles, also when that number changes."""
+
+    def reconfigure(self, parameters: ParticleParametersT) -> None:
+        """Take new parameters; another number of particles is drawn from the present cloud."""
+        super().reconfigure(parameters)
+        if self._target is not None and len(self._cloud.weights) != parameters.num_particles:
+            ancestors = systematic(self._cloud.weights, parameters.num_particles, self._rng)
+            self._cloud = Cloud.uniform(self._cloud.positions[ancestors])
+
+
 def _draw_seed(seed: int) -> int:
     return seed if seed >= 0 else int(np.random.default_rng().integers(2**31))
 
 
-def _changed_effects(old: TrackerParameters, new: TrackerParameters) -> set[str]:
+def _changed_effects(old: CommonParameters, new: CommonParameters) -> set[str]:
     before, after = to_mapping(old), to_mapping(new)
     table = specs(type(new))
     return {table[name].effect for name in after if before[name] != after[name]}

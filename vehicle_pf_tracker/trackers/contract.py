@@ -35,7 +35,7 @@ class WindowParameters:
 
 
 @dataclass(frozen=True, slots=True)
-class TrackerParameters:
+class CommonParameters:
     """What every variant has."""
 
     seed: int = parameter(
@@ -53,12 +53,6 @@ class TrackerParameters:
         maximum=1000.0,
         unit="1/s",
     )
-    num_particles: int = parameter(
-        200,
-        "More: steadier estimates, at more time per frame.",
-        minimum=1,
-        maximum=100_000,
-    )
     lost_after: float = parameter(
         5.0,
         "Longer: the mode stays OCCLUDED longer before it says LOST.",
@@ -72,6 +66,18 @@ class TrackerParameters:
     def validate(self) -> None:
         """Check parameters against each other."""
         self.evidence.validate()
+
+
+@dataclass(frozen=True, slots=True)
+class ParticleParameters(CommonParameters):
+    """What every particle filter has."""
+
+    num_particles: int = parameter(
+        200,
+        "More: steadier estimates, at more time per frame.",
+        minimum=1,
+        maximum=100_000,
+    )
 
 
 class Tracker(Protocol):

@@ -18,7 +18,7 @@ from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.contract import TrackerParameters
+from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters, log_likelihood
 from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
@@ -29,7 +29,7 @@ _VELOCITY_WINDOW = 8
 
 
 @dataclass(frozen=True, slots=True)
-class PfParameters(TrackerParameters):
+class PfParameters(ParticleParameters):
     """Parameters of `pf`."""
 
     sigma: float = parameter(

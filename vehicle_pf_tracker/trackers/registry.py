@@ -10,7 +10,7 @@ from typing import Any
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.apf import ApfTracker
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
-from vehicle_pf_tracker.trackers.base import ParticleTracker
+from vehicle_pf_tracker.trackers.base import BaseTracker
 from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
 
 
@@ -19,7 +19,7 @@ class Variant:
     """A tracker class with its parameter dataclass, and what it is in one line."""
 
     name: str
-    tracker: type[ParticleTracker[Any]]
+    tracker: type[BaseTracker[Any]]
     parameters: type[Any]
     summary: str
 
