@@ -1,0 +1,67 @@
+"""All parameters of a node as one value: its variant's, its stream's and its own."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.ros.node_parameters import NodeParameters
+from vehicle_pf_tracker.trackers.parameters import ParameterSpec, Value, from_mapping, specs
+from vehicle_pf_tracker.trackers.parameters import to_mapping as values_of
+from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.trackers.session import SessionParameters
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """The three parameter tables with their values; the names are distinct over all of them.
+
+    Attributes
+    ----------
+    tracker : Any
+        An instance of the variant's parameter dataclass.
+    """
+
+    tracker: Any
+    session: SessionParameters
+    node: NodeParameters
+
+    @classmethod
+    def of(cls, variant: Variant) -> Configuration:
+        """Return the defaults of `variant`."""
+        return cls(variant.parameters(), SessionParameters(), NodeParameters())
+
+    def specs(self) -> dict[str, ParameterSpec]:
+        """Every parameter by name."""
+        return {name: spec for part in self._parts() for name, spec in specs(type(part)).items()}
+
+    def to_mapping(self) -> dict[str, Value]:
+        """Value of every parameter by name."""
+        return {name: value for part in self._parts() for name, value in values_of(part).items()}
+
+    def updated(self, values: Mapping[str, object]) -> Configuration:
+        """Put `values` over this configuration, all or nothing; names of others are left out.
+
+        Raises
+        ------
+        InputError
+            Naming every value that does not fit, alone or together with others.
+        """
+        changed: dict[str, Any] = {}
+        problems = []
+        for field in dataclasses.fields(self):
+            part = getattr(self, field.name)
+            own = {name: values[name] for name in specs(type(part)) if name in values}
+            try:
+                changed[field.name] = from_mapping(type(part), own, part)
+            except InputError as error:
+                problems.append(str(error))
+        if problems:
+            raise InputError("; ".join(problems))
+        return dataclasses.replace(self, **changed)
+
+    def _parts(self) -> tuple[Any, ...]:
+        return self.tracker, self.session, self.node

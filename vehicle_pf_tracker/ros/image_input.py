@@ -1,0 +1,127 @@
+"""The subscription that images come in by, and who publishes on its topic."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.node import Node
+from rclpy.qos import (
+    QoSCompatibility,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_check_compatible,
+)
+from rclpy.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+from sensor_msgs.msg import CompressedImage, Image
+
+from vehicle_pf_tracker.features.errors import InputError
+
+ImageCallback = Callable[[Any, Mapping[str, Any]], None]
+
+_TYPE_NAMES = {Image: "sensor_msgs/msg/Image", CompressedImage: "sensor_msgs/msg/CompressedImage"}
+
+
+def image_topic(node: Node, transport: str) -> str:
+    """Resolve the topic of the images: a remapped `image` takes its `/compressed` with it."""
+    base: str = node.resolve_topic_name("image")
+    return base if transport == "raw" else str(node.resolve_topic_name(f"{base}/compressed"))
+
+
+class ImageInput:
+    """An open subscription to images: sensor data, the newest `depth` kept.
+
+    Parameters
+    ----------
+    node : Node
+        Its parameters ``qos_overrides.<topic>.subscription.*`` may change the QoS.
+    transport : str
+        ``raw`` or ``compressed``.
+    depth : int
+        Images that may wait.
+    callback : callable
+        Takes the message and its info.
+
+    Raises
+    ------
+    InputError
+        If a QoS override is not usable.
+    """
+
+    def __init__(self, node: Node, transport: str, depth: int, callback: ImageCallback) -> None:
+        self._node = node
+        self._transport = transport
+        self._kind = Image if transport == "raw" else CompressedImage
+        self.topic = image_topic(node, transport)
+        try:
+            self._subscription = node.create_subscription(
+                self._kind,
+                self.topic,
+                callback,
+                QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT),
+                qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            )
+        except (
+            InvalidParameterTypeException,
+            InvalidParameterValueException,
+            InvalidQosOverridesError,
+            RuntimeError,
+        ) as error:
+            raise InputError(f"the QoS overrides of {self.topic} do not fit: {error}") from None
+
+    @property
+    def publisher_count(self) -> int:
+        """Number of publishers that match in topic, type and QoS."""
+        return int(self._subscription.get_publisher_count())
+
+    def __str__(self) -> str:
+        qos = self._subscription.qos_profile
+        kind = qos.reliability.name.lower().replace("_", " ")
+        return f"{self.topic} ({self._transport}, {kind}, keep last {qos.depth})"
+
+    def close(self) -> None:
+        """Destroy the subscription."""
+        self._node.destroy_subscription(self._subscription)
+
+    def explain_silence(self) -> str:
+        """Say why no images may be coming: every publisher with its QoS, and what does not fit."""
+        publishers = self._node.get_publishers_info_by_topic(self.topic)
+        if not publishers:
+            return f"nobody publishes on it{self._elsewhere()}"
+        return "; ".join(self._judge(publisher) for publisher in publishers)
+
+    def _judge(self, publisher: TopicEndpointInfo) -> str:
+        qos = publisher.qos_profile
+        offers = f"{qos.reliability.name.lower()}, {qos.durability.name.lower()}"
+        name = f"{publisher.node_namespace.rstrip('/')}/{publisher.node_name} ({offers})"
+        if publisher.topic_type != _TYPE_NAMES[self._kind]:
+            return f"{name} publishes {publisher.topic_type}, not {_TYPE_NAMES[self._kind]}"
+        match, reason = qos_check_compatible(qos, self._subscription.qos_profile)
+        if match is QoSCompatibility.ERROR:
+            return f"{name} does not fit this node's QoS: {reason.strip().rstrip(';')}"
+        return f"{name} fits, but sends nothing"
+
+    def _elsewhere(self) -> str:
+        """Name topics that images are on, with the setting that would take them."""
+        topics = {name: set(types) for name, types in self._node.get_topic_names_and_types()}
+        other = image_topic(self._node, "compressed" if self._transport == "raw" else "raw")
+        if self._published(other):
+            transport = "compressed" if self._transport == "raw" else "raw"
+            return f", but {other} has images: set image_transport to {transport}"
+        found = [
+            name
+            for name, types in topics.items()
+            if _TYPE_NAMES[self._kind] in types and self._is_foreign(name)
+        ]
+        return f"; images are on {', '.join(found)}: remap image to one of them" if found else ""
+
+    def _published(self, topic: str) -> bool:
+        return bool(self._node.count_publishers(topic))
+
+    def _is_foreign(self, topic: str) -> bool:
+        """Whether somebody else publishes on `topic`, so not our own overlay."""
+        own = self._node.get_name(), self._node.get_namespace()
+        publishers = self._node.get_publishers_info_by_topic(topic)
+        return any((one.node_name, one.node_namespace) != own for one in publishers)

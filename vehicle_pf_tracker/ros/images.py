@@ -1,0 +1,28 @@
+"""Image messages as frames, read in place."""
+
+from __future__ import annotations
+
+from sensor_msgs.msg import CompressedImage, Image
+
+from vehicle_pf_tracker.features.encodings import decode_compressed, to_rgb
+from vehicle_pf_tracker.features.frame import Frame
+
+
+def read_image(message: Image | CompressedImage) -> Frame:
+    """Return the RGB frame of `message`; for rgb8 a view of its data.
+
+    Raises
+    ------
+    InputError
+        If the encoding is unknown, or size and data do not fit each other.
+    """
+    if isinstance(message, CompressedImage):
+        return decode_compressed(message.format, message.data)
+    return to_rgb(
+        message.encoding,
+        message.height,
+        message.width,
+        message.step,
+        bool(message.is_bigendian),
+        message.data,
+    )

@@ -1,0 +1,111 @@
+"""A managed node that says why a transition failed, and that no request can end.
+
+rclpy swallows the exceptions of transition callbacks, and lets a transition that does not exist in
+the present state end the process.
+"""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from lifecycle_msgs.srv import ChangeState
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+
+from vehicle_pf_tracker.features.errors import InputError
+
+
+class ManagedNode(LifecycleNode):  # type: ignore[misc]
+    """Calls `configure`, `activate`, `deactivate` and `cleanup`, which raise where they fail.
+
+    An `InputError` leaves the node in the state that it was in; any other exception takes it back
+    to unconfigured. Each of the two that undo may be called in any state.
+    """
+
+    def __init__(self, name: str, **options: Any) -> None:
+        super().__init__(name, **options)
+        self._failure = ""
+        self._change_state = self._service_change_state.callback
+        self._service_change_state.callback = self._answer_change_state
+
+    def configure(self) -> None:
+        """Make what an inactive node has."""
+        raise NotImplementedError
+
+    def activate(self) -> None:
+        """Begin to listen."""
+        raise NotImplementedError
+
+    def deactivate(self) -> None:
+        """Cease to listen."""
+        raise NotImplementedError
+
+    def cleanup(self) -> None:
+        """Let go of what `configure` made."""
+        raise NotImplementedError
+
+    def start(self) -> None:
+        """Configure and activate.
+
+        Raises
+        ------
+        InputError
+            With the reason, if one of the two failed.
+        """
+        for trigger in (self.trigger_configure, self.trigger_activate):
+            if trigger() is not TransitionCallbackReturn.SUCCESS:
+                raise InputError(self._failure)
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `configure`."""
+        return self._transit(self.configure, partial(super().on_configure, state))
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `activate`; publishers speak first."""
+        return self._transit(partial(super().on_activate, state), self.activate)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `deactivate`; publishers fall silent last."""
+        return self._transit(self.deactivate, partial(super().on_deactivate, state))
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `cleanup`."""
+        return self._transit(self.cleanup, partial(super().on_cleanup, state))
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Let go of everything, whatever the state was."""
+        return self._transit(self.deactivate, self.cleanup, partial(super().on_shutdown, state))
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Let go of everything, to be configured anew."""
+        return self._transit(self.deactivate, self.cleanup, partial(super().on_error, state))
+
+    def _transit(self, *steps: Callable[[], object]) -> TransitionCallbackReturn:
+        try:
+            for step in steps:
+                step()
+        except InputError as error:
+            self._failure = str(error)
+            return TransitionCallbackReturn.FAILURE
+        except Exception as error:
+            self._failure = f"unexpected {type(error).__name__}: {error}"
+            self.get_logger().error(f"in a transition: {traceback.format_exc()}")
+            return TransitionCallbackReturn.ERROR
+        return TransitionCallbackReturn.SUCCESS
+
+    def _answer_change_state(
+        self, request: ChangeState.Request, response: ChangeState.Response
+    ) -> ChangeState.Response:
+        label, state_id = self._state_machine.current_state[1], request.transition.id
+        wanted = request.transition.label or str(state_id)
+        self._failure = "there is no such transition"
+        try:
+            response = self._change_state(request, response)
+        except rclpy_implementation.RCLError:
+            response.success = False
+        if not response.success:
+            self.get_logger().error(f"transition {wanted} from {label} failed: {self._failure}")
+        return response

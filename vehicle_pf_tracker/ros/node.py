@@ -1,0 +1,134 @@
+"""The tracker node: images in, estimates out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from geometry_msgs.msg import PointStamped, PolygonStamped
+from rclpy.subscription import Subscription
+from sensor_msgs.msg import RegionOfInterest
+from std_srvs.srv import Trigger
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.ros.configuration import Configuration
+from vehicle_pf_tracker.ros.diagnostics import Diagnostics
+from vehicle_pf_tracker.ros.image_input import ImageInput, image_topic
+from vehicle_pf_tracker.ros.managed_node import ManagedNode
+from vehicle_pf_tracker.ros.messages import stamp_ns
+from vehicle_pf_tracker.ros.outputs import Outputs
+from vehicle_pf_tracker.ros.parameters import ParameterTable, unknown_overrides
+from vehicle_pf_tracker.ros.stream import Stream
+from vehicle_pf_tracker.ros.target_messages import box_of_point, box_of_polygon, box_of_region
+from vehicle_pf_tracker.trackers.registry import Variant
+
+
+class TrackerNode(ManagedNode):
+    """Managed node of one variant; active at once unless the parameter `autostart` is false.
+
+    Parameters
+    ----------
+    variant : Variant
+        From the registry; the node is called ``<variant>_tracker``.
+    **options
+        Passed on to `rclpy.node.Node`.
+
+    Raises
+    ------
+    InputError
+        If a parameter or a QoS override does not fit.
+    """
+
+    def __init__(self, variant: Variant, **options: Any) -> None:
+        super().__init__(f"{variant.name}_tracker", **options)
+        self._variant = variant
+        self._stream: Stream | None = None
+        self._outputs: Outputs | None = None
+        self._target_inputs: list[Subscription] = []
+        try:
+            defaults = Configuration.of(variant)
+            self._parameters = ParameterTable(self, defaults, self._reconfigure)
+            self._diagnostics = Diagnostics(self)
+            self._warn_of(unknown_overrides(self, qos=False))
+            if self._parameters.configuration.node.autostart:
+                self.start()
+        except InputError:
+            self.destroy_node()
+            raise
+
+    def configure(self) -> None:
+        """Make the session and the outputs."""
+        configuration = self._parameters.configuration
+        topic = image_topic(self, configuration.node.image_transport)
+        self._outputs = Outputs(self, topic)
+        health = self._diagnostics.begin()
+        self._stream = Stream(self, self._variant, configuration, self._outputs, health)
+        self._diagnostics.facts = {"variant": self._variant.name, "seed": self._stream.seed}
+        self._reset_service = self.create_service(Trigger, "~/reset", self._on_reset)
+
+    def activate(self) -> None:
+        """Open the inputs."""
+        assert self._stream is not None
+        own = self._parameters.configuration.node
+        source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
+        self._warn_of(unknown_overrides(self, qos=True))
+        self._diagnostics.listen_to(source)
+        self._target_inputs = [
+            self.create_subscription(RegionOfInterest, "~/set_target", self._on_region, 10),
+            self.create_subscription(PolygonStamped, "~/set_box", self._on_polygon, 10),
+            self.create_subscription(PointStamped, "~/clicked_point", self._on_point, 10),
+        ]
+        self.get_logger().info(f"ready: images on {source}, {self._stream.target_words}")
+
+    def deactivate(self) -> None:
+        """Close the inputs: an inactive node pays nothing for images."""
+        self._diagnostics.cease()
+        while self._target_inputs:
+            self.destroy_subscription(self._target_inputs.pop())
+
+    def cleanup(self) -> None:
+        """Let go of session and outputs."""
+        if self._outputs is not None:
+            self._outputs.close()
+            self.destroy_service(self._reset_service)
+        self._outputs = self._stream = None
+
+    def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
+        if self._stream is None or self._diagnostics.source is None:
+            return  # taken just before the node was deactivated
+        age = self.get_clock().now().nanoseconds - stamp_ns(message.header)
+        self._diagnostics.arrived(info, age * 1e-9)
+        self._stream.take(message)
+
+    def _on_region(self, message: RegionOfInterest) -> None:
+        self._set_target(lambda stream: box_of_region(message))
+
+    def _on_polygon(self, message: PolygonStamped) -> None:
+        self._set_target(lambda stream: box_of_polygon(message, stream.frame_id))
+
+    def _on_point(self, message: PointStamped) -> None:
+        self._set_target(lambda stream: box_of_point(message, stream.frame_id, stream.box))
+
+    def _set_target(self, read: Callable[[Stream], Box]) -> None:
+        if self._stream is None:
+            return
+        try:
+            self._stream.set_target(read(self._stream))
+        except InputError as error:
+            self._stream.refuse_target(str(error))
+
+    def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        assert self._stream is not None
+        self._stream.reset()
+        response.success, response.message = True, self._stream.target_words
+        return response
+
+    def _reconfigure(self, configuration: Configuration) -> None:
+        if self._stream is not None:
+            self._stream.reconfigure(configuration)
+            self._diagnostics.facts["seed"] = self._stream.seed
+
+    def _warn_of(self, sentences: list[str]) -> None:
+        for sentence in sentences:
+            self.get_logger().warning(f"ignored: {sentence}")

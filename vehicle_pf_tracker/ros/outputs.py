@@ -1,0 +1,94 @@
+"""The publishers of a node and what goes out for one image."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PointStamped, PolygonStamped, Vector3Stamped
+from rclpy.lifecycle import LifecycleNode
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import Image, PointCloud2
+from std_msgs.msg import Header
+
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.ros.messages import (
+    box_message,
+    image_message,
+    mode_message,
+    particles_message,
+    position_message,
+    velocity_message,
+)
+from vehicle_pf_tracker.ros.node_parameters import PublishParameters
+from vehicle_pf_tracker.ros.overlay import Overlay
+from vehicle_pf_tracker.trackers.estimate import Estimate
+
+_RELIABLE = QoSProfile(depth=10)
+_BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class Outputs:
+    """Everything that a configured node publishes.
+
+    Parameters
+    ----------
+    node : LifecycleNode
+        Its publishers are silent unless it is active.
+    hardware_id : str
+        Where the images come from, for `~/mode`.
+    """
+
+    def __init__(self, node: LifecycleNode, hardware_id: str) -> None:
+        self._node = node
+        self._hardware_id = hardware_id
+        self._overlay = Overlay()
+        create = node.create_lifecycle_publisher
+        # ~/mode last, here and below: it tells a lock-step replay that the image is done with.
+        self._position = create(PointStamped, "~/position", _RELIABLE)
+        self._box = create(PolygonStamped, "~/box", _RELIABLE)
+        self._velocity = create(Vector3Stamped, "~/velocity", _RELIABLE)
+        self._particles = create(PointCloud2, "~/particles", _BEST_EFFORT)
+        self._picture = create(Image, "~/overlay", _BEST_EFFORT)
+        self._mode = create(DiagnosticArray, "~/mode", _RELIABLE)
+
+    def close(self) -> None:
+        """Destroy the publishers."""
+        for publisher in (
+            self._position, self._box, self._velocity, self._particles, self._picture, self._mode,
+        ):  # fmt: skip
+            self._node.destroy_lifecycle_publisher(publisher)
+
+    def forget_path(self) -> None:
+        """Begin a new path in the overlay."""
+        self._overlay.forget()
+
+    def publish_estimate(
+        self,
+        header: Header,
+        estimate: Estimate,
+        switches: PublishParameters,
+        frame_period: float,
+    ) -> None:
+        """Publish where the vehicle is; `frame_period` in s makes px/frame to px/s."""
+        self._overlay.follow(estimate)
+        self._position.publish(position_message(header, estimate))
+        if switches.box:
+            self._box.publish(box_message(header, estimate))
+        if switches.velocity:
+            self._velocity.publish(velocity_message(header, estimate, frame_period))
+        if switches.particles and self._particles.get_subscription_count():
+            self._particles.publish(particles_message(header, estimate))
+
+    def publish_overlay(
+        self, header: Header, frame: Frame, mode: str, estimate: Estimate | None
+    ) -> None:
+        """Publish the drawn-on image, if anybody looks."""
+        if self._picture.get_subscription_count():
+            picture = self._overlay.draw(frame, mode, estimate)
+            self._picture.publish(image_message(header, picture))
+
+    def publish_mode(self, header: Header, mode: str, values: Mapping[str, object]) -> None:
+        """Publish the one `~/mode` of an image."""
+        name = f"{self._node.get_name()}: target"
+        self._mode.publish(mode_message(header, name, self._hardware_id, mode, values))

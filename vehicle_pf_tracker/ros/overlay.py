@@ -1,0 +1,65 @@
+"""The image with what the tracker makes of it: box, path, particles, mode."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
+
+PATH_LENGTH = 300
+"""Positions shown of the path."""
+
+_COLOURS = {
+    Mode.TRACKING.value: (64, 220, 64),
+    Mode.OCCLUDED.value: (255, 176, 0),
+    Mode.LOST.value: (255, 48, 48),
+}
+_NEUTRAL = (200, 200, 200)
+_PARTICLE = (96, 160, 255)
+
+
+class Overlay:
+    """Remembers the path and draws; the frame itself is not written to."""
+
+    def __init__(self) -> None:
+        self._path: deque[tuple[float, float]] = deque(maxlen=PATH_LENGTH)
+
+    def forget(self) -> None:
+        """Begin a new path."""
+        self._path.clear()
+
+    def follow(self, estimate: Estimate) -> None:
+        """Add a position to the path."""
+        self._path.append(estimate.position)
+
+    def draw(self, frame: Frame, mode: str, estimate: Estimate | None) -> Frame:
+        """Return a drawn-on copy of `frame`, contiguous."""
+        picture = np.array(frame, order="C")
+        thickness = max(1, round(min(frame_size(frame)) / 300))
+        colour = _COLOURS.get(mode, _NEUTRAL)
+        if estimate is not None:
+            for centre in _pixels(estimate.particles):
+                cv2.circle(picture, centre, thickness, _PARTICLE, -1)
+            path = np.array(_pixels(np.asarray(self._path).reshape(-1, 2)), np.int32)
+            cv2.polylines(picture, [path.reshape(-1, 1, 2)], False, colour, thickness, cv2.LINE_AA)
+            corners = _pixels(np.asarray(estimate.box.corners))
+            cv2.rectangle(picture, corners[0], corners[2], colour, thickness)
+        words = mode if estimate is None else f"{mode} {estimate.confidence:.2f}"
+        _write(picture, words, colour, thickness)
+        return picture
+
+
+def _pixels(points: Array) -> list[tuple[int, int]]:
+    """Give the pixel that each continuous position (N, 2) lies in."""
+    return [(int(x), int(y)) for x, y in np.floor(points)]
+
+
+def _write(picture: Frame, words: str, colour: tuple[int, int, int], thickness: int) -> None:
+    place, scale = (5 * thickness, 14 * thickness), 0.45 * thickness
+    font, smooth = cv2.FONT_HERSHEY_SIMPLEX, cv2.LINE_AA
+    cv2.putText(picture, words, place, font, scale, (0, 0, 0), 3 * thickness, smooth)
+    cv2.putText(picture, words, place, font, scale, colour, thickness, smooth)

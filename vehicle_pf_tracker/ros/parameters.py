@@ -1,0 +1,129 @@
+"""Parameters as ROS sees them: declared with all that is known of them, set as a whole.
+
+Setting goes in rclpy's three steps: before (whole numbers become real ones where those are meant),
+on (validate everything, all or nothing), after (apply; in a single-threaded executor that is
+between two frames).
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.ros.configuration import Configuration
+from vehicle_pf_tracker.trackers.parameters import EFFECTS, ParameterSpec, unknown_name
+
+QOS_PREFIX = "qos_overrides."
+_INT64 = 2**63
+
+
+def describe(spec: ParameterSpec) -> ParameterDescriptor:
+    """Make the descriptor: text with unit, source and effect, range, choices, read-only flag."""
+    effect = "set at start-up only" if spec.read_only else f"a change {EFFECTS[spec.effect]}"
+    facts = "; ".join(fact for fact in (spec.unit, spec.source, effect) if fact)
+    choices = f"one of: {', '.join(spec.choices)}" if spec.choices else ""
+    descriptor = ParameterDescriptor(
+        name=spec.name,
+        description=f"{spec.doc} [{facts}]",
+        additional_constraints=choices,
+        read_only=spec.read_only,
+    )
+    if spec.bounds and spec.kind is int:
+        low = -_INT64 if spec.minimum is None else int(spec.minimum)
+        high = _INT64 - 1 if spec.maximum is None else int(spec.maximum)
+        descriptor.integer_range = [IntegerRange(from_value=low, to_value=high)]
+    elif spec.bounds:
+        least = -sys.float_info.max if spec.minimum is None else spec.minimum
+        most = sys.float_info.max if spec.maximum is None else spec.maximum
+        descriptor.floating_point_range = [FloatingPointRange(from_value=least, to_value=most)]
+    return descriptor
+
+
+class ParameterTable:
+    """Declares every parameter on a node and keeps the configuration that they make.
+
+    Parameters
+    ----------
+    node : Node
+        Its overrides (files, command line) are taken over the defaults.
+    defaults : Configuration
+        Of the node's variant.
+    changed : callable
+        Called with each new configuration.
+
+    Raises
+    ------
+    InputError
+        Naming every override that does not fit.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        defaults: Configuration,
+        changed: Callable[[Configuration], None],
+    ) -> None:
+        self._specs = defaults.specs()
+        self._changed = changed
+        overrides = {name: override.value for name, override in node._parameter_overrides.items()}
+        self.configuration = defaults.updated(overrides)
+        for name, value in self.configuration.to_mapping().items():
+            # The override is in the value already, converted; rclpy refuses 6 where 6.0 is meant.
+            node.declare_parameter(name, value, describe(self._specs[name]), ignore_override=True)
+        node.add_pre_set_parameters_callback(self._convert)
+        node.add_on_set_parameters_callback(self._validate)
+        node.add_post_set_parameters_callback(self._apply)
+
+    def _convert(self, parameters: list[Parameter]) -> list[Parameter]:
+        return [self._as_declared(one) for one in parameters]
+
+    def _as_declared(self, one: Parameter) -> Parameter:
+        spec = self._specs.get(one.name)
+        if spec is not None and spec.kind is float and one.type_ is Parameter.Type.INTEGER:
+            return Parameter(one.name, Parameter.Type.DOUBLE, float(one.value))
+        return one
+
+    def _validate(self, parameters: list[Parameter]) -> SetParametersResult:
+        try:
+            self._with(parameters)
+        except InputError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply(self, parameters: list[Parameter]) -> None:
+        new = self._with(parameters)
+        if new != self.configuration:
+            self.configuration = new
+            self._changed(new)
+
+    def _with(self, parameters: list[Parameter]) -> Configuration:
+        return self.configuration.updated({one.name: one.value for one in parameters})
+
+
+def unknown_overrides(node: Node, *, qos: bool) -> list[str]:
+    """Say which overrides name no declared parameter, and which one may be meant.
+
+    Parameters
+    ----------
+    node : Node
+        rclpy keeps such overrides silently.
+    qos : bool
+        Whether to look at the names of QoS overrides, which are declared with their subscription,
+        or at all others.
+    """
+    known = list(node._parameters)
+    return [
+        unknown_name(name, known)
+        for name in node._parameter_overrides
+        if name not in known and name.startswith(QOS_PREFIX) is qos
+    ]

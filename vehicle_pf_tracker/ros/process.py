@@ -1,0 +1,123 @@
+"""A node as a process of its own: arguments, signals, exit status."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import traceback
+from collections.abc import Sequence
+from types import FrameType
+
+import rclpy
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.node import Node
+from rclpy.utilities import remove_ros_args
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.ros.node import TrackerNode
+from vehicle_pf_tracker.trackers.registry import Variant
+
+_BROKEN = "a request could not be answered:"
+
+
+class _Interrupts:
+    """Ctrl-C ends the program until ROS is up; from then on rclpy's own handler ends the spin.
+
+    `ros2 launch` sends SIGINT twice, and the second must not reach the clean-up.
+    """
+
+    def __init__(self) -> None:
+        self.left_to_ros = False
+        signal.signal(signal.SIGINT, self)
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        if not self.left_to_ros:
+            raise KeyboardInterrupt
+
+
+def run_node(variant: Variant, arguments: Sequence[str]) -> int:
+    """Run the node of `variant` until it is told to end.
+
+    Parameters
+    ----------
+    variant : Variant
+        From the registry.
+    arguments : sequence of str
+        Command line without the program's name.
+
+    Returns
+    -------
+    int
+        Exit status: 0 ended by a signal, 1 a user's mistake (told on stderr), 2 usage.
+    """
+    interrupts = _Interrupts()
+    name = f"{variant.name}_tracker"
+    try:
+        rclpy.init(args=list(arguments))
+        interrupts.left_to_ros = True
+        others = remove_ros_args(list(arguments))
+        return _usage(name, others) if others else _serve(variant)
+    except InputError as error:
+        return _fail(name, str(error))
+    except (rclpy_implementation.RCLError, rclpy_implementation.UnknownROSArgsError) as error:
+        return _fail(name, _first_sentence(error))
+    finally:
+        rclpy.try_shutdown()
+
+
+def _serve(variant: Variant) -> int:
+    executor = SingleThreadedExecutor()
+    node = None
+    try:
+        node = TrackerNode(variant)
+        executor.add_node(node)
+        _spin(executor, node)
+    except Exception:
+        if rclpy.ok():
+            raise  # otherwise a signal took the ground from under a call
+    finally:
+        if node is not None:
+            node.destroy_node()
+        executor.shutdown()
+    return 0
+
+
+def _spin(executor: SingleThreadedExecutor, node: Node) -> None:
+    while rclpy.ok():
+        _spin_once(executor, node)
+
+
+def _spin_once(executor: SingleThreadedExecutor, node: Node) -> None:
+    try:
+        executor.spin_once()
+    except ExternalShutdownException:
+        return
+    except Exception:  # a malformed request, from which rclpy's own services are not safe
+        if rclpy.ok():
+            text = traceback.format_exc()
+            node.get_logger().error(f"{_BROKEN} {text}", throttle_duration_sec=1.0)
+
+
+def _usage(name: str, words: Sequence[str]) -> int:
+    asked = set(words) <= {"-h", "--help"}
+    if not asked:
+        print(f"{name}: unknown arguments: {' '.join(words)}", file=sys.stderr)
+    print(
+        f"usage: {name} [--ros-args -p NAME:=VALUE --params-file FILE -r image:=TOPIC ...]\n"
+        f"`vehicle-pf-tracker params {name.removesuffix('_tracker')}` prints every parameter.",
+        file=sys.stdout if asked else sys.stderr,
+    )
+    return 0 if asked else 2
+
+
+def _fail(name: str, sentence: str) -> int:
+    print(f"{name}: {sentence}", file=sys.stderr)
+    return 1
+
+
+def _first_sentence(error: Exception) -> str:
+    if isinstance(error, rclpy_implementation.UnknownROSArgsError):
+        return f"unknown ROS arguments: {' '.join(error.args[0])}"
+    text = str(error).replace("failed to initialize rcl: ", "")
+    return text.partition(", at /")[0]

@@ -1,0 +1,86 @@
+"""Messages that name a target, as boxes in px."""
+
+from __future__ import annotations
+
+import math
+
+from geometry_msgs.msg import PointStamped, PolygonStamped
+from sensor_msgs.msg import RegionOfInterest
+from std_msgs.msg import Header
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+
+
+def box_of_region(region: RegionOfInterest) -> Box:
+    """Return the region as a box."""
+    return Box(
+        float(region.x_offset), float(region.y_offset), float(region.width), float(region.height)
+    )
+
+
+def box_of_polygon(message: PolygonStamped, image_frame: str | None) -> Box:
+    """Return the upright box around the polygon's corners.
+
+    Parameters
+    ----------
+    message : PolygonStamped
+        In pixels of the image.
+    image_frame : str or None
+        The images' `frame_id`; None if none has come yet.
+
+    Raises
+    ------
+    InputError
+        If there are too few corners, one is not finite, or they are given in another frame.
+    """
+    _check_frame_id("~/set_box", message.header, image_frame)
+    corners = [(point.x, point.y) for point in message.polygon.points]
+    if len(corners) < 2:
+        raise InputError(
+            f"~/set_box got a polygon of {len(corners)} corners; give the four corners of the box"
+        )
+    _check_finite("~/set_box", *(number for corner in corners for number in corner))
+    left, top = (min(numbers) for numbers in zip(*corners, strict=True))
+    right, bottom = (max(numbers) for numbers in zip(*corners, strict=True))
+    return Box(left, top, right - left, bottom - top)
+
+
+def box_of_point(message: PointStamped, image_frame: str | None, like: Box | None) -> Box:
+    """Return the box of the size of `like` around the point.
+
+    Parameters
+    ----------
+    message : PointStamped
+        In pixels of the image.
+    image_frame : str or None
+        The images' `frame_id`; None if none has come yet.
+    like : Box or None
+        The present box; None if there is none.
+
+    Raises
+    ------
+    InputError
+        If the point is not finite or in another frame, or there is no box whose size to take.
+    """
+    _check_frame_id("~/clicked_point", message.header, image_frame)
+    _check_finite("~/clicked_point", message.point.x, message.point.y)
+    if like is None:
+        raise InputError(
+            "~/clicked_point has no box size to take yet; give a box on ~/set_target first, "
+            "or set the parameters target.width and target.height"
+        )
+    return Box.around((message.point.x, message.point.y), like.width, like.height)
+
+
+def _check_frame_id(topic: str, header: Header, image_frame: str | None) -> None:
+    if header.frame_id and image_frame is not None and header.frame_id != image_frame:
+        raise InputError(
+            f"{topic} got a target in the frame {header.frame_id!r}; give it in pixels of the "
+            f"image, with the image's frame_id {image_frame!r} or none"
+        )
+
+
+def _check_finite(topic: str, *numbers: float) -> None:
+    if not all(map(math.isfinite, numbers)):
+        raise InputError(f"{topic} got a number that is not finite; give pixels of the image")
