@@ -1,7 +1,7 @@
 """One description of the package for both of its homes: pip, and colcon on a robot."""
 
 import sys
-from glob import glob
+from pathlib import Path
 
 from setuptools import find_packages, setup
 
@@ -13,6 +13,8 @@ RUNTIME = [
     "numpy>=1.26",
     "opencv-python-headless>=4.6",
     "mcap>=1.2",
+    "lz4>=4.0",
+    "zstandard>=0.19",
     "rosbags>=0.10",
     "rich>=13",
     "matplotlib>=3.6",
@@ -36,6 +38,12 @@ ROS = [
 # which `setup.py install` writes state requirements that pkg_resources would then find missing.
 BUILT_FOR_ROS = not {"install", "develop"}.isdisjoint(sys.argv[1:])
 
+
+def files(pattern: str) -> list[str]:
+    """Files for data_files, which colcon wants relative to the working directory."""
+    return sorted(map(str, Path().glob(pattern)))
+
+
 setup(
     name=NAME,
     version="0.1.0",
@@ -49,8 +57,8 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
-        (f"share/{NAME}/config", sorted(glob("config/*.yaml"))),
-        (f"share/{NAME}/launch", sorted(glob("launch/*.launch.py"))),
+        (f"share/{NAME}/config", files("config/*.yaml")),
+        (f"share/{NAME}/launch", files("launch/*.launch.py")),
     ],
     zip_safe=False,
     install_requires=[] if BUILT_FOR_ROS else RUNTIME,

@@ -1,0 +1,70 @@
+# `make demo` and `make test` need Python 3.10 to 3.13 with venv, and nothing else.
+# Everything is installed into .venv, at the versions that requirements/*.txt lock.
+
+PYTHON =
+NOBLE_PYTHON =
+PYTEST_ARGS =
+
+BIN := .venv/bin
+INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
+CORE_AND_NODE := $(wildcard $(addprefix test/,filtering features trackers scenes recordings ros))
+
+# ROS stays on this machine.
+export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
+
+.PHONY: demo test test-slow test-noble lint types format config colcon clean
+
+demo: .venv/installed
+	$(BIN)/vehicle-pf-tracker demo -o results/demo
+
+test: .venv/installed
+	$(BIN)/python -m pytest -m "not slow" $(PYTEST_ARGS)
+
+# The slow tests try every way to install, colcon's too.
+test-slow: .venv/installed .venv/colcon
+	$(BIN)/python -m pytest -m slow $(PYTEST_ARGS)
+
+test-noble: .venv-noble/installed
+	.venv-noble/bin/python -m pytest -m "not slow" $(PYTEST_ARGS) $(CORE_AND_NODE)
+
+colcon: .venv/colcon
+	PATH="$(CURDIR)/$(BIN):$$PATH" .ci/colcon
+
+lint: .venv/installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+format: .venv/installed
+	$(BIN)/ruff check --fix-only .
+	$(BIN)/ruff format .
+
+types: .venv/installed
+	$(BIN)/mypy
+
+config: .venv/installed
+	set -e; for variant in $$($(BIN)/python -c \
+	    'from vehicle_pf_tracker.trackers.registry import VARIANTS as v; print(*v)'); do \
+	    $(BIN)/vehicle-pf-tracker params $$variant > config/$$variant.new; \
+	    mv config/$$variant.new config/$$variant.yaml; \
+	done
+
+clean:
+	rm -rf .venv .venv-noble build install log results *.egg-info
+	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# A changed lock makes the environment anew; a changed description only installs the package again.
+
+.venv/locked: requirements/locked.txt requirements/ros-jazzy.txt
+	.ci/make-venv .venv requirements/locked.txt $(PYTHON)
+
+.venv-noble/locked: requirements/noble.txt requirements/ros-jazzy.txt
+	.ci/make-venv .venv-noble requirements/noble.txt $(or $(NOBLE_PYTHON),3.12 3.11 3.10)
+
+.venv/installed .venv-noble/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml
+	$*/bin/python $(INSTALL) --no-build-isolation --editable .
+	touch $@
+
+.venv/colcon: .venv/locked requirements/colcon.txt
+	$(BIN)/python $(INSTALL) --requirement requirements/colcon.txt
+	touch $@
