@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -65,12 +66,21 @@ class Sprite:
     """
 
     def __init__(self, colour: npt.ArrayLike, opacity: npt.ArrayLike) -> None:
-        alpha = np.asarray(opacity, dtype=np.float64)[..., np.newaxis]
-        cells = np.concatenate([np.asarray(colour, dtype=np.float64) * alpha, alpha], axis=2)
-        rows, columns, channels = cells.shape
-        self._integral: Array = np.zeros((rows + 1, columns + 1, channels))
-        self._integral[1:, 1:] = cells.cumsum(axis=0).cumsum(axis=1)
+        self._colour, self._opacity = np.asarray(colour), np.asarray(opacity)
         self._last: tuple[Box, PixelWindow, Image] | None = None
+
+    @cached_property
+    def _integral(self) -> Array:
+        """Sums of all cells above and to the left, red, green and blue times opacity, opacity.
+
+        Made when first asked for: the truth needs few of a scene's sprites.
+        """
+        alpha = self._opacity.astype(np.float64)[..., np.newaxis]
+        cells = np.concatenate([self._colour * alpha, alpha], axis=2)
+        rows, columns, channels = cells.shape
+        integral: Array = np.zeros((rows + 1, columns + 1, channels))
+        np.cumsum(cells.cumsum(axis=0), axis=1, out=integral[1:, 1:])
+        return integral
 
     @classmethod
     def plain(cls, colour: Colour, opacity: float = 1.0) -> Sprite:

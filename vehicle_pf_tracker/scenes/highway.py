@@ -1,7 +1,7 @@
 """Traffic on a dual carriageway: the target passes a bridge, then a lorry overtakes and hides it.
 
-The target drives in the far slow lane. The bridge hides it for about 21 frames, and later a lorry
-in the next lane for about as long; each comes and goes over about 15 frames of partial occlusion.
+The target drives in the far slow lane. The bridge hides it for about 22 frames, and later a lorry
+in the next lane for about 24; each comes and goes over 10 to 15 frames of partial occlusion.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon
 from vehicle_pf_tracker.trackers.parameters import parameter
 
 WIDTH, HEIGHT, FRAME_COUNT = 640, 480, 200
+START = 33
+"""Where the middle of the target starts, px from the left."""
 SPEED = 2.9
 """Mean speed of the target, px/frame: it crosses the image in `FRAME_COUNT` frames."""
 OVERTAKING = 3.8
@@ -49,7 +51,7 @@ class HighwayParameters:
 def highway(parameters: HighwayParameters, seed: int) -> Scene:
     """Make the scene."""
     rng = stream(seed, "traffic")
-    slow_lane, target = _slow_lane(rng)
+    slow_lane = _slow_lane(rng)
     actors = [
         *slow_lane,
         *_middle_lane(rng),
@@ -69,23 +71,23 @@ def highway(parameters: HighwayParameters, seed: int) -> Scene:
         frame_count=FRAME_COUNT,
         backdrop=lambda: dual_carriageway(WIDTH, HEIGHT, stream(seed, "backdrop")),
         actors=tuple(actors),
-        target=next(index for index, actor in enumerate(actors) if actor is target),
+        target=len(slow_lane) - 1,
         camera=Camera(parameters.noise, seed),
     )
 
 
-def _slow_lane(rng: np.random.Generator) -> tuple[list[Actor], Actor]:
-    """Make the target, a saloon of a similar blue ahead of it, and a car behind; and the target."""
+def _slow_lane(rng: np.random.Generator) -> list[Actor]:
+    """Make a saloon of a similar blue, a car well behind it, and between them, last, the target."""
     lane = FAR_LANES[0]
     hatchback = vehicle(car((38, 92, 168)), lane)
-    start = hatchback.box(10 + rng.uniform(-2, 2), lane)
+    start = hatchback.box(START - hatchback.size[0] / 2 + rng.uniform(-2, 2), lane)
     course = Straight(start, (SPEED, 0.0))
     own = hatchback.on(Driven(course, _swing(2.0, 90, rng), _swing(0.7, 130, rng)))
     ahead = vehicle(saloon((62, 84, 132)), lane)
     leader = ahead.on(Straight(ahead.box(start.x + rng.uniform(105, 125), lane), (3.05, 0.0)))
     behind = any_car(lane, rng)
     follower = behind.on(Straight(behind.box(rng.uniform(-190, -150), lane), (2.75, 0.0)))
-    return [*leader, *follower, *own], own[1]
+    return [*leader, *follower, *own]
 
 
 def _swing(amplitude: float, period: float, rng: np.random.Generator) -> Wave:
@@ -97,13 +99,12 @@ def _middle_lane(rng: np.random.Generator) -> list[Actor]:
     lane = FAR_LANES[1]
     truck = vehicle(lorry((176, 120, 40), (204, 200, 190), (122, 40, 52)), lane)
     speed = SPEED + OVERTAKING * rng.uniform(0.95, 1.05)
-    meeting = 33 + SPEED * HIDDEN_AT + rng.uniform(-6, 6)
+    meeting = START + SPEED * HIDDEN_AT + rng.uniform(-6, 6)
     left = meeting - LOAD_MIDDLE * truck.size[0] - speed * HIDDEN_AT
     actors = list(truck.on(Straight(truck.box(left, lane), (speed, 0.0))))
-    gap = rng.uniform(130, 220)
     for model, place in (
-        (vehicle(saloon((216, 214, 208)), lane), left + truck.size[0] + gap + 260),
-        (vehicle(car((150, 40, 38)), lane), left - gap - 45),
+        (vehicle(saloon((216, 214, 208)), lane), left + truck.size[0] + rng.uniform(390, 480)),
+        (vehicle(car((150, 40, 38)), lane), left - rng.uniform(175, 265)),
     ):
         actors += model.on(Straight(model.box(place, lane), (speed, 0.0)))
     return actors

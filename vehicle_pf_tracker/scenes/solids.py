@@ -11,11 +11,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-import cv2
 import numpy as np
 
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.scenes.compositing import Array, Colour, Sprite
+from vehicle_pf_tracker.scenes.polygons import cells_inside
 
 ELEVATION = math.radians(35)
 """Angle of the view above the horizon."""
@@ -26,7 +26,6 @@ OVERSAMPLING = 6
 
 _VIEW = np.array([0.0, -math.cos(ELEVATION), math.sin(ELEVATION)])
 _SUN = np.array([0.35, 0.4, 0.85])
-_SUBCELL_BITS = 8
 
 Point = tuple[float, float, float]
 
@@ -101,11 +100,10 @@ def draw(faces: Sequence[Face], width: float, height: float, opacity: float = 1.
     colour = np.zeros((rows, columns, 3), np.uint8)
     mask = np.zeros((rows, columns), np.uint8)
     for face in faces:
-        # OpenCV puts integer coordinates in the middle of a cell, we at its edge.
-        cells = (_project(face) - (bounds.x, bounds.y)) * cells_per_metre - 0.5
-        polygon = [np.rint(cells * 2**_SUBCELL_BITS).astype(np.int32)]
-        cv2.fillPoly(colour, polygon, _shaded(face), cv2.LINE_8, _SUBCELL_BITS)
-        cv2.fillPoly(mask, polygon, (1,), cv2.LINE_8, _SUBCELL_BITS)
+        outline = (_project(face) - (bounds.x, bounds.y)) * cells_per_metre
+        window, inside = cells_inside(outline, rows, columns)
+        colour[window.slices][inside] = _shaded(face)
+        mask[window.slices][inside] = 1
     return Sprite(colour, mask * opacity)
 
 

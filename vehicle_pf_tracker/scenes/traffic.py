@@ -13,7 +13,7 @@ from vehicle_pf_tracker.scenes.paths import Attached, Path, Straight
 from vehicle_pf_tracker.scenes.roads import Lane
 from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.solids import Face, draw, extent, mirrored, shadow
-from vehicle_pf_tracker.scenes.vehicles import car, saloon, van
+from vehicle_pf_tracker.scenes.vehicles import car, saloon, tinted, van
 
 SHADOW_OPACITY = 0.5
 
@@ -79,9 +79,7 @@ def vehicle(faces: Sequence[Face], lane: Lane) -> Vehicle:
 def any_car(lane: Lane, rng: np.random.Generator) -> Vehicle:
     """Draw a vehicle of a kind and colour left to chance."""
     kinds: tuple[Callable[[Colour], list[Face]], ...] = (car, saloon, saloon, van)
-    red, green, blue = PAINTS[rng.integers(len(PAINTS))]
-    light = rng.uniform(0.9, 1.08)
-    paint = red * light, green * light, blue * light
+    paint = tinted(PAINTS[rng.integers(len(PAINTS))], rng.uniform(0.9, 1.08))
     return vehicle(kinds[rng.integers(len(kinds))](paint), lane)
 
 

@@ -24,13 +24,13 @@ def car(paint: Colour) -> list[Face]:
     body = [(0.0, 0.32), (0.0, 0.78), (0.12, 0.95), (2.55, 0.95), (3.4, 0.8), (3.66, 0.62),
             (3.7, 0.32)]  # fmt: skip
     cabin = [(0.1, 0.95), (0.42, 1.5), (1.95, 1.5), (2.65, 0.95)]
-    roof_window = _quad((0.75, 1.5), (1.65, 1.5), 0.45, 1.25, (62, 66, 74))
+    roof_window = strips([(0.75, 1.5), (1.65, 1.5)], 0.45, 1.25, (62, 66, 74))
     windows = [[(0.5, 1.0), (0.66, 1.4), (1.15, 1.43), (1.15, 1.0)],
                [(1.25, 1.0), (1.25, 1.43), (1.9, 1.4), (2.35, 1.0)]]  # fmt: skip
     return [
-        *_shell(body, 1.68, paint),
+        *strips(body, 0, 1.68, paint),
         *_cabin(cabin, 1.68, paint),
-        roof_window,
+        *roof_window,
         *(_side_window(window) for window in windows),
         *_flank(body, paint, door=1.2),
         *_lamps(body, front=3.7, rear=0.0),
@@ -46,7 +46,7 @@ def saloon(paint: Colour) -> list[Face]:
     windows = [[(0.95, 1.0), (1.35, 1.37), (1.9, 1.38), (1.9, 1.0)],
                [(2.0, 1.0), (2.0, 1.38), (2.55, 1.37), (3.05, 1.0)]]  # fmt: skip
     return [
-        *_shell(body, 1.78, paint),
+        *strips(body, 0, 1.78, paint),
         *_cabin(cabin, 1.78, paint),
         *(_side_window(window) for window in windows),
         *_flank(body, paint, door=1.95),
@@ -63,7 +63,7 @@ def van(paint: Colour) -> list[Face]:
     screen = Face(((3.9, 0.1, 2.3), (4.6, 0.05, 1.35), (4.6, 1.95, 1.35), (3.9, 1.9, 2.3)), SCREEN)
     door_window = side_panel([(3.45, 1.4), (3.45, 2.05), (3.85, 2.05), (4.35, 1.4)], 0, SIDE_GLASS)
     return [
-        *_shell(body, width, paint),
+        *strips(body, 0, width, paint),
         screen,
         *_flank(body, paint, door=3.35),
         door_window,
@@ -81,7 +81,7 @@ def lorry(cab: Colour, box: Colour, stripe: Colour) -> list[Face]:
                    (10.15, 2.35, 2.85)), SCREEN)  # fmt: skip
     return [
         side_panel([(0.1, 0.6), (0.1, 1.2), (10.4, 1.2), (10.4, 0.6)], 0.3, SILL),
-        *_shell(tractor, width, cab),
+        *strips(tractor, 0, width, cab),
         screen,
         side_panel(tractor, 0, cab),
         side_panel([(9.1, 1.9), (9.1, 2.75), (9.9, 2.75), (10.25, 1.9)], 0, SIDE_GLASS),
@@ -97,23 +97,19 @@ def lorry(cab: Colour, box: Colour, stripe: Colour) -> list[Face]:
     ]  # fmt: skip
 
 
-def _quad(one: tuple[float, float], two: tuple[float, float], near: float, far: float,
-          colour: Colour) -> Face:  # fmt: skip
-    return strips([one, two], near, far, colour)[0]
-
-
-def _shell(body: Contour, width: float, paint: Colour) -> list[Face]:
-    return strips(body, 0, width, paint)
+def tinted(paint: Colour, light: float) -> Colour:
+    """Return `paint` made `light` times as bright."""
+    red, green, blue = paint
+    return red * light, green * light, blue * light
 
 
 def _flank(body: Contour, paint: Colour, door: float) -> list[Face]:
     """Near side of the body: paint, a darker lower part, the sill and the gap of a door."""
-    lower = tuple(0.8 * level for level in paint)
     rear, front = body[0][0], body[-1][0]
     return [
         side_panel(body, 0, paint),
         side_panel([(rear, 0.3), (rear, 0.55), (front, 0.55), (front, 0.3)], 0,
-                   (lower[0], lower[1], lower[2])),
+                   tinted(paint, 0.8)),
         side_panel([(rear + 0.3, 0.22), (rear + 0.3, 0.36), (front - 0.3, 0.36),
                     (front - 0.3, 0.22)], 0, SILL),
         side_panel([(door, 0.4), (door, 0.95), (door + 0.05, 0.95), (door + 0.05, 0.4)], 0, SILL),

@@ -1,0 +1,111 @@
+"""Every scene of the catalogue keeps the contract; mistakes are told in one sentence."""
+
+from itertools import islice, pairwise
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import check_frame
+from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
+from vehicle_pf_tracker.trackers.parameters import specs
+
+ALL = sorted(SCENES)
+SHORT = 12
+
+
+def some(name, **options):
+    return list(islice(make_scene(name, **options).frames(), SHORT))
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_same_seed_gives_the_same_bits(name):
+    for one, two in zip(some(name, seed=7), some(name, seed=7), strict=True):
+        np.testing.assert_array_equal(one.frame, two.frame)
+        assert one.truth == two.truth
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_seeds_differ(name):
+    settings = {"noise": 0.0}
+    one, two = (some(name, seed=seed, settings=settings)[0].frame for seed in (1, 2))
+    assert (one != two).mean() > 0.2
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_truths_are_those_of_the_frames(name):
+    scene = make_scene(name, seed=3)
+    truths = list(scene.truths())
+    assert [shot.truth for shot in scene.frames()] == truths
+    assert len(truths) == scene.frame_count
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_frames_are_frames_of_the_size_that_is_said(name):
+    scene = make_scene(name)
+    for shot in islice(scene.frames(), 3):
+        assert check_frame(shot.frame).shape == (scene.height, scene.width, 3)
+        assert shot.frame.flags.c_contiguous
+    assert scene.name == name
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_truth_is_complete_and_plain(name):
+    scene = make_scene(name)
+    truths = list(scene.truths())
+    assert truths[0].stamp_ns == 1_000_000_000
+    for before, after in pairwise(truths):
+        assert after.stamp_ns - before.stamp_ns == pytest.approx(1e9 / scene.frame_rate, abs=1)
+    for truth in truths:
+        assert type(truth.visible_fraction) is float
+        assert type(truth.box.x) is float
+        assert 0 <= truth.visible_fraction <= 1
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_every_parameter_says_what_turning_it_does(name):
+    for spec in specs(SCENES[name].parameters).values():
+        assert spec.doc
+        assert spec.minimum is not None
+        assert spec.maximum is not None
+    assert SCENES[name].summary
+
+
+def test_settings_as_words_and_as_mapping_are_the_same():
+    words = make_scene("bar", settings=["speed=8", "width=60"])
+    mapping = make_scene("bar", settings={"speed": 8, "width": 60.0})
+    assert list(words.truths()) == list(mapping.truths())
+    assert words.frame_count < make_scene("bar").frame_count
+
+
+def test_frame_rate_changes_the_stamps_only():
+    slow, fast = (
+        list(make_scene("bar", settings={"frame_rate": rate}).truths()) for rate in (15, 30)
+    )
+    assert [t.box for t in slow] == [t.box for t in fast]
+    assert fast[30].stamp_ns == slow[15].stamp_ns == 2_000_000_000
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [
+        ("motorbike", {}, ["'motorbike'", "bar", "highway"]),
+        ("bar", {"settings": ["widht=3"]}, ["'widht'", "bar", "width", "vehicle_width"]),
+        ("bar", {"settings": {"widht": 3}}, ["'widht'", "bar", "width", "vehicle_width"]),
+        ("highway", {"settings": ["width=3"]}, ["'width'", "highway", "noise"]),
+        ("bar", {"settings": ["width"]}, ["name=value", "'width'"]),
+        ("bar", {"settings": ["width=wide"]}, ["width", "number", "'wide'"]),
+        ("bar", {"settings": {"width": "60"}}, ["width", "number", "'60'"]),
+        ("bar", {"settings": ["width=500"]}, ["width", "from 0 to 120", "500"]),
+        ("bar", {"settings": ["speed=nan"]}, ["speed", "finite"]),
+        ("bar", {"seed": -1}, ["seed", "at least 0", "-1"]),
+        ("bar", {"seed": 1.5}, ["seed", "whole number", "1.5"]),
+    ],
+)
+def test_mistakes_name_themselves_and_the_remedy(name, options, words):
+    with pytest.raises(InputError) as caught:
+        make_scene(name, **options)
+    sentence = str(caught.value)
+    assert "\n" not in sentence
+    for word in words:
+        assert word in sentence

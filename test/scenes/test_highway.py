@@ -1,0 +1,110 @@
+"""The highway: the two total occlusions for every seed, and what the demo relies on."""
+
+from itertools import groupby, islice
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.recordings.truth import Occlusion
+from vehicle_pf_tracker.scenes.catalogue import make_scene
+
+SEEDS = range(30)
+NONE, PARTIAL, TOTAL = Occlusion.NONE, Occlusion.PARTIAL, Occlusion.TOTAL
+
+
+@pytest.fixture(scope="module")
+def truths_by_seed():
+    return [list(make_scene("highway", seed=seed).truths()) for seed in SEEDS]
+
+
+def test_clear_bridge_clear_lorry_clear_for_every_seed(truths_by_seed):
+    for truths in truths_by_seed:
+        phases = [
+            (state, len(list(run))) for state, run in groupby(truth.occlusion for truth in truths)
+        ]
+        once = [PARTIAL, TOTAL, PARTIAL, NONE]
+        assert [state for state, _ in phases] == [NONE, *once, *once]
+        lengths = [length for _, length in phases]
+        assert lengths[0] >= 25
+        assert min(lengths[2], lengths[6]) >= 15
+        assert min(lengths[1], lengths[3], lengths[5], lengths[7]) >= 8
+        assert lengths[4] >= 15
+        assert lengths[8] >= 30
+
+
+def test_the_demo_scene_stays_as_it_was_fixed_before_any_tuning(truths_by_seed):
+    truths = truths_by_seed[0]
+    hidden = [index for index, truth in enumerate(truths) if truth.occlusion is TOTAL]
+    assert hidden == [*range(47, 69), *range(117, 142)]
+    assert truths[0].box.centre == pytest.approx((32.0552, 110.5507), abs=1e-3)
+    assert truths[-1].box.centre == pytest.approx((607.6648, 109.2185), abs=1e-3)
+
+
+def test_each_total_occlusion_has_fifteen_frames_without_a_pixel_or_nearly(truths_by_seed):
+    for truths in truths_by_seed:
+        dark = [truth.visible_fraction < 0.03 for truth in truths]
+        runs = [len(list(run)) for hidden, run in groupby(dark) if hidden]
+        assert len(runs) == 2
+        assert min(runs) >= 15
+
+
+def test_target_stays_whole_inside_the_image_at_one_size(truths_by_seed):
+    for truths in truths_by_seed:
+        boxes = [truth.box for truth in truths]
+        assert min(box.x for box in boxes) >= 0
+        assert max(box.x + box.width for box in boxes) <= 640
+        assert {(round(box.width, 4), round(box.height, 4)) for box in boxes} == {(45.88, 26.2704)}
+
+
+def test_target_drives_on_at_a_steady_pace(truths_by_seed):
+    for truths in truths_by_seed:
+        centres = np.array([truth.box.centre for truth in truths])
+        steps = np.diff(centres, axis=0)
+        assert steps[:, 0].min() > 2.7
+        assert steps[:, 0].max() < 3.1
+        assert np.abs(steps[:, 1]).max() < 0.1
+
+
+def test_seeds_change_the_truth_too(truths_by_seed):
+    starts = {truths[0].box.x for truths in truths_by_seed}
+    assert len(starts) == len(SEEDS)
+
+
+def test_the_target_looks_like_itself_again_after_each_occlusion():
+    """Its window, at the truth, is close to the first one; while hidden it is not."""
+    scene = make_scene("highway", seed=4, settings=["noise=0"])
+    shots = list(scene.frames())
+    first = _window(shots[0])
+    for index, shot in enumerate(shots):
+        difference = np.abs(_window(shot) - first).mean()
+        if shot.truth.occlusion is TOTAL:
+            assert difference > 25, index
+        if shot.truth.occlusion is NONE and index > 90:
+            assert difference < 25, index
+
+
+def _window(shot):
+    x, y = (round(value) for value in shot.truth.box.centre)
+    return shot.frame[y - 10 : y + 10, x - 18 : x + 18].astype(float)
+
+
+def test_size_rate_and_length():
+    scene = make_scene("highway")
+    first = next(scene.frames())
+    assert (scene.frame_rate, scene.frame_count) == (30, 200)
+    assert first.frame.shape == (480, 640, 3)
+    assert first.frame.dtype == np.uint8
+
+
+def test_there_is_other_traffic_on_both_carriageways():
+    scene = make_scene("highway", seed=1, settings=["noise=0"])
+    one, two = (shot.frame.astype(int) for shot in islice(scene.frames(), 0, 21, 20))
+    moved = np.abs(one - two).max(axis=2) > 25
+    for lane in (
+        slice(95, 123),
+        slice(125, 151),
+        slice(152, 176),
+        slice(230, 256),
+        slice(290, 316),
+    ):
+        assert moved[lane].sum() > 200
