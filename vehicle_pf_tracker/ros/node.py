@@ -48,10 +48,10 @@ class TrackerNode(ManagedNode):
         self._target_inputs: list[Subscription] = []
         try:
             defaults = Configuration.of(variant)
-            self._parameters = ParameterTable(self, defaults, self._reconfigure)
+            self._table = ParameterTable(self, defaults, self._reconfigure)
             self._diagnostics = Diagnostics(self)
             self._warn_of(unknown_overrides(self, qos=False))
-            if self._parameters.configuration.node.autostart:
+            if self._table.configuration.node.autostart:
                 self.start()
         except InputError:
             self.destroy_node()
@@ -59,7 +59,7 @@ class TrackerNode(ManagedNode):
 
     def configure(self) -> None:
         """Make the session and the outputs."""
-        configuration = self._parameters.configuration
+        configuration = self._table.configuration
         topic = image_topic(self, configuration.node.image_transport)
         self._outputs = Outputs(self, topic)
         health = self._diagnostics.begin()
@@ -70,7 +70,7 @@ class TrackerNode(ManagedNode):
     def activate(self) -> None:
         """Open the inputs."""
         assert self._stream is not None
-        own = self._parameters.configuration.node
+        own = self._table.configuration.node
         source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
         self._warn_of(unknown_overrides(self, qos=True))
         self._diagnostics.listen_to(source)
