@@ -15,7 +15,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 
-BASE = ("setuptools<80", f"{ROOT}[dev]")  # setuptools builds this package; the limit is colcon's
+SETUPTOOLS = "setuptools>=77,<80"  # builds this package; the upper limit is colcon's
+BASE = (SETUPTOOLS, f"{ROOT}[dev]")
 ROS = (*BASE, f"{ROOT}[ros]")
 COLCON = (
     *BASE,
@@ -28,7 +29,7 @@ COLCON = (
     "colcon-test-result",
 )
 NOBLE = (  # what Ubuntu 24.04 has from apt; its Python is 3.12
-    "setuptools<80",
+    SETUPTOOLS,
     f"{ROOT}[test]",
     "numpy==1.26.4",
     "opencv-python-headless==4.6.0.66",
@@ -68,6 +69,7 @@ def resolve(interpreter: str, wanted: tuple[str, ...]) -> set[str]:
     with tempfile.TemporaryDirectory() as folder:
         run(interpreter, "-m", "venv", folder)
         python = str(Path(folder, "bin", "python"))
+        run(python, "-m", "pip", "install", "--quiet", "--upgrade", "pip")
         run(python, "-m", "pip", "install", "--quiet", *wanted)
         pins = run(python, "-c", INSTALLED)
     return {pin for pin in pins if pin.split("==")[0] not in {"pip", "vehicle_pf_tracker"}}
