@@ -12,6 +12,8 @@ from rosbags.typesys.store import Typestore
 
 from vehicle_pf_tracker.features.errors import InputError
 
+# rosbags before 0.11 lets what a broken message causes through as it is.
+_BROKEN = (SerdeError, struct.error, ValueError, IndexError, AssertionError)
 _HEADER_TYPES = {"std_msgs/Header", "std_msgs/msg/Header", "Header"}
 
 
@@ -57,7 +59,7 @@ def deserialize(data: memoryview, type_name: str) -> Any:
     message_class(type_name)
     try:
         return _store().deserialize_cdr(data, type_name)
-    except (SerdeError, IndexError) as error:
+    except _BROKEN as error:
         raise InputError(f"a message is no valid {type_name}: {error}") from error
 
 
