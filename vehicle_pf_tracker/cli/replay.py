@@ -84,6 +84,7 @@ def run(args: argparse.Namespace) -> int:
     """Play the recording; 0 also when the user ends it with Ctrl-C."""
     if args.loop and args.output:
         return _refuse("-o needs an end, so it cannot go with --loop")
+    from vehicle_pf_tracker.ros.interruption import noted_interrupts
     from vehicle_pf_tracker.ros.replaying import NoTargetError, replay
 
     recording = Recording(args.recording, args.topic)
@@ -91,17 +92,19 @@ def run(args: argparse.Namespace) -> int:
         _tell(notice)
     if args.output:
         make_folder(args.output)
-    known = set(recording.notices)
-    with progress_view() as on_progress:
+    told = recording.notices
+    with noted_interrupts():
         try:
-            report = replay(recording, options_of(args), on_progress, _tell)
+            with progress_view() as on_progress:
+                report = replay(recording, options_of(args), on_progress, _tell)
         except NoTargetError as error:
             return _refuse(str(error))
-    for notice in (*(set(recording.notices) - known), *report.notices):
-        _tell(notice)
-    print(summary(report))
-    if args.output:
-        write_answers(args.output, report.nodes)
+        for notice in (*recording.notices, *report.notices):
+            if notice not in told:
+                _tell(notice)
+        print(summary(report), flush=True)
+        if args.output:
+            write_answers(args.output, report.nodes)
     return 0
 
 

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from rclpy.node import Node
 
+from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.topics import DIAGNOSTIC_ARRAY, IMAGE_TYPES
+from vehicle_pf_tracker.ros.spinner import Spinner
 
 _MODE = "/mode"
+_LONGEST = 3.0
+_QUIET = 1.0
+"""A search ends so many s after the last node was found."""
 
 
 def full_name(name: str) -> str:
@@ -16,29 +23,94 @@ def full_name(name: str) -> str:
     return "/" + name.strip("/")
 
 
-def tracker_nodes(node: Node) -> set[str]:
-    """Full names of all nodes that publish a `~/mode` as trackers do."""
-    return {
-        topic.removesuffix(_MODE)
-        for topic, types in node.get_topic_names_and_types()
-        if topic.endswith(_MODE)
-        and DIAGNOSTIC_ARRAY in types
-        and topic.removesuffix(_MODE) in map(_owner, node.get_publishers_info_by_topic(topic))
-    }
+class Lookout:
+    """Looks for the tracker nodes that subscribe to a topic.
 
+    Parameters
+    ----------
+    node : Node
+        The player's own node.
+    spinner : Spinner
+        Waits.
+    topic : str
+        The images' topic as published.
+    """
 
-def subscribers(node: Node, topic: str) -> set[str]:
-    """Full names of all nodes that subscribe to `topic`."""
-    return set(map(_owner, node.get_subscriptions_info_by_topic(topic)))
+    def __init__(self, node: Node, spinner: Spinner, topic: str) -> None:
+        self._node = node
+        self._spinner = spinner
+        self._topic = topic
 
+    def await_named(self, names: Iterable[str], timeout: float) -> list[str]:
+        """Wait until each of these nodes subscribes; return their full names.
 
-def image_inputs(node: Node, tracker: str) -> list[str]:
-    """Image topics that the node `tracker` subscribes to."""
-    return [
-        topic
-        for topic, types in node.get_topic_names_and_types()
-        if not set(types).isdisjoint(IMAGE_TYPES) and tracker in subscribers(node, topic)
-    ]
+        Raises
+        ------
+        InputError
+            If one does not within `timeout` s.
+        """
+        wanted = list(dict.fromkeys(map(full_name, names)))
+        for name in wanted:
+            if not self._spinner.until(self._has_subscribed(name), timeout):
+                raise InputError(
+                    f"the node {name} does not subscribe to {self._topic} after {timeout:g} s: "
+                    f"{self._inputs(name)}"
+                )
+        return wanted
+
+    def find(self, timeout: float | None = None) -> list[str]:
+        """Find all tracker nodes that subscribe.
+
+        Parameters
+        ----------
+        timeout : float or None
+            How long to look for the first in s; None takes as long as discovery usually does.
+        """
+        found: set[str] = set()
+        deadline = time.monotonic() + (timeout or _LONGEST)
+
+        def grows() -> bool:
+            now = self._trackers() & self._subscribers(self._topic)
+            is_more = not now <= found
+            found.update(now)
+            return is_more
+
+        while self._spinner.until(grows, _QUIET if found else deadline - time.monotonic()):
+            pass
+        return sorted(found)
+
+    def nobody(self) -> str:
+        """Say that no tracker node subscribes, and what those that are there subscribe to."""
+        trackers = sorted(self._trackers())
+        hint = "is one running and active?" if not trackers else self._inputs(trackers[0])
+        return f"no tracker node subscribes to {self._topic}: {hint}"
+
+    def _has_subscribed(self, name: str) -> Callable[[], bool]:
+        return lambda: name in self._subscribers(self._topic)
+
+    def _trackers(self) -> set[str]:
+        """Full names of all nodes that publish a `~/mode` as trackers do."""
+        return {
+            topic.removesuffix(_MODE)
+            for topic, types in self._node.get_topic_names_and_types()
+            if topic.endswith(_MODE)
+            and DIAGNOSTIC_ARRAY in types
+            and topic.removesuffix(_MODE)
+            in map(_owner, self._node.get_publishers_info_by_topic(topic))
+        }
+
+    def _subscribers(self, topic: str) -> set[str]:
+        return set(map(_owner, self._node.get_subscriptions_info_by_topic(topic)))
+
+    def _inputs(self, name: str) -> str:
+        inputs = [
+            topic
+            for topic, types in self._node.get_topic_names_and_types()
+            if not set(types).isdisjoint(IMAGE_TYPES) and name in self._subscribers(topic)
+        ]
+        if not inputs:
+            return f"{name} takes no images; is it running and active?"
+        return f"{name} takes images from {', '.join(inputs)}; use --remap"
 
 
 def _owner(endpoint: Any) -> str:

@@ -38,9 +38,12 @@ class Pace:
         first_ns, began = self._begin
         return began + (log_time_ns - first_ns) * 1e-9 / self._rate
 
-    def log_time_ns(self) -> int:
-        """Log time that it is now, never beyond the message that was asked for last."""
+    def log_time_ns(self) -> int | None:
+        """Log time that it is now, never beyond the message asked for last; None before the first.
+
+        Without a rate, time advances with the messages.
+        """
         if self._begin is None or self._rate is None:
-            return self._latest_ns
+            return self._latest_ns if self._begin else None
         first_ns, began = self._begin
         return min(first_ns + round((self._clock() - began) * self._rate * 1e9), self._latest_ns)

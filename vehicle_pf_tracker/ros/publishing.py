@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Any
 
 from rclpy.duration import Duration
+from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
@@ -14,7 +15,7 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.features.encodings import decode_compressed
 from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE, IMAGE
+from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.playable import Playable, PlayableTopic
 from vehicle_pf_tracker.ros.replay_options import ReplayOptions
@@ -25,27 +26,34 @@ _DEPTH = 100
 
 
 class TopicPublisher:
-    """Publishes the messages of one recorded topic.
+    """Publishes the messages of one recorded topic, reliably.
 
     Parameters
     ----------
     node : Node
         The player's own node.
-    topic : PlayableTopic
-        What was recorded.
     name : str
-        What to publish it under.
-    decompress : bool
-        Whether it carries compressed images that go out as raw ones.
+        What to publish under.
+    kind : type
+        Class of the messages.
+    convert : callable
+        Makes of the recorded bytes what is published: a message, or its bytes.
+
+    Raises
+    ------
+    InputError
+        If `name` is no name for a topic.
     """
 
-    def __init__(self, node: Node, topic: PlayableTopic, name: str, decompress: bool) -> None:
-        type_name = IMAGE if decompress else topic.type_name
-        depth = _IMAGE_DEPTH if type_name == IMAGE else _DEPTH
-        self._publisher = node.create_publisher(
-            _message_class(type_name), name, QoSProfile(depth=depth)
-        )
-        self._convert: Callable[[bytes], Any] = decompressed if decompress else bytes
+    def __init__(
+        self, node: Node, name: str, kind: type[Any], convert: Callable[[bytes], Any] = bytes
+    ) -> None:
+        qos = QoSProfile(depth=_IMAGE_DEPTH if kind is Image else _DEPTH)
+        try:
+            self._publisher = node.create_publisher(kind, name, qos)
+        except NameValidationException as error:
+            raise InputError(f"{name!r} is no topic name: {error.error_msg}") from None
+        self._convert = convert
 
     @property
     def name(self) -> str:
@@ -58,7 +66,7 @@ class TopicPublisher:
         Raises
         ------
         InputError
-            If it is a compressed image to be decompressed, but cannot be.
+            If it cannot be converted.
         """
         self._publisher.publish(self._convert(data))
 
@@ -66,7 +74,7 @@ class TopicPublisher:
         """Count the matched subscriptions."""
         return int(self._publisher.get_subscription_count())
 
-    def is_acknowledged(self, timeout: float = 0.0) -> bool:
+    def is_acknowledged(self, timeout: float) -> bool:
         """Whether every reliable subscription has all messages, waiting up to `timeout` s."""
         return bool(self._publisher.wait_for_all_acked(Duration(seconds=timeout)))
 
@@ -84,22 +92,20 @@ def make_publishers(
     Raises
     ------
     InputError
-        If a topic that is chosen or renamed is not in the recording.
+        If a topic that is chosen or renamed is not in the recording, or its new name is none.
     """
-    known = {topic.name for topic in recording.topics}
-    for name in (*options.topics, *options.remap):
-        if name not in known:
-            listed = ", ".join(sorted(known))
-            raise InputError(f"the recording {recording.path} has no topic {name}, only {listed}")
-    publishers, notices = {}, []
+    _check_names(recording, options)
+    publishers: dict[str, TopicPublisher] = {}
+    notices = []
     for topic in recording.topics:
-        if options.topics and topic.name not in options.topics:
+        if not _is_chosen(topic, options):
             continue
-        try:
-            publishers[topic.name] = _make_publisher(node, topic, options)
-        except (ImportError, AttributeError, ValueError):
-            kind = topic.type_name or "an unknown type"
-            notices.append(f"not played: {topic.name}, since {kind} is not installed here")
+        kind = _message_class(topic.type_name) if topic.is_cdr else None
+        if kind is None:
+            what = topic.type_name if topic.is_cdr and topic.type_name else "an unknown type"
+            notices.append(f"not played: {topic.name}, since {what} is not installed here")
+        else:
+            publishers[topic.name] = _make_publisher(node, topic, kind, options)
     return publishers, notices
 
 
@@ -116,15 +122,57 @@ def decompressed(data: bytes) -> Image:
     return image_message(compressed.header, frame)
 
 
-def _make_publisher(node: Node, topic: PlayableTopic, options: ReplayOptions) -> TopicPublisher:
-    if not topic.is_cdr:
-        raise ValueError(topic.name)
-    decompress = options.decompress and topic.type_name == COMPRESSED_IMAGE
-    name = topic.name.removesuffix(_SUFFIX) if decompress else topic.name
-    return TopicPublisher(node, topic, options.remap.get(topic.name, name), decompress)
+def _make_publisher(
+    node: Node, topic: PlayableTopic, kind: type[Any], options: ReplayOptions
+) -> TopicPublisher:
+    name = _final_name(topic, options)
+    if _is_decompressed(topic, options):
+        return TopicPublisher(node, name, Image, decompressed)
+    return TopicPublisher(node, name, kind)
 
 
-def _message_class(type_name: str) -> Any:
-    """Find the class of a type like ``sensor_msgs/msg/Image``."""
-    package, kind, name = type_name.split("/")
-    return getattr(import_module(f"{package}.{kind}"), name)
+def _check_names(recording: Playable, options: ReplayOptions) -> None:
+    known = {topic.name for topic in recording.topics}
+    played = {_played_name(topic, options) for topic in recording.topics}
+    unknown = {*options.topics} - known | {*options.remap} - known - played
+    if unknown:
+        raise InputError(
+            f"the recording {recording.path} has no topic {', '.join(sorted(unknown))}; "
+            f"it has {', '.join(sorted(known))}"
+        )
+    final = [
+        _final_name(topic, options) for topic in recording.topics if _is_chosen(topic, options)
+    ]
+    twice = sorted(name for name in set(final) if final.count(name) > 1)
+    if twice:
+        raise InputError(
+            f"several topics would be published as {twice[0]}; choose one with --topics"
+        )
+
+
+def _is_chosen(topic: PlayableTopic, options: ReplayOptions) -> bool:
+    return not options.topics or topic.name in options.topics
+
+
+def _is_decompressed(topic: PlayableTopic, options: ReplayOptions) -> bool:
+    return options.decompress and topic.type_name == COMPRESSED_IMAGE
+
+
+def _played_name(topic: PlayableTopic, options: ReplayOptions) -> str:
+    """Name of a topic before it is remapped."""
+    return topic.name.removesuffix(_SUFFIX) if _is_decompressed(topic, options) else topic.name
+
+
+def _final_name(topic: PlayableTopic, options: ReplayOptions) -> str:
+    name = _played_name(topic, options)
+    return options.remap.get(topic.name, options.remap.get(name, name))
+
+
+def _message_class(type_name: str) -> type[Any] | None:
+    """Find the class of a type like ``sensor_msgs/msg/Image``, None where it is not installed."""
+    package, _, name = type_name.partition("/msg/")
+    try:
+        found: type[Any] = getattr(import_module(f"{package}.msg"), name)
+    except (ImportError, AttributeError, ValueError):
+        return None
+    return found

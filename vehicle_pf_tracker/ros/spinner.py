@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import signal
-import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import Any
+from collections.abc import Callable
+from threading import Event
 
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -27,20 +24,18 @@ class Spinner:
     ----------
     node : Node
         The node; its context must outlive this object.
+    stop : Event
+        Once it is set, every wait ends with `Interrupted`.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, stop: Event) -> None:
         self._executor = SingleThreadedExecutor(context=node.context)
         self._executor.add_node(node)
-        self._interrupted = False
-
-    def interrupt(self) -> None:
-        """End the present or the next wait with `Interrupted`."""
-        self._interrupted = True
+        self._stop = stop
 
     def check(self) -> None:
         """Raise `Interrupted` if the user asked to end."""
-        if self._interrupted:
+        if self._stop.is_set():
             raise Interrupted
 
     def until(self, holds: Callable[[], bool], timeout: float | None = None) -> bool:
@@ -55,32 +50,13 @@ class Spinner:
         return True
 
     def until_time(self, moment: float) -> None:
-        """Wait until the monotonic clock shows `moment` s."""
-        self.until(lambda: time.monotonic() >= moment, moment - time.monotonic())
-        self.check()
+        """Wait until the monotonic clock shows `moment` s; one callback runs even if it is late."""
+        left = 0.0
+        while left >= 0:
+            self.check()
+            self._executor.spin_once(timeout_sec=min(max(left, 0.0), _SLICE))
+            left = moment - time.monotonic()
 
     def close(self) -> None:
         """Let go of the node."""
         self._executor.shutdown()
-
-
-@contextmanager
-def interruptible(spinner: Spinner) -> Iterator[None]:
-    """Turn SIGINT and SIGTERM into `Interrupted` at the next wait, however often they come.
-
-    Launch files send SIGINT twice; the second must not break the cleaning up. Outside of the main
-    thread, where Python allows no handlers, signals stay as they are.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def handle(*_: Any) -> None:
-        spinner.interrupt()
-
-    before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

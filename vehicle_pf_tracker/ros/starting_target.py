@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.ros.playable import Playable, PlayableMessage
 from vehicle_pf_tracker.ros.replay_options import ReplayOptions
 from vehicle_pf_tracker.ros.tracker_link import TrackerLink
@@ -26,11 +27,8 @@ def starting_target(recording: Playable, options: ReplayOptions) -> StartingTarg
     """Choose the target: the one given, else the first true box of the part that is played."""
     if options.target is not None:
         return StartingTarget(options.target)
-    if recording.first_truth() is None:
-        return None
-    first = first_image(recording, options)
-    begin_ns = 0 if first is None or first.stamp_ns is None else first.stamp_ns
     truth = recording.first_truth()
+    begin_ns = first_image(recording, options).stamp_ns or 0
     if truth is not None and truth.stamp_ns < begin_ns:
         truth = next((item for item in recording.truth() if item.stamp_ns >= begin_ns), None)
     if truth is None:
@@ -38,12 +36,25 @@ def starting_target(recording: Playable, options: ReplayOptions) -> StartingTarg
     return StartingTarget(truth.box, truth.stamp_ns if truth.stamp_ns > begin_ns else None)
 
 
-def first_image(recording: Playable, options: ReplayOptions) -> PlayableMessage | None:
-    """Read the first image of the part that is played."""
+def first_image(recording: Playable, options: ReplayOptions) -> PlayableMessage:
+    """Read the first image of the part that is played.
+
+    Raises
+    ------
+    InputError
+        If there is none in it.
+    """
     images = recording.messages(
         {recording.image_topic}, options.start_offset, options.playback_duration
     )
-    return next(images, None)
+    first = next(images, None)
+    if first is None:
+        length = (recording.end_ns - recording.start_ns) * 1e-9
+        raise InputError(
+            f"no image is in the part of {recording.path} that --start-offset and "
+            f"--playback-duration choose; it lasts {length:.1f} s"
+        )
+    return first
 
 
 class Targets:

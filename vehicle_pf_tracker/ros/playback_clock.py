@@ -1,0 +1,39 @@
+"""`/clock`: the time of the recording while it plays."""
+
+from __future__ import annotations
+
+from rclpy.clock import Clock as RosClock
+from rclpy.clock import ClockType
+from rclpy.node import Node
+from rosgraph_msgs.msg import Clock
+
+from vehicle_pf_tracker.ros.pacing import Pace
+
+
+class PlaybackClock:
+    """Publishes the log time that it is by `pace`, from the first message on.
+
+    Parameters
+    ----------
+    node : Node
+        The player's own node.
+    pace : Pace
+        Tells the log time.
+    frequency : float
+        Messages per second.
+    """
+
+    def __init__(self, node: Node, pace: Pace, frequency: float) -> None:
+        self._pace = pace
+        self._publisher = node.create_publisher(Clock, "/clock", 10)
+        steady = RosClock(clock_type=ClockType.STEADY_TIME)
+        self._timer = node.create_timer(1 / frequency, self.publish, clock=steady)
+
+    def publish(self) -> None:
+        """Publish the time now."""
+        log_time_ns = self._pace.log_time_ns()
+        if log_time_ns is None:
+            return
+        message = Clock()
+        message.clock.sec, message.clock.nanosec = divmod(log_time_ns, 1_000_000_000)
+        self._publisher.publish(message)
