@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType, IndexType
-from recording_samples import BareMcap, frame_of, stamp_of
+from recording_samples import BareMcap, frame_of, stamp_of, truth_of
 
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings import messages, topics
@@ -164,6 +164,22 @@ def test_a_cut_part_of_a_split_recording_is_named(wholes, tmp_path):
     assert "bag_0.mcap is truncated after frame" in " ".join(Recording(folder).notices)
 
 
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60)
+@given(share=st.floats(0.2, 0.999))
+def test_the_truth_of_a_cut_recording_is_whole_up_to_the_cut(record, tmp_path, share):
+    folder = tmp_path / "bag"
+    (file,) = (folder if folder.exists() else record(8, compression="none")).glob("*.mcap")
+    path = tmp_path / "cut.mcap"
+    path.write_bytes(file.read_bytes()[: int(share * file.stat().st_size)])
+    recording = Recording(path)
+    truth = recording.truth()
+    assert len(truth) in {recording.frame_count, recording.frame_count - 1}
+    assert recording.first_truth() == next(iter(truth), None)
+    for index, found in enumerate(truth):
+        assert found.stamp_ns == stamp_of(index)
+        assert found.occlusion is truth_of(index).occlusion
+
+
 def image_bag(bare_mcap, broken):
     """Ten images of which those in `broken` hold too few bytes."""
     bag = bare_mcap()
@@ -181,6 +197,7 @@ def test_a_broken_image_is_skipped_counted_and_said_once(bare_mcap):
     expected = [stamp_of(index) for index in range(10) if index not in {0, 4}]
     assert stamps(recording) == expected
     assert stamps(recording) == expected
+    assert stamps(recording, start_offset=99) == []  # an empty span is no fault
     (notice,) = recording.notices
     assert notice.startswith("unreadable images of /camera/image_raw")
     assert "skipped: 2; 0.000 s after the start" in notice

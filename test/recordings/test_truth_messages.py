@@ -12,7 +12,7 @@ from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings.truth_messages import from_messages, to_messages
+from vehicle_pf_tracker.recordings.truth_messages import TYPES, from_messages, to_messages
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 px = st.floats(-5000, 5000)
@@ -94,14 +94,20 @@ def test_broken_truth_is_named(tmp_path, broken, said):
         writer.write_image(stamp_of(0), frame_of(0))
         writer.write_truth(truth_of(0))
         for topic, message in broken.items():
-            kind = {
-                topics.TRUTH_POSITION_TOPIC: topics.POINT_STAMPED,
-                topics.TRUTH_BOX_TOPIC: topics.POLYGON_STAMPED,
-                topics.TRUTH_MODE_TOPIC: topics.DIAGNOSTIC_ARRAY,
-            }[topic]
-            writer.write(topic, kind, STAMP, message)
+            writer.write(topic, TYPES[topic], STAMP, message)
     with pytest.raises(InputError, match=f"truth of .* is broken: .*{said}"):
         Recording(tmp_path / "bag").truth()
+
+
+def test_the_first_truth_waits_for_topics_that_are_recorded_later(bare_mcap):
+    bag = bare_mcap()
+    bag.image(bag.channel(topics.IMAGE_TOPIC, topics.IMAGE), 0)
+    channels = {topic: bag.channel(topic, kind) for topic, kind in TYPES.items()}
+    for index in range(20):
+        for delay, (topic, message) in enumerate(to_messages(truth_of(index)).items()):
+            bag.add(channels[topic], stamp_of(index) + delay * 60_000_000, message, TYPES[topic])
+    recording = Recording(bag.close())
+    assert recording.first_truth() == recording.truth()[0]
 
 
 def test_truth_topics_without_messages_are_empty_truth(bare_mcap):

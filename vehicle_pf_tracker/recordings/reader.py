@@ -144,16 +144,17 @@ class Recording:
         InputError
             If no image can be read, or an option is negative or not finite.
         """
-        readable = 0
-        selected = self._select({self.image_topic}, start_offset, duration)
-        for number, (_, message) in enumerate(selected, start=1):
+        readable = unreadable = 0
+        for _, message in self._select({self.image_topic}, start_offset, duration):
             frame = self._decode_or_note(message)
             if frame is not None:
                 readable += 1
                 yield frame
-            elif readable == 0 and number == _UNREADABLE_IN_A_ROW:
+                continue
+            unreadable += 1
+            if readable == 0 and unreadable == _UNREADABLE_IN_A_ROW:
                 break
-        if self._unreadable and not readable:
+        if unreadable and not readable:
             reason = next(iter(self._unreadable.values()))
             raise InputError(f"no image of {self.image_topic} in {self.path} can be read; {reason}")
 
@@ -175,13 +176,15 @@ class Recording:
         """Read the earliest truth alone, without reading the whole recording."""
         if not self._has_truth():
             return None
-        first: list[tuple[McapIndex, Message]] = []
+        early: list[tuple[McapIndex, Message]] = []
         for found in self._select(names.TRUTH_TOPICS, 0.0, None):
             # Topics of one stamp may be recorded some time apart.
-            if first and found[1].log_time_ns > first[0][1].log_time_ns + 500_000_000:
+            if early and found[1].log_time_ns > early[0][1].log_time_ns + 500_000_000:
                 break
-            first.append(found)
-        return self._assemble(first)[0]
+            early.append(found)
+        stamps = [header_stamp_ns(message.data) or 0 for _, message in early]
+        first = [found for found, stamp in zip(early, stamps, strict=True) if stamp == min(stamps)]
+        return next(iter(self._assemble(first)), None)
 
     def messages(
         self,
@@ -242,7 +245,7 @@ class Recording:
                 yield topic, deserialize(message.data, truth_messages.TYPES[topic])
 
         try:
-            return truth_messages.from_messages(received())
+            return truth_messages.from_messages(received(), self._files[-1].is_truncated)
         except InputError as error:
             raise InputError(f"the truth of {self.path} is broken: {error}") from error
 

@@ -35,11 +35,12 @@ def to_messages(truth: Truth) -> dict[str, Any]:
     }
 
 
-def from_messages(received: Iterable[tuple[str, Any]]) -> tuple[Truth, ...]:
+def from_messages(received: Iterable[tuple[str, Any]], is_cut: bool = False) -> tuple[Truth, ...]:
     """Assemble truth from (topic, message) pairs, by stamp and in the order of the stamps.
 
     The box gives the size, the position (double precision) the centre; a frame without a mode
-    counts as not occluded.
+    counts as not occluded. Where the recording is cut (`is_cut`) the last stamp counts only if it
+    has all the topics that the first has, and the only one if it has all there are.
 
     Raises
     ------
@@ -49,7 +50,12 @@ def from_messages(received: Iterable[tuple[str, Any]]) -> tuple[Truth, ...]:
     frames: dict[int, dict[str, Any]] = defaultdict(dict)
     for topic, message in received:
         frames[messages.stamp_ns(message)][topic] = message
-    return tuple(_assemble(stamp, frames[stamp]) for stamp in sorted(frames))
+    stamps = sorted(frames)
+    if is_cut and stamps:
+        complete = frames[stamps[0]].keys() if len(stamps) > 1 else TYPES.keys()
+        if complete - frames[stamps[-1]].keys():
+            stamps.pop()
+    return tuple(_assemble(stamp, frames[stamp]) for stamp in stamps)
 
 
 def _assemble(stamp_ns: int, by_topic: dict[str, Any]) -> Truth:
