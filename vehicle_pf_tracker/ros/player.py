@@ -97,7 +97,8 @@ class Player:
         targets.begin_pass()
         begin_ns, length_ns = self._span()
         for message in self._selected():
-            targets.before(message)
+            if self._is_image(message):
+                targets.before(self._frame + 1)
             self._spinner.until_time(self._pace.due(message.log_time_ns))
             if self._publish(message) and self._is_image(message):
                 self._follow(message)

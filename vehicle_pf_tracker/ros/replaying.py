@@ -153,7 +153,7 @@ class _Replay:
                     f"the recording {self._recording.path} has no true box to start on; "
                     "give --target x,y,w,h, or --no-target to leave the nodes' targets alone"
                 )
-        return Targets(self._links, target, self._recording.image_topic)
+        return Targets(self._links, target)
 
     def _report(self, began: float, interrupted: bool) -> ReplayReport:
         return ReplayReport(

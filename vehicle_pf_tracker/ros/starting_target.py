@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.ros.playable import Playable, PlayableMessage
@@ -14,26 +16,61 @@ from vehicle_pf_tracker.ros.tracker_link import TrackerLink
 
 @dataclass(frozen=True, slots=True)
 class StartingTarget:
-    """The box to start on, and the stamp in ns of the image from which on it is known.
-
-    `stamp_ns` is None where it holds from the first image that is played.
-    """
+    """The box to start on, and the image to start in, counted from 1 in the part played."""
 
     box: Box
-    stamp_ns: int | None = None
+    frame: int = 1
 
 
 def starting_target(recording: Playable, options: ReplayOptions) -> StartingTarget | None:
-    """Choose the target: the one given, else the first true box of the part that is played."""
+    """Choose the target: the one given, else the first true box of the part that is played.
+
+    A true box is started on in the image nearest to it in time, as offline.
+
+    Returns
+    -------
+    StartingTarget or None
+        None without a target and truth.
+
+    Raises
+    ------
+    InputError
+        If no image is near the truth.
+    """
     if options.target is not None:
         return StartingTarget(options.target)
+    earliest_ns = (first_image(recording, options).stamp_ns or 0) - max_diff_ns(MAX_DIFF)
     truth = recording.first_truth()
-    begin_ns = first_image(recording, options).stamp_ns or 0
-    if truth is not None and truth.stamp_ns < begin_ns:
-        truth = next((item for item in recording.truth() if item.stamp_ns >= begin_ns), None)
+    if truth is not None and truth.stamp_ns < earliest_ns:
+        truth = next((item for item in recording.truth() if item.stamp_ns >= earliest_ns), None)
     if truth is None:
         return None
-    return StartingTarget(truth.box, truth.stamp_ns if truth.stamp_ns > begin_ns else None)
+    images = recording.messages(
+        {recording.image_topic}, options.start_offset, options.playback_duration
+    )
+    stamps = (image.stamp_ns for image in images if image.stamp_ns is not None)
+    frame = nearest_frame(stamps, truth.stamp_ns, max_diff_ns(MAX_DIFF))
+    if frame is None:
+        raise InputError(
+            f"no image that is played is within {MAX_DIFF:g} s of the first truth, "
+            f"at {truth.stamp_ns / 1e9:.3f} s; give a target with --target x,y,w,h"
+        )
+    return StartingTarget(truth.box, frame)
+
+
+def nearest_frame(stamps: Iterable[int], stamp_ns: int, limit_ns: int) -> int | None:
+    """Count the frames from 1 up to the first that is nearer to `stamp_ns` than the next.
+
+    Reads no further than one stamp beyond it; None if it is more than `limit_ns` away.
+    """
+    followed = itertools.pairwise(itertools.chain(stamps, [None]))
+    for number, (current, following) in enumerate(followed, start=1):
+        assert current is not None
+        distance = abs(current - stamp_ns)
+        is_nearest = following is None or abs(following - stamp_ns) >= distance
+        if is_nearest and distance <= limit_ns:
+            return number
+    return None
 
 
 def first_image(recording: Playable, options: ReplayOptions) -> PlayableMessage:
@@ -69,17 +106,11 @@ class Targets:
         The nodes.
     target : StartingTarget or None
         None leaves the nodes alone.
-    image_topic : str
-        The recorded topic whose stamps count.
     """
 
-    def __init__(
-        self, links: Sequence[TrackerLink], target: StartingTarget | None, image_topic: str
-    ) -> None:
+    def __init__(self, links: Sequence[TrackerLink], target: StartingTarget | None) -> None:
         self._links = links
         self._target = target
-        self._image_topic = image_topic
-        self._pending = False
         self._is_first_pass = True
 
     def begin_pass(self) -> None:
@@ -87,22 +118,16 @@ class Targets:
 
         In later passes of a loop the stamps go back, which the nodes notice by themselves.
         """
-        is_late = self._target is not None and self._target.stamp_ns is not None
-        if self._target is None or not (self._is_first_pass or is_late):
+        if self._target is None or (self._target.frame == 1 and not self._is_first_pass):
             return
         self._is_first_pass = False
-        self._pending = is_late
         for link in self._links:
-            link.set_target(None if is_late else self._target.box)
+            link.set_target(self._target.box if self._target.frame == 1 else None)
         for link in self._links:
             link.reset()
 
-    def before(self, message: PlayableMessage) -> None:
-        """Set the target right before the image that it belongs to."""
-        if not self._pending or message.topic != self._image_topic or message.stamp_ns is None:
-            return
-        assert self._target is not None and self._target.stamp_ns is not None
-        if message.stamp_ns >= self._target.stamp_ns:
-            self._pending = False
+    def before(self, frame: int) -> None:
+        """Set the target right before the image number `frame` if it is the one to start in."""
+        if self._target is not None and frame == self._target.frame > 1:
             for link in self._links:
                 link.set_target(self._target.box)
