@@ -1,0 +1,87 @@
+"""What the image features of P2 have in common: histograms of windows, and their similarity."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, TypeAlias
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient
+from vehicle_pf_tracker.features.window import Positions, Window
+
+Grey: TypeAlias = npt.NDArray[np.uint8]
+Histograms: TypeAlias = npt.NDArray[np.float64]
+
+
+class WindowFeature(ABC):
+    """A feature that describes each window by a histogram."""
+
+    bins: int
+
+    @abstractmethod
+    def histograms(self, frame: Frame, positions: Positions, window: Window) -> Histograms:
+        """Describe windows.
+
+        Parameters
+        ----------
+        frame : (H, W, 3) array
+            RGB.
+        positions : (N, 2) array
+            Window centres in px.
+        window : Window
+            Size of all windows; over the border the pixels that exist count.
+
+        Returns
+        -------
+        (N, bins) array
+            Each row sums to one, or is all zero where a window has nothing to count.
+        """
+
+    def similarity(
+        self, frame: Frame, positions: Positions, window: Window, reference: Histograms
+    ) -> npt.NDArray[np.float64]:
+        """Bhattacharyya coefficient of each window with `reference`, shape (N,), 0 to 1.
+
+        Parameters
+        ----------
+        frame, positions, window
+            As in `histograms`.
+        reference : (bins,) array
+            One histogram; all zero is similar to nothing.
+        """
+        return bhattacharyya_coefficient(self.histograms(frame, positions, window), reference)
+
+
+class CountedFeature(WindowFeature):
+    """A feature whose histograms count pixels, so that only some bins need be counted."""
+
+    @abstractmethod
+    def _counts(
+        self, frame: Frame, positions: Positions, window: Window, active: npt.NDArray[np.intp]
+    ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+        """Count the sorted `active` bins (N, K), and all bins together (N,)."""
+
+    def histograms(self, frame: Frame, positions: Positions, window: Window) -> Histograms:
+        """Describe windows; see `WindowFeature.histograms`."""
+        counts, totals = self._counts(frame, positions, window, np.arange(self.bins))
+        return np.asarray(counts / np.maximum(totals, 1)[:, np.newaxis])
+
+    def similarity(
+        self, frame: Frame, positions: Positions, window: Window, reference: Histograms
+    ) -> npt.NDArray[np.float64]:
+        """Compare windows by the bins of `reference` alone; see `WindowFeature.similarity`."""
+        active = np.flatnonzero(reference)
+        if len(active) == 0:
+            return np.zeros(len(positions))
+        counts, totals = self._counts(frame, positions, window, active)
+        overlap = np.sqrt(counts * reference[active]).sum(axis=1)
+        return np.asarray(np.minimum(overlap / np.sqrt(np.maximum(totals, 1)), 1.0))
+
+
+def to_grey(pixels: Frame) -> Grey:
+    """Grey levels of RGB pixels, shape (H, W)."""
+    return np.asarray(cv2.cvtColor(np.ascontiguousarray(pixels), cv2.COLOR_RGB2GRAY), np.uint8)
