@@ -1,0 +1,103 @@
+"""What became of the track in each total occlusion."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.evaluation.scores import FrameScore
+
+SETTLING_FRAMES = 15
+"""A track is judged from so many frames after the last hidden one."""
+FEWEST_JUDGED = 5
+"""With fewer frames than this to judge by, nothing is said."""
+CLOSE_PX = 15.0
+"""Errors below this many px count as on the vehicle, however small it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class OcclusionScore:
+    """One total occlusion.
+
+    Attributes
+    ----------
+    first_frame, last_frame : int
+        The first and the last hidden frame.
+    hidden_frames : int
+        How many frames with truth are hidden.
+    error_inside_px : float or None
+        Mean error over them.
+    judged_frames : int
+        Frames from `SETTLING_FRAMES` after `last_frame` until the next total occlusion or the end.
+    error_after_px : float or None
+        Mean error over those.
+    threshold_px : float or None
+        Mean over them of the larger of `CLOSE_PX` and half the true box's diagonal.
+    recovered : bool or None
+        Whether `error_after_px` is below `threshold_px`; None where there are fewer than
+        `FEWEST_JUDGED` frames to judge by.
+    """
+
+    first_frame: int
+    last_frame: int
+    hidden_frames: int
+    error_inside_px: float | None
+    judged_frames: int
+    error_after_px: float | None
+    threshold_px: float | None
+    recovered: bool | None
+
+
+def score_occlusions(counted: Sequence[FrameScore]) -> tuple[OcclusionScore, ...]:
+    """Judge every total occlusion in the scored frames of a recording, given in its order."""
+    stretches = list(_hidden_stretches(counted))
+    ends = [begin for begin, _ in stretches[1:]] + [len(counted)]
+    return tuple(
+        _judge(counted[begin:end], counted[end:until])
+        for (begin, end), until in zip(stretches, ends, strict=True)
+    )
+
+
+def threshold(frame: FrameScore) -> float:
+    """Error in px below which the estimate is on the vehicle."""
+    assert frame.truth is not None
+    return max(CLOSE_PX, frame.truth.box.diagonal / 2)
+
+
+def _hidden_stretches(counted: Sequence[FrameScore]) -> Iterator[tuple[int, int]]:
+    begin: int | None = None
+    for index, frame in enumerate(counted):
+        if frame.hidden and begin is None:
+            begin = index
+        if not frame.hidden and begin is not None:
+            yield begin, index
+            begin = None
+    if begin is not None:
+        yield begin, len(counted)
+
+
+def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> OcclusionScore:
+    last = hidden[-1].row.frame
+    judged = [f for f in seen if f.row.frame >= last + SETTLING_FRAMES and f.error is not None]
+    after, limit = _mean_error(judged), None
+    recovered: bool | None = None
+    if judged:
+        limit = statistics.fmean(map(threshold, judged))
+    if after is not None and limit is not None and len(judged) >= FEWEST_JUDGED:
+        recovered = after < limit
+    return OcclusionScore(
+        first_frame=hidden[0].row.frame,
+        last_frame=last,
+        hidden_frames=len(hidden),
+        error_inside_px=_mean_error(hidden),
+        judged_frames=len(judged),
+        error_after_px=after,
+        threshold_px=limit,
+        recovered=recovered,
+    )
+
+
+def _mean_error(frames: Sequence[FrameScore]) -> float | None:
+    errors = [frame.error for frame in frames if frame.error is not None]
+    return statistics.fmean(errors) if errors else None

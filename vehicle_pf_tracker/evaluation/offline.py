@@ -1,0 +1,115 @@
+"""Tracking without ROS: frames in, one row per frame out."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Any
+
+from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
+from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.recordings.truth import Truth
+from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.trackers.session import Session, SessionParameters, TargetParameters
+
+
+class OfflineTracker:
+    """One variant on one stream of frames, as its node would do it.
+
+    Parameters
+    ----------
+    variant : Variant
+        From the registry.
+    parameters : Any
+        An instance of `variant.parameters`.
+    settings : SessionParameters
+        A target in them is started on in the first frame.
+    first_truth : Truth or None
+        Without such a target: its box is started on in the frame that its stamp belongs to, and
+        the frames before are waited through.
+    max_diff : float
+        Largest difference of stamps that belong together, in s.
+
+    Attributes
+    ----------
+    session : Session
+        Drives the tracker; it knows the seed in use.
+    start_frame : int or None
+        Number of the frame that the target was first set in; None until then.
+    notices : list of str
+        What was remarkable, a sentence each.
+    """
+
+    def __init__(
+        self,
+        variant: Variant,
+        parameters: Any,
+        settings: SessionParameters | None = None,
+        *,
+        first_truth: Truth | None = None,
+        max_diff: float = MAX_DIFF,
+    ) -> None:
+        self.session = Session(variant, parameters, settings)
+        self.start_frame: int | None = None
+        self.notices: list[str] = []
+        self._first_truth = first_truth if self.session.waiting else None
+        self._limit_ns = max_diff_ns(max_diff)
+
+    def rows(self, frames: Iterable[tuple[int, Frame]]) -> Iterator[EstimateRow]:
+        """Track through (stamp in ns, frame) pairs, and give one row for each.
+
+        Raises
+        ------
+        InputError
+            If the target is none in the frame to start in, or no frame belongs to the first truth.
+        """
+        stamped = itertools.chain(frames, [None])
+        for number, (current, following) in enumerate(itertools.pairwise(stamped), start=1):
+            assert current is not None
+            if self._is_start(current[0], following[0] if following else None):
+                self._set_target()
+            yield self._row(number, *current)
+        if self._first_truth is not None:
+            raise InputError(
+                f"no image is within {self._limit_ns / 1e9:g} s of the first truth, "
+                f"at {self._first_truth.stamp_ns / 1e9:.3f} s; give a target with --target x,y,w,h"
+            )
+
+    def _is_start(self, stamp_ns: int, next_ns: int | None) -> bool:
+        """Tell whether the image at `stamp_ns` is the one nearest to the first truth."""
+        if self._first_truth is None:
+            return False
+        distance = abs(stamp_ns - self._first_truth.stamp_ns)
+        is_nearest = next_ns is None or abs(next_ns - self._first_truth.stamp_ns) >= distance
+        return distance <= self._limit_ns and is_nearest
+
+    def _set_target(self) -> None:
+        """Configure the first truth's box, so that a recording that loops starts on it again."""
+        assert self._first_truth is not None
+        settings = with_target(self.session.settings, self._first_truth.box)
+        self.session.reconfigure(self.session.tracker.parameters, settings)
+        self._first_truth = None
+
+    def _row(self, number: int, stamp_ns: int, frame: Frame) -> EstimateRow:
+        try:
+            estimate = self.session.feed(frame, stamp_ns)
+        except InputError as error:
+            if self.start_frame is None:
+                raise
+            self.notices.append(f"frame {number} was rejected: {error}")
+            return EstimateRow.without(number, stamp_ns, REJECTED)
+        self.notices += [f"frame {number}: {event}" for event in self.session.events]
+        if estimate is None:
+            return EstimateRow.without(number, stamp_ns, WAITING)
+        if self.start_frame is None:
+            self.start_frame = number
+        return EstimateRow.from_scalars(number, stamp_ns, estimate.scalars())
+
+
+def with_target(settings: SessionParameters, box: Box) -> SessionParameters:
+    """Return `settings` with the target `box`."""
+    return replace(settings, target=TargetParameters(box.x, box.y, box.width, box.height))

@@ -1,0 +1,170 @@
+"""Pictures of runs, readable in grey and for colour-blind eyes."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from matplotlib.patheffects import Normal, Stroke
+
+from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
+from vehicle_pf_tracker.evaluation.output_files import replacing
+from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
+from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.recordings.truth import Occlusion
+
+
+class _Style(NamedTuple):
+    colour: str
+    line: str | tuple[int, tuple[int, ...]]
+    marker: str
+
+
+# The colours are Okabe and Ito's. Lines tell series apart over time; in the path, where a dashed
+# line means hidden, markers do.
+_STYLES = (
+    _Style("#0072B2", "-", "o"),
+    _Style("#D55E00", "--", "s"),
+    _Style("#009E73", "-.", "^"),
+    _Style("#CC79A7", ":", "D"),
+    _Style("#E69F00", (0, (5, 1, 1, 1, 1, 1)), "v"),
+    _Style("#56B4E9", (0, (8, 2)), "P"),
+)
+_SHADES = {Occlusion.PARTIAL: ("0.93", "partly hidden"), Occlusion.TOTAL: ("0.78", "hidden")}
+_LEAST_ERROR = 0.1
+"""Errors below this, in px, are drawn at the foot of the logarithmic scale."""
+_MARKER_EVERY = 20
+_DPI = 150
+
+
+def error_figure(runs: Mapping[str, Scores], title: str = "") -> Figure:
+    """Draw the error over time, with the occlusions shaded.
+
+    Parameters
+    ----------
+    runs : mapping of str to Scores
+        Runs on one recording, by the name in the legend.
+    title : str
+        Stands over the figure.
+    """
+    figure = Figure(figsize=(9, 4), layout="constrained")
+    axes = figure.add_subplot()
+    for scores in itertools.islice(runs.values(), 1):
+        _shade_occlusions(axes, scores)
+    for (name, scores), style in zip(runs.items(), itertools.cycle(_STYLES), strict=False):
+        drawn = [(f.row.frame, f.error) for f in scores.counted]
+        errors = [float("nan") if e is None else max(e, _LEAST_ERROR) for _, e in drawn]
+        frames = [number for number, _ in drawn]
+        axes.plot(frames, errors, color=style.colour, linestyle=style.line, lw=1.6, label=name)
+    axes.axhline(CLOSE_PX, color="0.35", lw=0.8, ls=(0, (1, 2)), label=f"{CLOSE_PX:g} px")
+    axes.set(xlabel="frame", ylabel="error of the centre, px", yscale="log", title=title)
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.margins(x=0.01)
+    axes.grid(axis="y", color="0.88", lw=0.6)
+    axes.set_axisbelow(True)
+    figure.legend(loc="outside lower center", ncols=6, frameon=False)
+    return figure
+
+
+def path_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Figure:
+    """Draw the true and the estimated paths over a frame, dashed where the vehicle is hidden.
+
+    Parameters
+    ----------
+    frame : (H, W, 3) array
+        RGB.
+    runs : mapping of str to Scores
+        Runs on one recording, by the name in the legend.
+    title : str
+        Stands over the figure.
+    """
+    width, height = frame_size(frame)
+    figure = Figure(figsize=(9, 9 * height / width + 0.8), layout="constrained")
+    axes = figure.add_subplot()
+    axes.imshow(frame, extent=(0, width, height, 0))
+    for (name, scores), style in zip(runs.items(), itertools.cycle(_STYLES), strict=False):
+        estimated = [(f.row.position, f.hidden) for f in scores.frames]
+        _draw_path(axes, estimated, name, style.colour, style.marker)
+    for scores in itertools.islice(runs.values(), 1):
+        true = [(f.truth.box.centre if f.truth else None, f.hidden) for f in scores.frames]
+        _draw_path(axes, true, "truth", "black", "")
+        _draw_first_box(axes, scores)
+    axes.set(xlim=(0, width), ylim=(height, 0), xlabel="x, px", ylabel="y, px", title=title)
+    figure.legend(loc="outside lower center", ncols=6, frameon=False)
+    return figure
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write `figure` to the file `path`, whose suffix names the format.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    with replacing(path) as partial:
+        figure.savefig(partial, dpi=_DPI)
+
+
+def _shade_occlusions(axes: Axes, scores: Scores) -> None:
+    for occlusion, (shade, label) in _SHADES.items():
+        for index, (first, last) in enumerate(_stretches(scores.frames, occlusion)):
+            shown = None if index else label
+            axes.axvspan(first - 0.5, last + 0.5, color=shade, lw=0, label=shown)
+
+
+def _stretches(frames: Sequence[FrameScore], occlusion: Occlusion) -> Iterator[tuple[int, int]]:
+    """First and last frame of each stretch with this occlusion."""
+    grouped = itertools.groupby(
+        frames, lambda frame: frame.truth is not None and frame.truth.occlusion is occlusion
+    )
+    for found, group in grouped:
+        if found:
+            numbers = [frame.row.frame for frame in group]
+            yield numbers[0], numbers[-1]
+
+
+def _draw_path(
+    axes: Axes,
+    points: Sequence[tuple[tuple[float, float] | None, bool]],
+    name: str,
+    colour: str,
+    marker: str,
+) -> None:
+    """Draw a path solid where it is seen and dashed where hidden; None breaks it."""
+    outline = [Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal()]
+    for hidden, line in _lines(points):
+        xs, ys = zip(*line, strict=True)
+        style = (0, (2, 1.4)) if hidden else "-"
+        axes.plot(xs, ys, color=colour, lw=1.7, ls=style, path_effects=outline)
+    marks = [point for point, _ in points[::_MARKER_EVERY] if point is not None]
+    xs, ys = zip(*marks, strict=True) if marks and marker else ((), ())
+    axes.plot(xs, ys, ls="", color=colour, marker=marker, ms=6, mec="white", mew=0.8)
+    axes.plot([], [], color=colour, marker=marker, ms=6, mec="white", mew=0.8, label=name)
+
+
+def _lines(
+    points: Sequence[tuple[tuple[float, float] | None, bool]],
+) -> Iterator[tuple[bool, list[tuple[float, float]]]]:
+    """Stretches of one kind, each begun where the one before ended so that no gap shows."""
+    last: tuple[float, float] | None = None
+    for (hidden, gap), group in itertools.groupby(points, lambda p: (p[1], p[0] is None)):
+        if gap:
+            last = None
+            continue
+        line = [point for point, _ in group if point is not None]
+        yield hidden, [last, *line] if last is not None else line
+        last = line[-1]
+
+
+def _draw_first_box(axes: Axes, scores: Scores) -> None:
+    box = next((f.truth.box for f in scores.counted if f.truth is not None), None)
+    if box is not None:
+        axes.add_patch(
+            Rectangle((box.x, box.y), box.width, box.height, fill=False, ec="black", lw=1.2)
+        )
