@@ -1,0 +1,110 @@
+"""The facts that package.xml, setup.py, the locks and the code state in common."""
+
+import re
+import runpy
+import sys
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+import setuptools
+
+import vehicle_pf_tracker
+from vehicle_pf_tracker.ros import executables
+from vehicle_pf_tracker.trackers.registry import VARIANTS
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def described(monkeypatch, *command):
+    """The arguments of setup() when setup.py is run with this command."""
+    arguments = {}
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setattr(sys, "argv", ["setup.py", *command])
+    monkeypatch.setattr(setuptools, "setup", arguments.update)
+    runpy.run_path("setup.py", run_name="__main__")
+    return arguments
+
+
+@pytest.fixture
+def setup(monkeypatch):
+    return described(monkeypatch, "bdist_wheel")
+
+
+@pytest.fixture
+def package():
+    return ET.parse(ROOT / "package.xml").getroot()
+
+
+def locked(name, *, marked=True):
+    """(name, version) of each pin in a lock file, with or without those for some Pythons only."""
+    lines = (ROOT / "requirements" / f"{name}.txt").read_text().splitlines()
+    pins = [line for line in lines if "==" in line and (marked or ";" not in line)]
+    return {tuple(pin.partition(";")[0].strip().lower().split("==")) for pin in pins}
+
+
+def test_name_version_and_licence_are_the_same_everywhere(setup, package):
+    version = package.findtext("version")
+    assert setup["version"] == vehicle_pf_tracker.__version__ == version
+    assert re.search(rf"^{re.escape(version)}\n-+$", (ROOT / "CHANGELOG.rst").read_text(), re.M)
+    assert package.findtext("name") == setup["name"] == vehicle_pf_tracker.__name__
+    assert package.findtext("license") == setup["license"] == "Apache-2.0"
+    assert "Apache License" in (ROOT / package.find("license").get("file")).read_text()
+
+
+def test_every_registered_variant_has_an_executable(setup):
+    scripts = dict(line.split(" = ") for line in setup["entry_points"]["console_scripts"])
+    nodes = {name: target for name, target in scripts.items() if name.endswith("_tracker")}
+    assert nodes == {
+        f"{variant}_tracker": f"vehicle_pf_tracker.ros.executables:{variant}_tracker"
+        for variant in VARIANTS
+    }
+    for target in nodes.values():
+        assert callable(getattr(executables, target.partition(":")[2]))
+
+
+def test_executables_are_installed_where_ros2_run_looks():
+    text = (ROOT / "setup.cfg").read_text()
+    assert text.count("scripts=$base/lib/vehicle_pf_tracker") == 1
+    assert text.count("script_dir=$base/lib/vehicle_pf_tracker") == 1
+
+
+@pytest.mark.parametrize("command", [("install",), ("egg_info", "build", "install"), ("develop",)])
+def test_a_build_for_ros_leaves_the_libraries_to_apt(monkeypatch, command):
+    assert described(monkeypatch, *command)["install_requires"] == []
+
+
+@pytest.mark.parametrize("command", ["bdist_wheel", "editable_wheel", "dist_info", "egg_info"])
+def test_pip_installs_the_libraries(monkeypatch, command):
+    names = {
+        re.match(r"[\w-]+", line)[0] for line in described(monkeypatch, command)["install_requires"]
+    }
+    assert {"numpy", "opencv-python-headless", "mcap", "rosbags", "PyYAML"} <= names
+
+
+def test_the_ros_extra_is_locked_at_the_same_versions(setup):
+    pins = {
+        (re.match(r"[\w-]+", line)[0], re.search(r"==([\d.]+);", line)[1])
+        for line in setup["extras_require"]["ros"]
+    }
+    assert pins <= locked("ros-jazzy")
+
+
+@pytest.mark.parametrize("environment", [("locked", "ros-jazzy", "colcon"), ("noble", "ros-jazzy")])
+def test_no_package_is_locked_in_two_versions(environment):
+    names = [name for name, _ in set().union(*(locked(part, marked=False) for part in environment))]
+    assert sorted(names) == sorted(set(names))
+
+
+def test_ubuntu_noble_is_tried_with_its_own_numpy_and_opencv():
+    assert {("numpy", "1.26.4"), ("opencv-python-headless", "4.6.0.66")} <= locked("noble")
+
+
+def test_package_xml_names_the_message_packages_that_the_code_imports(package):
+    source = "\n".join(path.read_text() for path in (ROOT / "vehicle_pf_tracker").rglob("*.py"))
+    messages = set(
+        re.findall(r"^\s*(?:from|import) (\w+_msgs|\w+_interfaces|\w+_srvs)\b", source, re.M)
+    )
+    stated = {depend.text for depend in package.findall("exec_depend")}
+    assert messages <= stated
+    assert "rclpy" in stated

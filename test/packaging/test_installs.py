@@ -1,0 +1,162 @@
+"""Every way to install the package, tried for real: the code and its files are found in each."""
+
+import os
+import shutil
+import subprocess
+import sys
+import venv
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+import setuptools
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).resolve().parents[2]
+SHARE = Path("share", "vehicle_pf_tracker")
+EXECUTABLES = {"vehicle-pf-tracker", "bag_replay", "apf_tracker", "pf_tracker"}
+ASK = """
+import vehicle_pf_tracker
+from vehicle_pf_tracker.cli.config_files import config_path
+print(vehicle_pf_tracker.__file__)
+print(config_path("trial"))
+"""
+
+needs_colcon = pytest.mark.skipif(
+    find_spec("colcon_core") is None, reason="needs colcon: `make .venv/colcon`"
+)
+
+
+def run(*command, cwd, **variables):
+    """Run a command away from the checkout and from any ROS workspace; its standard output."""
+    hidden = {"AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "PYTHONPATH", "PYTHONUSERBASE", "COLCON"}
+    env = {name: value for name, value in os.environ.items() if name not in hidden}
+    env.update({name: str(value) for name, value in variables.items()})
+    done = subprocess.run(
+        list(map(str, command)), cwd=cwd, env=env, text=True, capture_output=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def pip(*words, cwd, python=None, **variables):
+    where = ["--python", python] if python else []
+    quiet = ["--quiet", "--disable-pip-version-check"]
+    return run(sys.executable, "-m", "pip", *where, *quiet, *words, cwd=cwd, **variables)
+
+
+def asked(python, cwd, **variables):
+    """Where this Python finds the package and the file config/trial.yaml."""
+    code, config = run(python, "-c", ASK, cwd=cwd, **variables).splitlines()
+    return Path(code), Path(config)
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory):
+    """A copy of the checkout with one more parameter file, which no other install can have."""
+    copy = tmp_path_factory.mktemp("source") / "vehicle_pf_tracker"
+    unwanted = (".*", "build", "install", "log", "results", "*.egg-info", "__pycache__", "test")
+    shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(*unwanted))
+    (copy / "config").mkdir(exist_ok=True)
+    (copy / "config" / "trial.yaml").write_text("/**:\n  ros__parameters: {}\n")
+    return copy
+
+
+@pytest.fixture(scope="module")
+def wheel(source, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("wheel")
+    pip("wheel", "--no-deps", "--no-build-isolation", "-w", folder, source, cwd=folder)
+    return next(folder.glob("*.whl"))
+
+
+def bare(folder, *, system_site_packages=False):
+    """A Python that has nothing installed."""
+    venv.create(folder, system_site_packages=system_site_packages, symlinks=True)
+    return folder / "bin" / "python"
+
+
+def test_pip(wheel, tmp_path):
+    python = bare(tmp_path / "env")
+    pip("install", "--no-deps", wheel, cwd=tmp_path, python=python)
+    code, config = asked(python, tmp_path)
+    assert code.is_relative_to(tmp_path / "env" / "lib")
+    assert config == tmp_path / "env" / SHARE / "config" / "trial.yaml"
+    assert {path.name for path in (tmp_path / "env" / "bin").iterdir()} >= EXECUTABLES
+    assert_share_is_complete(tmp_path / "env")
+
+
+def test_pip_target(wheel, tmp_path):
+    python = bare(tmp_path / "env")
+    pip("install", "--no-deps", "--target", tmp_path / "lib", wheel, cwd=tmp_path)
+    _, config = asked(python, tmp_path, PYTHONPATH=tmp_path / "lib")
+    assert config == tmp_path / "lib" / SHARE / "config" / "trial.yaml"
+
+
+def test_pip_user(wheel, tmp_path):
+    python = bare(tmp_path / "env", system_site_packages=True)
+    home = {"PYTHONUSERBASE": tmp_path / "home"}
+    pip("install", "--no-deps", "--user", "--ignore-installed", wheel,
+        cwd=tmp_path, python=python, **home)  # fmt: skip
+    _, config = asked(python, tmp_path, **home)
+    assert config == tmp_path / "home" / SHARE / "config" / "trial.yaml"
+
+
+def test_pip_editable(source, tmp_path):
+    python = bare(tmp_path / "env")
+    builder = {"PYTHONPATH": Path(setuptools.__file__).parents[1]}
+    pip("install", "--no-deps", "--no-build-isolation", "--ignore-installed", "--editable", source,
+        cwd=tmp_path, python=python, **builder)  # fmt: skip
+    code, config = asked(python, tmp_path)
+    assert code == source / "vehicle_pf_tracker" / "__init__.py"
+    assert config == source / "config" / "trial.yaml"
+    assert {path.name for path in (tmp_path / "env" / "bin").iterdir()} >= EXECUTABLES
+
+
+@needs_colcon
+def test_colcon(source, tmp_path):
+    prefix = colcon_build(source, tmp_path)
+    code, config = asked_in_workspace(tmp_path)
+    assert code.is_relative_to(prefix / "lib")
+    assert config == prefix / SHARE / "config" / "trial.yaml"
+    assert_share_is_complete(prefix)
+    assert_ros_finds(prefix)
+
+
+@needs_colcon
+def test_colcon_symlink_install(source, tmp_path):
+    prefix = colcon_build(source, tmp_path, "--symlink-install")
+    code, config = asked_in_workspace(tmp_path)
+    assert code.resolve() == source / "vehicle_pf_tracker" / "__init__.py"
+    assert config.resolve() == source / "config" / "trial.yaml"
+    assert_share_is_complete(prefix)
+    assert_ros_finds(prefix)
+
+
+def colcon_build(source, workspace, *options):
+    colcon = Path(sys.executable).with_name("colcon")
+    run(colcon, "build", "--paths", source, *options, cwd=workspace)
+    return workspace / "install" / "vehicle_pf_tracker"
+
+
+def asked_in_workspace(workspace):
+    """Where a shell that sourced the workspace finds the package and its parameter file."""
+    command = '. install/setup.sh && exec "$0" -c "$1"'
+    code, config = run("sh", "-c", command, sys.executable, ASK, cwd=workspace).splitlines()
+    return Path(code), Path(config)
+
+
+def assert_share_is_complete(prefix):
+    marker = prefix / "share" / "ament_index" / "resource_index" / "packages" / SHARE.name
+    files = {str(path.relative_to(prefix / SHARE)) for path in (prefix / SHARE).rglob("*.*")}
+    assert marker.is_file()
+    assert {"package.xml", "launch/tracker.launch.py", "launch/replay.launch.py"} <= files
+
+
+def assert_ros_finds(prefix):
+    """`ros2 run` lists lib/<package>; what it starts must not ask for pip's name of a library."""
+    folder = prefix / "lib" / "vehicle_pf_tracker"
+    assert {path.name for path in folder.iterdir() if os.access(path, os.X_OK)} == EXECUTABLES
+    stated = "import pkg_resources as p; print(p.get_distribution('vehicle_pf_tracker').requires())"
+    command = f'. {prefix.parent}/setup.sh && exec "$0" -W ignore -c "$1"'
+    assert run("sh", "-c", command, sys.executable, stated, cwd=prefix).strip() == "[]"
