@@ -1,0 +1,116 @@
+"""What the colour particle filters share: one first reference, Normal diffusion, the mean.
+
+`pf`, `sapf`, `hpfms` and `pfcl` (the particle filters that P1 compares itself with) differ in how
+they bring particles to the vehicle. All hold windows against the histogram of the first frame, and
+none has an occlusion branch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from vehicle_pf_tracker.features.colour import Histogram
+from vehicle_pf_tracker.features.colour_kernel import joint_similarity
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.similarity import hellinger_distance
+from vehicle_pf_tracker.filtering.motion import sample_normal
+from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
+from vehicle_pf_tracker.trackers.contract import ParticleParameters
+from vehicle_pf_tracker.trackers.estimate import Array
+from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
+from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.parameters import group, parameter
+
+VELOCITY_WINDOW = 8
+"""Displacements in the reported velocity, where the filter itself does not use it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ColourParameters(ParticleParameters):
+    """What every colour particle filter has."""
+
+    sigma: float = parameter(
+        8.0,
+        "About the vehicle's speed: less loses fast vehicles, more follows look-alikes.",
+        minimum=0.01,
+        maximum=1000.0,
+        unit="px/frame",
+        source="P1 eq. 7",
+    )
+    histogram_bits: int = parameter(
+        3,
+        "More: finer colours, more easily upset by light and noise.",
+        minimum=1,
+        maximum=5,
+        unit="bits/channel",
+        source="P1 section III-C",
+        effect="relearns",
+    )
+    resampling: str = parameter(
+        "multinomial",
+        "How ancestors are drawn; systematic and stratified vary less.",
+        choices=SCHEMES,
+        source="P1 Algorithm 2",
+    )
+    # 0.158 is Perez's lambda of 20.
+    likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.158)
+
+
+ColourParametersT = TypeVar("ColourParametersT", bound=ColourParameters)
+
+
+class ColourTracker(ParticleTracker[ColourParametersT]):
+    """The steps of a colour particle filter, for `_advance` to put in order."""
+
+    def __init__(self, parameters: ColourParametersT) -> None:
+        super().__init__(parameters)
+        self._reference: Histogram = np.zeros(0)
+        self._velocity = MeanVelocity(VELOCITY_WINDOW)
+        self._position = (0.0, 0.0)
+
+    def _learn(self) -> None:
+        self._reference = self.target.joint_histogram(self.window, self.parameters.histogram_bits)
+
+    def _scatter(self, centre: tuple[float, float]) -> Array:
+        self._velocity, self._position = MeanVelocity(VELOCITY_WINDOW), centre
+        settings = self.parameters
+        return np.asarray(centre) + sample_normal(self._rng, settings.num_particles, settings.sigma)
+
+    def _resample(self, cloud: Cloud) -> Array:
+        """Draw the positions that the next particles come from."""
+        scheme = SCHEMES[self.parameters.resampling]
+        return cloud.positions[scheme(cloud.weights, self.parameters.num_particles, self._rng)]
+
+    def _diffuse(self, frame: Frame, parents: Array, sigma: float) -> tuple[Array, bool]:
+        """Propagate with a Normal density (P1 eq. 7); returns as `_move` does."""
+        return self._move(frame, parents, sample_normal(self._rng, len(parents), sigma))
+
+    def _similarity(self, frame: Frame, positions: Array) -> Array:
+        """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
+        bits = self.parameters.histogram_bits
+        return joint_similarity(frame, positions, self.window, self._reference, bits)
+
+    def _report(
+        self, frame: Frame, cloud: Cloud, elapsed: float, *, left_image: bool, passes: int = 1
+    ) -> Outcome:
+        """Take the cloud's mean as the estimate, with the similarity there as evidence."""
+        position = cloud.mean()
+        coefficient = self._similarity(frame, np.asarray([position]))
+        similarity = float(1.0 - hellinger_distance(coefficient)[0])
+        self._velocity.add(self._position, position, elapsed)
+        self._position = position
+        return Outcome(
+            cloud,
+            position,
+            self._velocity.value,
+            "regular",
+            similarity,
+            {"pi": similarity},
+            resampling_passes=passes,
+            resampled_particles=passes * len(cloud.weights),
+            left_image=left_image,
+        )
