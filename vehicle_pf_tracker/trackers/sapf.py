@@ -1,0 +1,84 @@
+"""`sapf`: the annealed particle filter of Deutscher et al. 2000 (P1's [10]).
+
+Each frame is searched in layers. The first spreads its particles wide and weights them softly, so
+that no early maximum takes all; every next layer resamples, spreads less, and weights so that the
+wanted share of particles survives. It has no occlusion branch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.filtering.annealing import annealing_rate
+from vehicle_pf_tracker.filtering.weights import from_log
+from vehicle_pf_tracker.trackers.base import Cloud, Outcome
+from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.likelihood import log_likelihood
+from vehicle_pf_tracker.trackers.parameters import group, parameter
+
+
+@dataclass(frozen=True, slots=True)
+class AnnealingParameters:
+    """The layers of one frame's search."""
+
+    layers: int = parameter(
+        4,
+        "More: the search narrows in smaller steps, at the time of num_particles each.",
+        minimum=1,
+        maximum=50,
+        source="Deutscher 2000 section 3",
+    )
+    survival: float = parameter(
+        0.5,
+        "Lower: each layer keeps fewer particles, and settles on a maximum sooner.",
+        minimum=0.01,
+        maximum=1.0,
+        unit="share of the particles",
+        source="Deutscher 2000 section 3 (alpha)",
+    )
+    decay: float = parameter(
+        0.6,
+        "Lower: later layers spread their particles less.",
+        minimum=0.01,
+        maximum=1.0,
+        unit="of the layer before",
+        source="Deutscher 2000 section 3 (alpha_M ... alpha_m scales the diffusion)",
+    )
+    largest_rate: float = parameter(
+        1.0,
+        "Higher: layers may weight more sharply than the likelihood, to let fewer survive.",
+        minimum=0.01,
+        maximum=1e6,
+        source="Deutscher 2000 section 3 (beta)",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class SapfParameters(ColourParameters):
+    """Parameters of `sapf`."""
+
+    num_particles: int = parameter(
+        50,
+        "Particles of each layer; more: steadier estimates, at more time per frame.",
+        minimum=1,
+        maximum=100_000,
+    )
+    annealing: AnnealingParameters = group(AnnealingParameters)
+
+
+class SapfTracker(ColourTracker[SapfParameters]):
+    """The annealed particle filter; the resampling after the last layer opens the next frame."""
+
+    def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        settings, annealing = self.parameters, self.parameters.annealing
+        cloud, sigma = self._cloud, settings.sigma * elapsed
+        left_image = False
+        for _ in range(annealing.layers):
+            particles, left_image = self._diffuse(frame, self._resample(cloud), sigma)
+            rho = self._similarity(frame, particles)
+            log_weights = log_likelihood(rho, settings.likelihood)
+            beta = annealing_rate(log_weights, annealing.survival, annealing.largest_rate)
+            cloud = Cloud(particles, *from_log(beta * log_weights))
+            sigma *= annealing.decay
+        return self._report(frame, cloud, elapsed, left_image=left_image, passes=annealing.layers)
