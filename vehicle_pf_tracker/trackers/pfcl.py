@@ -1,0 +1,103 @@
+"""`pfcl`: colour and line features, after Xiong and Debrunner 2004 (P1's [18]).
+
+A colour particle filter whose likelihood is multiplied with that of the straight edge segments in
+the window: a particle must have the vehicle's colours and its line directions. It has no occlusion
+branch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.lines import LineDetector, line_histograms
+from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient
+from vehicle_pf_tracker.features.window import bounds
+from vehicle_pf_tracker.filtering.weights import from_log
+from vehicle_pf_tracker.trackers.base import Cloud, Outcome
+from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.estimate import Array
+from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters, log_likelihood
+from vehicle_pf_tracker.trackers.parameters import group, parameter
+
+
+@dataclass(frozen=True, slots=True)
+class LineParameters:
+    """What counts as a line, and how much lines count."""
+
+    sigma_v: float = parameter(
+        0.35,
+        "Smaller: weights fall faster as a particle's lines depart from the reference.",
+        minimum=1e-3,
+        maximum=100.0,
+        source="READINGS 3",
+    )
+    bins: int = parameter(
+        8,
+        "More: finer directions, more easily upset by noise.",
+        minimum=1,
+        maximum=90,
+        unit="bins over 180 degrees",
+        effect="relearns",
+    )
+    edge_threshold: float = parameter(
+        150.0,
+        "Higher: only edges of more contrast make lines.",
+        minimum=1.0,
+        maximum=2000.0,
+        unit="levels of 255",
+        effect="relearns",
+    )
+    shortest: int = parameter(
+        6,
+        "Higher: short lines, and the noise among them, are left out.",
+        minimum=2,
+        maximum=1000,
+        unit="px",
+        effect="relearns",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class PfclParameters(ColourParameters):
+    """Parameters of `pfcl`."""
+
+    lines: LineParameters = group(LineParameters)
+
+
+class PfclTracker(ColourTracker[PfclParameters]):
+    """The colour and line filter."""
+
+    def __init__(self, parameters: PfclParameters) -> None:
+        super().__init__(parameters)
+        self._line_reference: Array = np.zeros(1)
+
+    def _learn(self) -> None:
+        super()._learn()
+        centre = np.asarray([self.target.centre])
+        self._line_reference = self._line_histograms(self.target.patch, centre)[0]
+
+    def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        settings = self.parameters
+        parents = self._resample(self._cloud)
+        particles, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)
+        colour = log_likelihood(self._similarity(frame, particles), settings.likelihood)
+        lines = log_likelihood(
+            self._line_similarity(frame, particles), LikelihoodParameters(settings.lines.sigma_v)
+        )
+        cloud = Cloud(particles, *from_log(colour + lines))
+        return self._report(frame, cloud, elapsed, left_image=left_image)
+
+    def _line_similarity(self, frame: Frame, positions: Array) -> Array:
+        """Bhattacharyya coefficient of each window's lines with the reference's, shape (N,)."""
+        if not self._line_reference.any():
+            return np.ones(len(positions))  # A target without lines is like every window.
+        histograms = self._line_histograms(frame, positions)
+        return bhattacharyya_coefficient(histograms, self._line_reference)
+
+    def _line_histograms(self, frame: Frame, positions: Array) -> Array:
+        settings, windows = self.parameters.lines, bounds(frame, positions, self.window)
+        detector = LineDetector(settings.edge_threshold, settings.shortest)
+        return line_histograms(detector.detect(frame, windows), windows, settings.bins)
