@@ -11,7 +11,11 @@ from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.apf import ApfTracker
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
 from vehicle_pf_tracker.trackers.base import BaseTracker
+from vehicle_pf_tracker.trackers.hpfms import HpfmsParameters, HpfmsTracker
+from vehicle_pf_tracker.trackers.ms import MsParameters, MsTracker
 from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
+from vehicle_pf_tracker.trackers.pfcl import PfclParameters, PfclTracker
+from vehicle_pf_tracker.trackers.sapf import SapfParameters, SapfTracker
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +43,30 @@ VARIANTS: Mapping[str, Variant] = MappingProxyType(
                 PfTracker,
                 PfParameters,
                 "colour particle filter (Perez et al. 2002)",
+            ),
+            Variant(
+                "sapf",
+                SapfTracker,
+                SapfParameters,
+                "annealed particle filter (Deutscher et al. 2000)",
+            ),
+            Variant(
+                "hpfms",
+                HpfmsTracker,
+                HpfmsParameters,
+                "few particles refined by mean shift (Maggio and Cavallaro 2005)",
+            ),
+            Variant(
+                "pfcl",
+                PfclTracker,
+                PfclParameters,
+                "colour and straight lines (Xiong and Debrunner 2004)",
+            ),
+            Variant(
+                "ms",
+                MsTracker,
+                MsParameters,
+                "mean shift, without particles (Comaniciu et al. 2003)",
             ),
         )
     }
