@@ -2,11 +2,7 @@
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
-from launch.substitutions import (
-    EnvironmentVariable,
-    LaunchConfiguration,
-    PathJoinSubstitution,
-)
+from launch.substitutions import EnvironmentVariable, LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
@@ -23,9 +19,7 @@ ALLOCATOR = {
 def generate_launch_description() -> LaunchDescription:
     variant = LaunchConfiguration("variant")
     image_topic = LaunchConfiguration("image_topic")
-    default_params = PathJoinSubstitution(
-        [FindPackageShare("vehicle_pf_tracker"), "config", [variant, ".yaml"]]
-    )
+    default_params = [FindPackageShare("vehicle_pf_tracker"), "/config/", variant, ".yaml"]
     return LaunchDescription(
         [
             DeclareLaunchArgument("variant", default_value="apf", description="Tracker to run"),

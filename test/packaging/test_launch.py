@@ -12,7 +12,7 @@ pytest.importorskip("launch_ros.actions", exc_type=ImportError)
 from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, ExecuteProcess
 from launch.launch_description_sources import get_launch_description_from_python_launch_file
-from launch.utilities import perform_substitutions
+from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch_ros.actions import Node
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -20,11 +20,15 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(autouse=True)
 def share(monkeypatch, tmp_path):
-    """A workspace whose share folder is this checkout."""
+    """A workspace whose share folder is this checkout, and whose executables are empty."""
     marker = tmp_path / "share" / "ament_index" / "resource_index" / "packages"
     marker.mkdir(parents=True)
     (marker / "vehicle_pf_tracker").touch()
     (tmp_path / "share" / "vehicle_pf_tracker").symlink_to(ROOT)
+    executables = tmp_path / "lib" / "vehicle_pf_tracker"
+    executables.mkdir(parents=True)
+    for name in ("apf_tracker", "pf_tracker", "bag_replay"):
+        (executables / name).touch(mode=0o755)
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
     return tmp_path / "share" / "vehicle_pf_tracker"
 
@@ -50,7 +54,7 @@ def visit(entity, context, nodes):
 
 
 def text(context, value):
-    return perform_substitutions(context, value if isinstance(value, list) else [value])
+    return perform_substitutions(context, normalize_to_list_of_substitutions(value))
 
 
 def command(context, node):
