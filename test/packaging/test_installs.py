@@ -11,11 +11,13 @@ from pathlib import Path
 import pytest
 import setuptools
 
+from vehicle_pf_tracker.trackers.registry import VARIANTS
+
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARE = Path("share", "vehicle_pf_tracker")
-EXECUTABLES = {"vehicle-pf-tracker", "bag_replay", "apf_tracker", "pf_tracker"}
+EXECUTABLES = {"vehicle-pf-tracker", "bag_replay", *(f"{name}_tracker" for name in VARIANTS)}
 ASK = """
 import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.config_files import config_path
