@@ -6,14 +6,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 NAME = "vehicle_pf_tracker"
-VARIANTS = (
-    "apf",
-    "pf",
-    "sapf",
-    "hpfms",
-    "pfcl",
-    "ms",
-)  # a test holds this equal to the registry in trackers/registry.py
+VARIANTS = ("apf", "pf", "sapf", "hpfms", "pfcl", "ms")  # those of trackers/registry.py
 JAZZY_WHEELS = "sys_platform == 'linux' and platform_machine == 'x86_64'"
 
 RUNTIME = [
