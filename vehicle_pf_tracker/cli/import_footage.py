@@ -1,0 +1,43 @@
+"""`import`: a video file or a frame folder becomes a recording."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from vehicle_pf_tracker.cli.console import tell_notices
+from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.recordings.importing import FORMATS, import_recording
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of this verb."""
+    add = parser.add_argument
+    add(
+        "source", type=Path, metavar="SRC",
+        help="video file, or folder with img/, and groundtruth.csv where truth is known",
+    )  # fmt: skip
+    add("out", type=Path, metavar="OUT", help="rosbag2 folder to make")
+    add(
+        "--format", choices=FORMATS,
+        help="how images are kept (default: JPEG files as they are, everything else raw)",
+    )  # fmt: skip
+    add("--overwrite", action="store_true", help="replace a recording that is there")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Import, and say what the recording holds."""
+    with counting("imported") as progress:
+        made = import_recording(
+            args.source,
+            args.out,
+            format=args.format,
+            progress=progress,
+            overwrite=args.overwrite,
+        )
+    tell_notices(made.notices)
+    print(
+        f"{made.path}: {made.frames} frames of {made.width}x{made.height} px "
+        f"at {made.fps:g} frames/s, {made.truths} with truth"
+    )
+    return 0

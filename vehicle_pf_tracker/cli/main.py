@@ -1,0 +1,97 @@
+"""The command `vehicle-pf-tracker`: picks a verb, and turns errors into a sentence and a status."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from vehicle_pf_tracker import __doc__ as _summary
+from vehicle_pf_tracker import __version__
+from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, tell_error
+from vehicle_pf_tracker.features.errors import InputError
+
+VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "demo": ("demo", "show the whole chain on a made traffic scene, scored against truth"),
+        "import": ("import_footage", "make a recording of a video file or a frame folder"),
+        "synth": ("synth", "make a recording of a synthetic scene, with exact truth"),
+        "params": ("params", "print the commented default parameters of a variant"),
+        "run": ("run", "track a recording offline, without ROS, and score it"),
+        "replay": ("replay", "feed a recording to ROS nodes"),
+    }
+)
+"""Module in this package and one line of help, by verb."""
+
+FAILED, USAGE, INTERRUPTED, PIPE_CLOSED = 1, 2, 130, 141
+"""Exit statuses; the last two are those of a program that a signal ended."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line `argv`, that of the process if None, and return the exit status."""
+    words = sys.argv[1:] if argv is None else argv
+    try:
+        status = _run(list(words))
+        sys.stdout.flush()
+    except (InputError, UsageError) as error:
+        tell_error(str(error))
+        return USAGE if isinstance(error, UsageError) else FAILED
+    except ModuleNotFoundError as error:
+        if (error.name or "").startswith(__package__.partition(".")[0]):
+            raise  # a fault of ours, not something that is left to install
+        tell_error(_missing(error))
+        return FAILED
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        # Python flushes once more at exit, and would complain about it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return PIPE_CLOSED
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        tell_error(f"{where}{error.strerror or error}")
+        return FAILED
+    return status
+
+
+def bag_replay(argv: Sequence[str] | None = None) -> int:
+    """Run the command `bag_replay`, which is the verb `replay`."""
+    return main(["replay", *(sys.argv[1:] if argv is None else argv)])
+
+
+def _run(words: list[str]) -> int:
+    try:
+        args = _parser(words).parse_args(words)
+    except SystemExit as ended:  # argparse has said all there is to say
+        return ended.code if isinstance(ended.code, int) else USAGE
+    status: int = args.run(args)
+    return status
+
+
+def _parser(words: list[str]) -> argparse.ArgumentParser:
+    """Make the parser, with the options of the verb that `words` ask for.
+
+    No other verb is loaded, so that help is quick and nothing needs ROS but what uses it.
+    """
+    asked = next((word for word in words if not word.startswith("-")), None)
+    parser = argparse.ArgumentParser(prog=PROGRAM, description=_summary)
+    parser.add_argument("--version", action="version", version=f"{PROGRAM} {__version__}")
+    verbs = parser.add_subparsers(metavar="VERB", required=True)
+    for name, (module_name, line) in VERBS.items():
+        description = f"{line[0].upper()}{line[1:]}."
+        verb = verbs.add_parser(name, help=line, description=description)
+        if name == asked:
+            module = importlib.import_module(f"vehicle_pf_tracker.cli.{module_name}")
+            module.add_arguments(verb)
+            verb.set_defaults(run=module.run, command=[PROGRAM, *words])
+    return parser
+
+
+def _missing(error: ModuleNotFoundError) -> str:
+    return (
+        f"the Python module {error.name} is not there: for ROS, source its setup.bash or install "
+        "the extra [ros]; for recordings, `pip install mcap rosbags`"
+    )

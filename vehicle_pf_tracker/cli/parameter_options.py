@@ -1,0 +1,88 @@
+"""The parameters of a run: a file, then ``--set``, then ``--seed`` and ``--target`` over it."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vehicle_pf_tracker.evaluation.offline import with_target
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.trackers.parameter_files import read_yaml
+from vehicle_pf_tracker.trackers.parameters import parse_assignments, specs, unknown_name
+from vehicle_pf_tracker.trackers.registry import Variant
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.ros.configuration import Configuration
+
+_OF_ROS = ("use_sim_time", "start_type_description_service")
+_OF_ROS_PREFIX = "qos_overrides."
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that choose parameters."""
+    add = parser.add_argument
+    add("--params", type=Path, metavar="FILE", help="ROS parameter file, as `params` prints it")
+    add(
+        "--set", action="append", default=[], metavar="NAME=VALUE", dest="assignments",
+        help="set a parameter, over the file; repeatable",
+    )  # fmt: skip
+    add("--seed", type=int, help="seed of the random numbers; -1 draws one and run.json keeps it")
+    add(
+        "--target", type=parse_box, metavar="X,Y,W,H",
+        help="box to start on in px, top-left corner and size; otherwise the first true box",
+    )  # fmt: skip
+
+
+def parse_box(text: str) -> Box:
+    """Read ``x,y,w,h`` of a command line."""
+    try:
+        x, y, width, height = map(float, text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not x,y,w,h in px") from None
+    if not all(map(math.isfinite, (x, y, width, height))):
+        raise argparse.ArgumentTypeError(f"{text!r} has a number that is not finite")
+    return Box(x, y, width, height)
+
+
+def chosen(variant: Variant, args: argparse.Namespace) -> Configuration:
+    """Collect the parameters that the options of `add_arguments` choose.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used, or a name or a value does not fit.
+    """
+    from vehicle_pf_tracker.ros.configuration import Configuration
+
+    configuration = Configuration.of(variant)
+    if args.params is not None:
+        configuration = _with_file(configuration, variant, args.params)
+    # Those of the node alone would change nothing here, so they are refused as unknown.
+    table = {**specs(variant.parameters), **specs(type(configuration.session))}
+    configuration = configuration.updated(parse_assignments(table, args.assignments))
+    if args.seed is not None:
+        configuration = configuration.updated({"seed": args.seed})
+    if args.target is None:
+        return configuration
+    return replace(configuration, session=with_target(configuration.session, args.target))
+
+
+def _with_file(configuration: Configuration, variant: Variant, path: Path) -> Configuration:
+    values = read_yaml(path, f"{variant.name}_tracker")
+    known = configuration.specs()
+    problems = [
+        unknown_name(name, known)
+        for name in values
+        if name not in known and name not in _OF_ROS and not name.startswith(_OF_ROS_PREFIX)
+    ]
+    try:
+        configuration = configuration.updated(values)
+    except InputError as error:
+        problems.append(str(error))
+    if problems:
+        raise InputError(f"the parameter file {path}: {'; '.join(problems)}")
+    return configuration

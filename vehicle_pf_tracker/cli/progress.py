@@ -1,0 +1,58 @@
+"""Progress of work that is counted: a bar on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TextIO, TypeAlias
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+OnProgress: TypeAlias = Callable[[int, int | None], None]
+_LINE_SECONDS = 5.0
+
+
+@contextmanager
+def counting(
+    verb: str, stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
+) -> Iterator[OnProgress]:
+    """Give a function that takes the number of frames done, and of all (None where unknown).
+
+    Parameters
+    ----------
+    verb : str
+        What is done to them, as in ``tracked``.
+    stream : text stream or None
+        Where to show it; None is standard error.
+    clock : callable
+        The monotonic clock in s.
+    """
+    stream = stream or sys.stderr
+    if not stream.isatty():
+        yield _Lines(verb, stream, clock)
+        return
+    columns = (TextColumn(verb), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(file=stream), transient=True) as bar:
+        task = bar.add_task(verb, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+class _Lines:
+    """A line about every five seconds, so that quick work says nothing."""
+
+    def __init__(self, verb: str, stream: TextIO, clock: Callable[[], float]) -> None:
+        self._verb = verb
+        self._stream = stream
+        self._clock = clock
+        self._said = clock()
+
+    def __call__(self, done: int, total: int | None) -> None:
+        now = self._clock()
+        if now - self._said < _LINE_SECONDS:
+            return
+        self._said = now
+        of_all = "" if total is None else f" of {total}"
+        print(f"{self._verb} {done}{of_all} frames", file=self._stream, flush=True)

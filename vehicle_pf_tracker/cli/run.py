@@ -1,0 +1,79 @@
+"""`run`: track a recording offline, and score it where there is truth."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+from vehicle_pf_tracker.cli import parameter_options
+from vehicle_pf_tracker.cli.console import UsageError, show, tell_notices
+from vehicle_pf_tracker.cli.progress import OnProgress, counting
+from vehicle_pf_tracker.evaluation.association import MAX_DIFF
+from vehicle_pf_tracker.evaluation.metrics import measure
+from vehicle_pf_tracker.evaluation.offline import OfflineTracker
+from vehicle_pf_tracker.evaluation.results import ResultFolder
+from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run
+from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.evaluation.tables import comparison
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.truth import Truth
+from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of this verb."""
+    add = parser.add_argument
+    add("recording", type=Path, metavar="REC", help="rosbag2 folder or MCAP file")
+    add("--variant", required=True, metavar="NAME", help=f"one of: {', '.join(VARIANTS)}")
+    add(
+        "-o", "--output", type=Path, required=True, metavar="DIR",
+        help="folder for estimates.csv, metrics.json and run.json; those in it are replaced",
+    )  # fmt: skip
+    add("--topic", help="the image topic, if the recording has several")
+    add(
+        "--max-diff", type=float, default=MAX_DIFF, metavar="S",
+        help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
+    )  # fmt: skip
+    parameter_options.add_arguments(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Track, write the results, and print the metrics."""
+    variant = find_variant(args.variant)
+    chosen = parameter_options.chosen(variant, args)
+    recording = Recording(args.recording, args.topic)
+    first_truth = None if chosen.session.target.box else _first_truth(recording)
+    tracker = OfflineTracker(
+        variant, chosen.tracker, chosen.session, first_truth=first_truth, max_diff=args.max_diff
+    )
+    folder = ResultFolder(args.output)
+    with counting("tracked") as progress:
+        rows = list(tracker.rows(_frames(recording, progress)))
+    notices = [*recording.notices, *tracker.notices]
+    tell_notices(notices)
+    info = RunInfo(
+        args.command, str(args.recording), recording.image_topic, tracker.start_frame, notices
+    )
+    folder.write_run(rows, describe_run(info, tracker.session))
+    metrics = measure(score_frames(rows, recording.truth(), args.max_diff))
+    folder.write_metrics(metrics)
+    show(comparison({variant.name: metrics}, title=f"{args.recording} -> {args.output}"))
+    return 0
+
+
+def _first_truth(recording: Recording) -> Truth:
+    truth = recording.first_truth()
+    if truth is None:
+        raise UsageError(
+            f"the recording {recording.path} has no truth to start on; "
+            "give the vehicle's box in the first image with --target x,y,w,h"
+        )
+    return truth
+
+
+def _frames(recording: Recording, progress: OnProgress) -> Iterator[tuple[int, Frame]]:
+    for number, stamped in enumerate(recording.frames(), start=1):
+        progress(number, recording.frame_count)
+        yield stamped.stamp_ns, stamped.frame
