@@ -55,7 +55,7 @@ def score_occlusions(counted: Sequence[FrameScore]) -> tuple[OcclusionScore, ...
     ends = [begin for begin, _ in stretches[1:]] + [len(counted)]
     return tuple(
         _judge(counted[begin:end], counted[end:until])
-        for (begin, end), until in zip(stretches, ends, strict=True)
+        for (begin, end), until in zip(stretches, ends, strict=False)
     )
 
 
