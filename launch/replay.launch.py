@@ -35,6 +35,7 @@ def replay(condition: IfCondition | UnlessCondition, *options: str) -> Node:
             "--rate",
             LaunchConfiguration("rate"),
             "--wait-for-subscribers",
+            "--decompress",  # the tracker listens for raw images unless its parameters say else
             *options,
         ],
         condition=condition,

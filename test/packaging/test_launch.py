@@ -101,7 +101,7 @@ def test_replay_plays_the_recording_to_the_tracker():
     context, nodes = started("replay", recording="/data/highway", rate="0.5", variant="pf")
     assert [text(context, node.node_executable) for node in nodes] == ["pf_tracker", "bag_replay"]
     words = command(context, nodes[1])
-    assert words[1:5] == ["/data/highway", "--rate", "0.5", "--wait-for-subscribers"]
+    assert words[1:4] == ["/data/highway", "--rate", "0.5"]
     assert "--loop" not in words
 
 
