@@ -77,6 +77,18 @@ class RosBench:
             self.executor.spin_once(timeout_sec=0.02)
         return result
 
+    def publish_until(self, condition, publisher, message, timeout: float = TIMEOUT):
+        """Publish again and again until `condition()` is true, and return what it returned.
+
+        For subscribers in other processes: they may match later than the publisher sees them.
+        """
+        deadline = time.monotonic() + timeout
+        while not (result := condition()):
+            assert time.monotonic() < deadline, f"not within {timeout:g} s"
+            publisher.publish(message)
+            self.executor.spin_once(timeout_sec=0.2)
+        return result
+
     def wait_until_matched(self, *endpoints, count: int = 1, timeout: float = TIMEOUT):
         """Spin until each publisher or subscription has at least `count` counterparts."""
         self.wait_for(lambda: all(_matches(one) >= count for one in endpoints), timeout)
@@ -116,13 +128,24 @@ def _matches(endpoint) -> int:
     return count() if count is not None else endpoint.get_publisher_count()
 
 
-@pytest.fixture
-def bench(ros_domain):
+def _bench(domain):
     if rclpy is None:
         pytest.skip(NO_ROS)
-    made = RosBench(ros_domain)
+    made = RosBench(domain)
     yield made
     made.close()
+
+
+@pytest.fixture
+def bench(ros_domain):
+    """One participant of the domain."""
+    yield from _bench(ros_domain)
+
+
+@pytest.fixture
+def other_bench(ros_domain):
+    """A second participant, as another process would be."""
+    yield from _bench(ros_domain)
 
 
 class Process:

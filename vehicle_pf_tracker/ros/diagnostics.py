@@ -70,7 +70,8 @@ class Diagnostics:
     def publish(self) -> None:
         """Publish one report."""
         level, words = self._judge()
-        values = {**self._health.report(), **self.facts}
+        publishers = self.source.publisher_count if self.source else 0
+        values = {**self._health.report(), "matched publishers": publishers, **self.facts}
         status = DiagnosticStatus(
             level=level,
             name=f"{self._node.get_name()}: tracker",

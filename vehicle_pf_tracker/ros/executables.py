@@ -1,9 +1,12 @@
-"""The executables of the nodes, one per registered variant."""
+"""The executables of the nodes: ``<variant>_tracker`` for every registered variant."""
 
 from __future__ import annotations
 
+import functools
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+
+from vehicle_pf_tracker.features.errors import InputError
 
 _NO_ROS = (
     "ROS 2 is not there (no module {}): source its setup.bash, or install this package with the "
@@ -32,6 +35,9 @@ def main(variant: str, args: Sequence[str] | None = None) -> int:
         from vehicle_pf_tracker.trackers.registry import find_variant  # noqa: PLC0415
 
         return run_node(find_variant(variant), sys.argv[1:] if args is None else args)
+    except InputError as error:
+        print(f"{variant}_tracker: {error}", file=sys.stderr)
+        return 1
     except ModuleNotFoundError as error:
         print(f"{variant}_tracker: {_NO_ROS.format(error.name)}", file=sys.stderr)
         return 1
@@ -39,11 +45,9 @@ def main(variant: str, args: Sequence[str] | None = None) -> int:
         return 0
 
 
-def apf_tracker() -> int:
-    """Run the node of `apf`."""
-    return main("apf")
-
-
-def pf_tracker() -> int:
-    """Run the node of `pf`."""
-    return main("pf")
+def __getattr__(name: str) -> Callable[[], int]:
+    """Make ``<variant>_tracker``, which the console scripts call, for any variant."""
+    variant = name.removesuffix("_tracker")
+    if variant == name:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return functools.partial(main, variant)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.qos import (
     QoSCompatibility,
@@ -63,6 +64,8 @@ class ImageInput:
                 QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT),
                 qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             )
+        except rclpy_implementation.RCLError as error:
+            raise InputError(f"cannot subscribe to {self.topic}: {error}") from None
         except (
             InvalidParameterTypeException,
             InvalidParameterValueException,
@@ -99,8 +102,10 @@ class ImageInput:
         if publisher.topic_type != _TYPE_NAMES[self._kind]:
             return f"{name} publishes {publisher.topic_type}, not {_TYPE_NAMES[self._kind]}"
         match, reason = qos_check_compatible(qos, self._subscription.qos_profile)
-        if match is QoSCompatibility.ERROR:
-            return f"{name} does not fit this node's QoS: {reason.strip().rstrip(';')}"
+        if match == QoSCompatibility.ERROR:  # equal, but not the same object
+            return (
+                f"{name} does not fit this node's QoS: {reason.removeprefix('ERROR: ').rstrip(';')}"
+            )
         return f"{name} fits, but sends nothing"
 
     def _elsewhere(self) -> str:

@@ -56,7 +56,7 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]
             With the reason, if one of the two failed.
         """
         for trigger in (self.trigger_configure, self.trigger_activate):
-            if trigger() is not TransitionCallbackReturn.SUCCESS:
+            if trigger() != TransitionCallbackReturn.SUCCESS:
                 raise InputError(self._failure)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:

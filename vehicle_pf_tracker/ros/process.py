@@ -118,6 +118,6 @@ def _fail(name: str, sentence: str) -> int:
 
 def _first_sentence(error: Exception) -> str:
     if isinstance(error, rclpy_implementation.UnknownROSArgsError):
-        return f"unknown ROS arguments: {' '.join(error.args[0])}"
+        return f"unknown ROS arguments: {error}"
     text = str(error).replace("failed to initialize rcl: ", "")
     return text.partition(", at /")[0]

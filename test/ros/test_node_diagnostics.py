@@ -1,0 +1,200 @@
+"""`/diagnostics`: what is counted, and why nothing arrives."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import CompressedImage, Image
+from tracker_rig import Rig, header, on_target, road
+
+from vehicle_pf_tracker.ros import diagnostics
+from vehicle_pf_tracker.ros.health import Health
+from vehicle_pf_tracker.ros.messages import image_message
+
+pytestmark = pytest.mark.ros
+
+
+class Reports:
+    def __init__(self, bench) -> None:
+        self.bench = bench
+        self.received = bench.collect(DiagnosticArray, "/diagnostics")
+
+    def next(self, accept=lambda status: True):
+        """The next report that `accept` takes."""
+        seen = len(self.received)
+
+        def found():
+            return next((m.status[0] for m in self.received[seen:] if accept(m.status[0])), None)
+
+        return self.bench.wait_for(found)
+
+
+def table(status) -> dict[str, str]:
+    return {item.key: item.value for item in status.values}
+
+
+def test_a_report_tells_counts_rates_and_mode(bench):
+    rig = Rig(bench, on_target(seed=5))
+    rig.play(road(5))
+    rig.show(Image(header=header(5), encoding="rgb8"))
+    status = Reports(bench).next()
+    told = table(status)
+    assert (status.level, status.message) == (b"\x02", "REJECTED")
+    assert status.name == "apf_tracker: tracker"
+    assert status.hardware_id == "/image"
+    assert (told["images"], told["rejected"], told["dropped"]) == ("6", "1", "0")
+    assert "no pixels" in told["last rejection"]
+    assert told["matched publishers"] == "1"
+    assert (told["mode"], told["variant"], told["seed"]) == ("REJECTED", "apf", "5")
+    assert float(told["step time (ms)"]) > 0
+    assert float(told["age of frames (ms)"]) > 0
+
+
+def test_images_that_were_overwritten_are_counted(bench):
+    rig = Rig(bench, on_target())
+    rig.play(road(1))
+    rig.bench.executor.remove_node(rig.node)  # a node that is too busy to take its images
+    for index in range(1, 61):
+        rig.camera.publish(image_message(header(index), road(1)[0]))
+    rig.bench.executor.add_node(rig.node)
+    bench.wait_for(lambda: rig.modes[-1].header == header(60))
+    told = table(Reports(bench).next())
+    assert int(told["images"]) + int(told["dropped"]) == 61
+    assert int(told["dropped"]) >= 10
+
+
+def test_a_quiet_topic_is_named_with_its_publishers_qos(bench, monkeypatch):
+    monkeypatch.setattr(diagnostics, "SILENCE", 0.5)
+    Rig(bench)
+    status = Reports(bench).next(lambda status: status.level == b"\x01")
+    assert "no image for 0.5 s on /image: /tester (reliable, volatile) fits" in status.message
+
+
+def silent_node(bench, monkeypatch, **options):
+    monkeypatch.setattr(diagnostics, "SILENCE", 0.5)
+    rig = Rig(bench, **options)
+    bench.node.destroy_publisher(rig.camera)
+    bench.wait_for(lambda: rig.node.count_publishers("/image") == 0)
+    return rig
+
+
+def warning(bench, words: str) -> str:
+    return Reports(bench).next(lambda status: words in status.message).message
+
+
+def test_nobody_publishes(bench, monkeypatch):
+    silent_node(bench, monkeypatch)
+    assert warning(bench, "nobody") == "no image for 0.5 s on /image: nobody publishes on it"
+
+
+def test_qos_that_does_not_fit_is_named(bench, monkeypatch):
+    silent_node(
+        bench,
+        monkeypatch,
+        parameters=on_target(**{"qos_overrides./image.subscription.reliability": "reliable"}),
+    )
+    best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    bench.node.create_publisher(Image, "image", best_effort)
+    words = warning(bench, "does not fit")
+    assert "/tester (best_effort, volatile) does not fit this node's QoS" in words
+    assert "reliable" in words.lower()
+
+
+def test_another_type_is_named(bench, other_bench, monkeypatch):
+    silent_node(bench, monkeypatch)
+    other_bench.node.create_publisher(CompressedImage, "image", 1)
+    words = warning(bench, "CompressedImage")
+    assert "publishes sensor_msgs/msg/CompressedImage, not sensor_msgs/msg/Image" in words
+
+
+def test_the_other_transport_is_named(bench, monkeypatch):
+    silent_node(bench, monkeypatch)
+    bench.node.create_publisher(CompressedImage, "image/compressed", 1)
+    assert "set image_transport to compressed" in warning(bench, "compressed")
+
+
+def test_images_elsewhere_are_named(bench, monkeypatch):
+    silent_node(bench, monkeypatch)
+    transient = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    bench.node.create_publisher(Image, "/camera/image_raw", transient)
+    words = warning(bench, "remap")
+    assert "images are on /camera/image_raw: remap image to one of them" in words
+    assert "overlay" not in words
+
+
+def test_an_inactive_node_is_not_blamed(bench):
+    rig = Rig(bench)
+    rig.node.trigger_deactivate()
+    status = Reports(bench).next(lambda status: status.message == "not active")
+    assert status.level == b"\x00"
+
+
+# The counters by hand, on a clock of our own.
+
+
+class Clock:
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def numbered(number) -> dict[str, object]:
+    return {"publication_sequence_number": number}
+
+
+def test_gaps_in_the_numbers_are_dropped_images():
+    health = Health(Clock())
+    for number in (7, 8, 11, 12):  # what came before the first is not known
+        health.arrived(numbered(number), 0.0, 1)
+    assert health.dropped == 2
+
+
+def test_a_restarted_publisher_counts_anew():
+    health = Health(Clock())
+    for number in (900, 1, 2):
+        health.arrived(numbered(number), 0.0, 1)
+    assert health.dropped == 0
+
+
+def test_numbers_of_two_publishers_say_nothing():
+    health = Health(Clock())
+    for number in (1, 500, 2, 501):
+        health.arrived(numbered(number), 0.0, 2)
+    assert health.dropped == 0
+
+
+def test_numbers_may_be_missing():
+    health = Health(Clock())
+    health.arrived(numbered(None), 0.0, 1)
+    health.arrived({}, 0.0, 1)
+    assert (health.images, health.dropped) == (2, 0)
+
+
+def test_images_missed_while_not_listening_are_not_dropped():
+    health = Health(Clock())
+    health.arrived(numbered(1), 0.0, 1)
+    health.listen()
+    health.arrived(numbered(50), 0.0, 1)
+    assert health.dropped == 0
+
+
+def test_rates_are_those_since_the_last_report():
+    clock = Clock()
+    health = Health(clock)
+    for number in range(1, 11):
+        health.arrived(numbered(number), 0.25, 1)
+    clock.now += 2.0
+    health.answered("TRACKING", 1.25)
+    clock.now += 2.0
+    told = health.report()
+    assert told["input rate (Hz)"] == 2.5
+    assert told["time in mode (s)"] == 2.0
+    assert told["age of frames (ms)"] == 250.0
+    assert told["time since last image (s)"] == 4.0
+    clock.now += 1.0
+    assert health.report()["input rate (Hz)"] == 0.0

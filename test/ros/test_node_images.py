@@ -1,0 +1,196 @@
+"""One answer per image, through Fast DDS: the numbers of an offline run, and what is refused."""
+
+from __future__ import annotations
+
+import array
+
+import cv2
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from sensor_msgs.msg import CompressedImage, Image
+from tracker_rig import (
+    FIRST_NS,
+    PERIOD_NS,
+    SPEED,
+    TARGET,
+    Rig,
+    header,
+    header_at,
+    on_target,
+    overrides,
+    road,
+    values_of,
+)
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.encodings import decode_compressed
+from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.trackers.registry import find_variant
+from vehicle_pf_tracker.trackers.session import Session
+
+pytestmark = pytest.mark.ros
+
+TIMED = {"step_ms"}
+
+
+def offline(variant: str, frames, **settings) -> list[dict[str, str]]:
+    """The scalars of an offline run, as text."""
+    chosen = find_variant(variant)
+    session = Session(chosen, chosen.parameters(**settings))
+    session.set_target(Box(*map(float, TARGET)))
+    rows = []
+    for index, frame in enumerate(frames):
+        estimate = session.feed(frame, FIRST_NS + index * PERIOD_NS)
+        rows.append(
+            {
+                name: repr(float(value)) if isinstance(value, float) else str(value)
+                for name, value in estimate.scalars().items()
+                if name not in TIMED
+            }
+        )
+    return rows
+
+
+def without_times(answer) -> dict[str, str]:
+    return {name: value for name, value in values_of(answer).items() if name not in TIMED}
+
+
+@pytest.mark.parametrize("variant", ["apf", "pf"])
+def test_numbers_are_those_of_an_offline_run(bench, variant):
+    frames = road(20)
+    rig = Rig(bench, on_target(seed=3), variant)
+    answers = [rig.show_frame(frame, index) for index, frame in enumerate(frames)]
+    assert [without_times(answer) for answer in answers] == offline(variant, frames, seed=3)
+
+
+def test_position_has_the_images_header_and_every_digit(bench):
+    rig = Rig(bench, on_target())
+    frames = road(3)
+    for index, frame in enumerate(frames):
+        answer = rig.show(image_message(header(index, frame_id="mast_left"), frame))
+        position = rig.position_at(answer)
+        assert position.header == answer.header
+        assert position.header.frame_id == "mast_left"
+        assert repr(position.point.x) == values_of(answer)["x"]
+        assert repr(position.point.y) == values_of(answer)["y"]
+        assert position.point.z == 0.0
+
+
+def test_the_vehicle_is_followed(bench):
+    rig = Rig(bench, on_target())
+    modes = rig.play(road(25))
+    assert modes == ["TRACKING"] * 25
+    assert float(values_of(rig.modes[-1])["x"]) == pytest.approx(
+        TARGET[0] + TARGET[2] / 2 + 24 * SPEED, abs=4
+    )
+
+
+def test_status_names_node_and_topic(bench):
+    rig = Rig(bench, on_target())
+    status = rig.show_frame(road(1)[0], 0).status[0]
+    assert status.name == "apf_tracker: target"
+    assert status.hardware_id == "/image"
+    assert status.level == b"\x00"
+
+
+def test_waiting_is_answered_too(bench):
+    rig = Rig(bench)
+    answer = rig.show_frame(road(1)[0], 0)
+    assert (answer.status[0].message, answer.status[0].level) == ("WAITING", b"\x00")
+    assert values_of(answer) == {"mode": "WAITING"}
+    assert rig.positions == []
+
+
+def test_compressed_images_give_the_numbers_of_their_decoded_frames(bench):
+    coded = []
+    for frame in road(10):
+        _, jpeg = cv2.imencode(".jpg", cv2.cvtColor(frame, cv2.COLOR_RGB2BGR))
+        coded.append(array.array("B", jpeg.tobytes()))
+    rig = Rig(
+        bench,
+        on_target(image_transport="compressed"),
+        kind=CompressedImage,
+        topic="image/compressed",
+    )
+    answers = [
+        rig.show(CompressedImage(header=header(index), format="jpeg", data=data))
+        for index, data in enumerate(coded)
+    ]
+    decoded = [decode_compressed("jpeg", data) for data in coded]
+    assert [without_times(answer) for answer in answers] == offline("apf", decoded)
+
+
+def broken(index: int, **changes) -> Image:
+    message = image_message(header(index), road(1)[0])
+    for name, value in changes.items():
+        setattr(message, name, value)
+    return message
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"encoding": "rgb888"}, "'rgb888' is unknown"),
+        ({"data": array.array("B", b"abc")}, "but has 3"),
+        ({"data": array.array("B")}, "but has 0"),
+        ({"height": 0}, "no pixels"),
+        ({"step": 3}, "shorter than one row"),
+        ({"width": 2**31, "step": 2**32 - 1}, "larger than"),
+    ],
+)
+def test_an_unusable_image_is_answered_and_the_track_kept(bench, changes, words):
+    rig = Rig(bench, on_target())
+    frames = road(6)
+    rig.play(frames[:3])
+    answer = rig.show(broken(3, **changes))
+    assert (answer.status[0].message, answer.status[0].level) == ("REJECTED", b"\x02")
+    assert words in values_of(answer)["reason"]
+    # As if the bad one had never been there: the clock does not see its stamp either.
+    last = rig.show_frame(frames[3], 3)
+    assert without_times(last) == offline("apf", frames[:4])[3]
+
+
+def test_a_configured_target_outside_the_image_is_said_once(bench):
+    rig = Rig(bench, overrides(target__x=900.0, target__width=20.0, target__height=20.0))
+    frames = road(2)
+    answer = rig.show_frame(frames[0], 0)
+    assert "outside the image of 160x120" in values_of(answer)["reason"]
+    assert rig.show_frame(frames[1], 1).status[0].message == "WAITING"
+
+
+def test_time_that_jumps_back_starts_again(bench):
+    rig = Rig(bench, on_target())
+    frames = road(12)
+    first = [without_times(rig.show_frame(frame, i)) for i, frame in enumerate(frames)]
+    again = [without_times(rig.show_frame(frame, i)) for i, frame in enumerate(frames)]
+    assert again[0].pop("event") == "time jumped back"
+    assert again == first
+
+
+def test_a_new_image_size_starts_again(bench):
+    rig = Rig(bench, on_target())
+    rig.play(road(3))
+    answer = rig.show_frame(road(1, width=200)[0], 3)
+    assert values_of(answer)["regime"] == "start"
+    assert "160x120 to 200x120" in values_of(answer)["event"]
+
+
+def test_stamps_may_be_zero(bench):
+    rig = Rig(bench, on_target())
+    for frame in road(4):
+        answer = rig.show(image_message(header_at(0), frame))
+        assert answer.status[0].message == "TRACKING"
+    assert values_of(answer)["event"] == "repeated stamp"
+
+
+def test_an_unexpected_error_is_an_answer_too(bench, monkeypatch):
+    rig = Rig(bench, on_target())
+    frames = road(3)
+    rig.play(frames[:1])
+    with monkeypatch.context() as patch:
+        patch.setattr(Session, "feed", lambda *_: 1 / 0)
+        answer = rig.show_frame(frames[1], 1)
+    assert values_of(answer)["reason"] == "unexpected ZeroDivisionError: division by zero"
+    assert rig.show_frame(frames[2], 2).status[0].message == "TRACKING"

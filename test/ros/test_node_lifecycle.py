@@ -1,0 +1,144 @@
+"""States and transitions, at any moment, with and without images arriving."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from lifecycle_msgs.srv import ChangeState, GetState
+from tracker_rig import Rig, TrackerNode, header, on_target, overrides, road, values_of
+
+from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+pytestmark = pytest.mark.ros
+
+
+class Manager:
+    """What a lifecycle manager asks of the node."""
+
+    def __init__(self, bench) -> None:
+        self.bench = bench
+
+    def change(self, transition: str) -> bool:
+        request = ChangeState.Request()
+        request.transition.label = transition
+        return self.bench.call(ChangeState, "/apf_tracker/change_state", request).success
+
+    @property
+    def state(self) -> str:
+        response = self.bench.call(GetState, "/apf_tracker/get_state", GetState.Request())
+        return response.current_state.label
+
+
+@pytest.fixture
+def manager(bench):
+    return Manager(bench)
+
+
+def test_the_node_starts_by_itself(bench, manager):
+    Rig(bench)
+    assert manager.state == "active"
+
+
+def test_without_autostart_it_waits_for_a_manager(bench, manager):
+    node = TrackerNode(
+        find_variant("apf"), context=bench.context, parameter_overrides=overrides(autostart=False)
+    )
+    bench.add(node)
+    assert manager.state == "unconfigured"
+    assert node.count_subscribers("/image") == 0
+    assert manager.change("configure")
+    assert manager.change("activate")
+    assert manager.state == "active"
+    bench.wait_for(lambda: node.count_subscribers("/image") == 1)
+
+
+def test_an_inactive_node_neither_listens_nor_speaks(bench, manager):
+    rig = Rig(bench, on_target())
+    frames = road(6)
+    rig.play(frames[:3])
+    assert manager.change("deactivate")
+    bench.wait_for(lambda: rig.camera.get_subscription_count() == 0)
+    rig.camera.publish(image_message(header(3), frames[3]))
+    assert manager.state == "inactive"
+    assert manager.change("activate")
+    bench.wait_until_matched(rig.camera)
+    answer = rig.show_frame(frames[4], 4)
+    assert len(rig.modes) == 4
+    assert values_of(answer)["regime"] != "start"  # the track outlives a pause
+
+
+def test_cleanup_forgets_the_track(bench, manager):
+    rig = Rig(bench, on_target())
+    rig.play(road(3))
+    for transition in ("deactivate", "cleanup"):
+        assert manager.change(transition)
+    bench.wait_for(lambda: rig.node.count_publishers("/apf_tracker/mode") == 0)
+    for transition in ("configure", "activate"):
+        assert manager.change(transition)
+    bench.wait_until_matched(rig.camera)
+    bench.wait_for(lambda: rig.node._outputs._mode.get_subscription_count() == 1)
+    answer = rig.show_frame(road(1)[0], 0)
+    assert values_of(answer)["regime"] == "start"
+
+
+def test_parameters_set_while_unconfigured_count(bench, manager):
+    rig = Rig(bench, on_target())
+    for transition in ("deactivate", "cleanup"):
+        assert manager.change(transition)
+    rig.node.set_parameters_atomically(overrides(num_particles=33))
+    for transition in ("configure", "activate"):
+        assert manager.change(transition)
+    assert rig.node._stream._session.tracker.parameters.num_particles == 33
+
+
+@pytest.mark.parametrize("transition", ["configure", "activate", "cleanup", "nonsense", ""])
+def test_a_transition_that_does_not_exist_here_is_refused(bench, manager, transition):
+    Rig(bench)
+    assert not manager.change(transition)
+    assert manager.state == "active"
+
+
+def test_a_failing_transition_says_why_and_the_node_lives(bench, manager, monkeypatch):
+    rig = Rig(bench)
+    assert manager.change("deactivate")
+    with monkeypatch.context() as patch:
+        patch.setattr(rig.node, "_warn_of", lambda *_: 1 / 0)
+        assert not manager.change("activate")
+    assert rig.node._failure == "unexpected ZeroDivisionError: division by zero"
+    assert manager.state == "unconfigured"
+    assert manager.change("configure")
+    assert manager.change("activate")
+    bench.wait_until_matched(rig.camera)
+    bench.wait_for(lambda: rig.node._outputs._mode.get_subscription_count() == 1)
+    assert rig.show_frame(road(1)[0], 0).status[0].message == "WAITING"
+
+
+def test_shutdown_lets_go_of_everything(bench, manager):
+    rig = Rig(bench)
+    assert manager.change("shutdown")
+    assert manager.state == "finalized"
+    assert rig.node._outputs is None
+    assert rig.node.count_subscribers("/image") == 0
+
+
+def test_many_cycles_while_images_arrive(bench):
+    rig = Rig(bench, on_target())
+    frame = road(1)[0]
+    for index in range(100):
+        rig.camera.publish(image_message(header(index), frame))
+        bench.executor.spin_once(timeout_sec=0.0)
+        rig.node.trigger_deactivate()
+        bench.executor.spin_once(timeout_sec=0.0)
+        if index % 3 == 0:
+            rig.node.trigger_cleanup()
+            rig.node.trigger_configure()
+        rig.node.trigger_activate()
+    bench.wait_until_matched(rig.camera)
+    bench.wait_for(lambda: rig.node._outputs._mode.get_subscription_count() == 1)
+    before = len(rig.modes)
+    rig.camera.publish(image_message(header(1000), frame))
+    bench.wait_for(lambda: rig.modes[before:] and rig.modes[-1].header == header(1000))
+    assert rig.node.count_subscribers("/image") == 1

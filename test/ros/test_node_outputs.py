@@ -1,0 +1,118 @@
+"""Box, velocity, particles, overlay: what they hold, and when they are made at all."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from geometry_msgs.msg import PolygonStamped, Vector3Stamped
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import Image, PointCloud2
+from tracker_rig import HEIGHT, PERIOD_NS, SPEED, WIDTH, Rig, on_target, road, values_of
+
+from vehicle_pf_tracker.ros.overlay import Overlay
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.fixture
+def rig(bench):
+    return Rig(bench, on_target())
+
+
+def test_box_and_position_agree(bench, rig):
+    boxes = bench.collect(PolygonStamped, "/apf_tracker/box")
+    for index, frame in enumerate(road(3)):
+        answer = rig.show_frame(frame, index)
+    bench.wait_for(lambda: len(boxes) == 3)
+    assert boxes[-1].header == answer.header
+    told = {name: float(values_of(answer)[name]) for name in ("x", "y", "width", "height")}
+    corners = np.array([(point.x, point.y) for point in boxes[-1].polygon.points])
+    assert corners.mean(axis=0) == pytest.approx((told["x"], told["y"]), abs=1e-4)
+    assert np.ptp(corners, axis=0) == pytest.approx((told["width"], told["height"]), abs=1e-4)
+    assert corners[0].tolist() == corners.min(axis=0).tolist()
+
+
+def test_velocity_is_in_px_per_second(bench, rig):
+    velocities = bench.collect(Vector3Stamped, "/apf_tracker/velocity")
+    for index, frame in enumerate(road(25)):
+        answer = rig.show_frame(frame, index)
+    bench.wait_for(lambda: len(velocities) == 25)
+    per_second = 1e9 / PERIOD_NS
+    vector = velocities[-1].vector
+    assert vector.x == pytest.approx(SPEED * per_second, rel=0.2)
+    assert vector.x == pytest.approx(float(values_of(answer)["velocity_x"]) * per_second)
+
+
+def test_publishing_can_be_switched_off_and_on(bench, rig):
+    boxes = bench.collect(PolygonStamped, "/apf_tracker/box")
+    frames = road(4)
+    rig.node.set_parameters_atomically(on_target(publish__box=False))
+    rig.play(frames[:2])
+    rig.node.set_parameters_atomically(on_target(publish__box=True))
+    rig.play(frames[2:], first=2)
+    bench.wait_for(lambda: len(boxes) == 2)
+    assert boxes[0].header == rig.modes[2].header
+
+
+def test_particles_come_while_subscribed(bench, rig):
+    frames = road(3)
+    rig.play(frames[:1])
+    clouds = bench.collect(PointCloud2, "/apf_tracker/particles", qos_profile_sensor_data)
+    answer = rig.show_frame(frames[1], 1)
+    bench.wait_for(lambda: clouds)
+    cloud = clouds[0]
+    assert cloud.header == answer.header
+    assert [field.name for field in cloud.fields] == ["x", "y", "z", "weight"]
+    points = np.frombuffer(cloud.data, "<f4").reshape(cloud.width, 4)
+    estimate = rig.node._stream.estimate
+    assert points[:, :2] == pytest.approx(estimate.particles.astype(np.float32))
+    assert points[:, 3].sum() == pytest.approx(1.0, rel=1e-5)
+    assert not points[:, 2].any()
+
+
+def test_the_overlay_is_drawn_while_subscribed(bench, rig, monkeypatch):
+    drawn = []
+    draw = Overlay.draw
+    monkeypatch.setattr(Overlay, "draw", lambda *given: drawn.append(1) or draw(*given))
+    frames = road(5)
+    rig.play(frames[:2])
+    assert drawn == []
+    pictures = []
+    watcher = bench.node.create_subscription(
+        Image, "/apf_tracker/overlay", pictures.append, qos_profile_sensor_data
+    )
+    bench.wait_until_matched(watcher)
+    answer = rig.show_frame(frames[2], 2)
+    bench.wait_for(lambda: pictures)
+    assert pictures[0].header == answer.header
+    assert (pictures[0].width, pictures[0].height) == (WIDTH, HEIGHT)
+    picture = np.frombuffer(pictures[0].data, np.uint8).reshape(HEIGHT, WIDTH, 3)
+    assert 0.01 < (picture != frames[2]).any(axis=2).mean() < 0.5
+    bench.node.destroy_subscription(watcher)
+    bench.wait_for(lambda: rig.node._outputs._picture.get_subscription_count() == 0)
+    rig.play(frames[3:], first=3)
+    assert len(drawn) == 1
+
+
+def test_the_overlay_shows_waiting_too(bench):
+    rig = Rig(bench)
+    pictures = bench.collect(Image, "/apf_tracker/overlay", qos_profile_sensor_data)
+    frame = road(1)[0]
+    rig.show_frame(frame, 0)
+    bench.wait_for(lambda: pictures)
+    picture = np.frombuffer(pictures[0].data, np.uint8).reshape(HEIGHT, WIDTH, 3)
+    changed = (picture != frame).any(axis=2)
+    assert changed[:30].any()
+    assert not changed[60:].any()
+
+
+def test_drawing_leaves_the_frame_alone(bench, rig):
+    frame = road(1)[0]
+    rig.show_frame(frame, 0)
+    frame.flags.writeable = False
+    before = frame.copy()
+    Overlay().draw(frame[::2, ::2], "TRACKING", rig.node._stream.estimate)
+    assert (frame == before).all()

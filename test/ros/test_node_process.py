@@ -1,0 +1,153 @@
+"""The node as a process: signals, exit statuses, and requests that are malformed."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import Parameter, ParameterValue
+from rcl_interfaces.srv import SetParameters
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import Image
+from tracker_rig import header, road
+
+from vehicle_pf_tracker.ros import executables
+from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.trackers.registry import VARIANTS
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.mark.parametrize(
+    "signals", [[signal.SIGINT], [signal.SIGINT] * 2, [signal.SIGTERM]], ids=["int", "int2", "term"]
+)
+def test_a_signal_ends_the_node_well(start_node, signals):
+    node = start_node("apf")
+    node.wait_for_output("ready")
+    for number in signals:
+        node.send(number)
+    assert node.wait() == 0
+    assert "Traceback" not in node.output
+
+
+def test_a_signal_while_libraries_load_leaves_no_traceback(start_process):
+    code = (
+        "import os, signal, sys\n"
+        "class Interrupting:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        if name == 'vehicle_pf_tracker.ros.process':\n"
+        "            os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Interrupting())\n"
+        "from vehicle_pf_tracker.ros.executables import apf_tracker\n"
+        "sys.exit(apf_tracker())"
+    )
+    process = start_process("-c", code)
+    assert process.wait() == 0
+    assert process.output == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["-p", "num_particles:=0"], "apf_tracker: num_particles must be from 1 to 100000, got 0"),
+        (["-p", "target.x:=20"], "smaller than one pixel"),
+        (["-p", "image_transport:=theora"], "must be one of raw, compressed"),
+        (["--params-file", "/nowhere.yaml"], "apf_tracker: Couldn't parse params file"),
+        (["--nonsense"], "apf_tracker: unknown ROS arguments: ['--nonsense']"),
+        (["-p", "qos_overrides./image.subscription.history:=often"], "QoS overrides of /image"),
+    ],
+)
+def test_a_users_mistake_is_one_sentence_and_status_1(start_node, arguments, sentence):
+    node = start_node("apf", *arguments)
+    assert node.wait() == 1
+    told = [line for line in node.output.splitlines() if not line.startswith("[")]
+    assert len(told) == 1
+    assert sentence in told[0]
+
+
+def test_other_arguments_are_a_usage_error(start_process):
+    code = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('apf'))"
+    process = start_process("-c", code, "--target", "1,2,3,4")
+    assert process.wait() == 2
+    assert "unknown arguments: --target 1,2,3,4" in process.output
+    assert "usage: apf_tracker" in process.output
+
+
+def test_help_is_no_error(start_process):
+    code = (
+        "from vehicle_pf_tracker.ros.executables import pf_tracker; raise SystemExit(pf_tracker())"
+    )
+    process = start_process("-c", code, "--help")
+    assert process.wait() == 0
+    assert "vehicle-pf-tracker params pf" in process.output
+
+
+def test_every_variant_has_its_executable():
+    for name in VARIANTS:
+        assert getattr(executables, f"{name}_tracker").args == (name,)
+    with pytest.raises(AttributeError, match="nonsense"):
+        executables.nonsense  # noqa: B018
+
+
+def test_an_unknown_variant_is_one_sentence(capfd):
+    assert executables.main("apv") == 1
+    assert capfd.readouterr().err.startswith("apv_tracker: there is no variant 'apv'; choose one")
+
+
+def test_a_malformed_request_does_not_end_the_node(bench, start_node):
+    """rclpy's own parameter service raises at a value type that it does not know."""
+    node = start_node("apf")
+    node.wait_for_output("ready")
+    client = bench.node.create_client(SetParameters, "/apf_tracker/set_parameters")
+    bench.wait_for(client.service_is_ready)
+    bad = Parameter(name="num_particles", value=ParameterValue(type=77))
+    client.call_async(SetParameters.Request(parameters=[bad]))
+    node.wait_for_output("a request could not be answered")
+    camera = bench.publisher(Image, "image")
+    modes = bench.collect(DiagnosticArray, "/apf_tracker/mode")
+    bench.publish_until(lambda: modes, camera, image_message(header(0), road(1)[0]))
+    assert modes[0].status[0].message == "WAITING"
+
+
+def test_two_nodes_live_under_their_namespaces(bench, start_node):
+    for side in ("left", "right"):
+        start_node("pf", "-r", f"__ns:=/{side}").wait_for_output("ready")
+    cameras = [bench.publisher(Image, f"/{side}/image") for side in ("left", "right")]
+    heard = [
+        bench.collect(DiagnosticArray, f"/{side}/pf_tracker/mode") for side in ("left", "right")
+    ]
+    for index, camera in enumerate(cameras):
+        image = image_message(header(index), road(1)[0])
+        bench.publish_until(lambda: heard[index], camera, image)  # noqa: B023 - called at once
+    assert [modes[0].header for modes in heard] == [header(0), header(1)]
+    assert all(message.header == header(0) for message in heard[0])
+
+
+def test_a_killed_node_can_be_started_again(bench, start_node):
+    first = start_node("apf")
+    first.wait_for_output("ready")
+    first.send(signal.SIGKILL)
+    first.wait()
+    start_node("apf").wait_for_output("ready")
+    camera = bench.publisher(Image, "image", QoSProfile(depth=10))
+    modes = bench.collect(DiagnosticArray, "/apf_tracker/mode")
+    bench.publish_until(lambda: modes, camera, image_message(header(0), road(1)[0]))
+
+
+def test_the_node_loads_neither_recordings_nor_evaluation():
+    code = (
+        "import sys; import vehicle_pf_tracker.ros.process; "
+        "print(*sorted(name for name in sys.modules if name.startswith('vehicle_pf_tracker.')))"
+    )
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout
+    rooms = {name.split(".")[1] for name in loaded.split()}
+    assert rooms == {"ros", "trackers", "features", "filtering"}
+    assert "player" not in loaded

@@ -1,0 +1,164 @@
+"""Targets given while the node runs: set, click, reset, and what is refused."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from geometry_msgs.msg import Point32, PointStamped, PolygonStamped
+from sensor_msgs.msg import RegionOfInterest
+from std_srvs.srv import Trigger
+from tracker_rig import TARGET, Rig, on_target, road, values_of
+
+pytestmark = pytest.mark.ros
+
+
+def region(x: int, y: int, width: int, height: int) -> RegionOfInterest:
+    return RegionOfInterest(x_offset=x, y_offset=y, width=width, height=height)
+
+
+def polygon(*corners, frame_id: str = "") -> PolygonStamped:
+    message = PolygonStamped()
+    message.header.frame_id = frame_id
+    message.polygon.points = [Point32(x=float(x), y=float(y)) for x, y in corners]
+    return message
+
+
+def point(x: float, y: float, frame_id: str = "") -> PointStamped:
+    message = PointStamped()
+    message.header.frame_id = frame_id
+    message.point.x, message.point.y = float(x), float(y)
+    return message
+
+
+class Targets:
+    """Sends targets and waits until the node has them."""
+
+    def __init__(self, rig: Rig) -> None:
+        self.rig = rig
+        publish = rig.bench.publisher
+        self.topics = {
+            RegionOfInterest: publish(RegionOfInterest, f"{rig.name}/set_target"),
+            PolygonStamped: publish(PolygonStamped, f"{rig.name}/set_box"),
+            PointStamped: publish(PointStamped, f"{rig.name}/clicked_point"),
+        }
+
+    def give(self, message) -> None:
+        stream = self.rig.node._stream
+        before = stream._asked, stream._health.refused_targets
+        self.topics[type(message)].publish(message)
+        self.rig.bench.wait_for(lambda: (stream._asked, stream._health.refused_targets) != before)
+
+    @property
+    def last_refusal(self) -> str:
+        return self.rig.node._stream._health.last_refusal
+
+
+@pytest.fixture
+def waiting(bench):
+    rig = Rig(bench)
+    return rig, Targets(rig)
+
+
+@pytest.fixture
+def tracking(bench):
+    rig = Rig(bench, on_target())
+    rig.play(road(3))
+    return rig, Targets(rig)
+
+
+def box_of(answer) -> tuple[float, ...]:
+    values = values_of(answer)
+    width, height = float(values["width"]), float(values["height"])
+    return float(values["x"]) - width / 2, float(values["y"]) - height / 2, width, height
+
+
+def test_a_waiting_node_starts_on_the_next_image(waiting):
+    rig, targets = waiting
+    rig.show_frame(road(1)[0], 0)
+    targets.give(region(*TARGET))
+    answer = rig.show_frame(road(1)[0], 1)
+    assert answer.status[0].message == "TRACKING"
+    assert box_of(answer) == TARGET
+
+
+def test_a_target_may_come_before_the_first_image(waiting):
+    rig, targets = waiting
+    targets.give(region(*TARGET))
+    assert box_of(rig.show_frame(road(1)[0], 0)) == TARGET
+
+
+def test_a_box_has_sub_pixel_corners(waiting):
+    rig, targets = waiting
+    targets.give(polygon((20.25, 50.5), (44.5, 50.5), (44.5, 68.75), (20.25, 68.75)))
+    assert box_of(rig.show_frame(road(1)[0], 0)) == (20.25, 50.5, 24.25, 18.25)
+
+
+def test_a_click_takes_the_present_size(tracking):
+    rig, targets = tracking
+    targets.give(point(80.5, 60.0, "camera"))
+    answer = rig.show_frame(road(4)[3], 3)
+    assert values_of(answer)["regime"] == "start"
+    assert box_of(answer) == (80.5 - 12, 60.0 - 9, 24, 18)
+
+
+@pytest.mark.parametrize(
+    ("message", "words"),
+    [
+        (region(20, 50, 0, 0), "smaller than one pixel"),
+        (region(2**32 - 1, 50, 20, 20), "outside the image"),
+        (region(150, 115, 40, 40), "outside the image of 160x120"),
+        (polygon((math.nan, 1), (5, 5)), "not finite"),
+        (polygon((1, 1), (math.inf, 5)), "not finite"),
+        (polygon(), "0 corners"),
+        (polygon((10, 10), (20, 20), frame_id="map"), "frame 'map'"),
+        (point(math.nan, 1), "not finite"),
+        (point(500, 10), "outside the image of 160x120"),
+        (point(10, 10, "base_link"), "frame 'base_link'"),
+    ],
+)
+def test_a_target_that_cannot_be_is_refused_and_the_track_kept(tracking, message, words):
+    rig, targets = tracking
+    refused = rig.node._stream._health.refused_targets
+    targets.give(message)
+    answer = rig.show_frame(road(4)[3], 3)
+    assert rig.node._stream._health.refused_targets == refused + 1
+    assert words in targets.last_refusal
+    assert values_of(answer)["regime"] != "start"
+    assert answer.status[0].message == "TRACKING"
+
+
+def test_a_click_needs_a_size(waiting):
+    _, targets = waiting
+    targets.give(point(10, 10))
+    assert "no box size" in targets.last_refusal
+
+
+def test_reset_goes_back_to_the_configured_target(tracking):
+    rig, targets = tracking
+    targets.give(region(100, 20, 30, 30))
+    assert box_of(rig.show_frame(road(4)[3], 3)) == (100, 20, 30, 30)
+    response = rig.bench.call(Trigger, f"{rig.name}/reset", Trigger.Request())
+    assert response.success
+    assert response.message == "following 20,50,24,18"
+    answer = rig.show_frame(road(1)[0], 4)
+    assert values_of(answer)["regime"] == "start"
+    assert box_of(answer) == TARGET
+
+
+def test_reset_goes_back_to_waiting(waiting):
+    rig, targets = waiting
+    targets.give(region(*TARGET))
+    assert rig.play(road(2)) == ["TRACKING"] * 2
+    rig.bench.call(Trigger, f"{rig.name}/reset", Trigger.Request())
+    assert rig.play(road(1), first=2) == ["WAITING"]
+
+
+def test_reset_forgets_a_target_that_was_not_yet_used(waiting):
+    rig, targets = waiting
+    targets.give(region(*TARGET))
+    rig.bench.call(Trigger, f"{rig.name}/reset", Trigger.Request())
+    assert rig.play(road(1)) == ["WAITING"]

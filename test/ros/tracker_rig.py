@@ -1,0 +1,106 @@
+"""A tracker node and somebody who shows it images and listens to its answers."""
+
+from __future__ import annotations
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PointStamped
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import Image
+from std_msgs.msg import Header
+
+from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
+from vehicle_pf_tracker.ros.node import TrackerNode
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+WIDTH, HEIGHT = 160, 120
+TARGET = (20, 50, 24, 18)
+SPEED = 2
+FIRST_NS = 1_000_000_000
+PERIOD_NS = 40_000_000
+QUEUE = QoSProfile(depth=50)
+
+
+def road(count: int, width: int = WIDTH, height: int = HEIGHT) -> list[np.ndarray]:
+    """Frames of a two-coloured vehicle that moves right over noise at `SPEED` px per frame."""
+    noise = np.random.default_rng(7).integers(90, 130, (height, width, 3), np.uint8)
+    frames = []
+    for index in range(count):
+        frame = noise.copy()
+        x, y, w, h = TARGET
+        x += SPEED * index
+        frame[y : y + h, x : x + w] = (200, 40, 30)
+        frame[y : y + h // 2, x : x + w] = (30, 60, 210)
+        frames.append(frame)
+    return frames
+
+
+def header(index: int, frame_id: str = "camera") -> Header:
+    return header_at(FIRST_NS + index * PERIOD_NS, frame_id)
+
+
+def header_at(nanoseconds: int, frame_id: str = "camera") -> Header:
+    made = Header(frame_id=frame_id)
+    made.stamp.sec, made.stamp.nanosec = divmod(nanoseconds, 1_000_000_000)
+    return made
+
+
+def overrides(**values) -> list[Parameter]:
+    """Parameters by name, with `__` for the dot."""
+    return [Parameter(name.replace("__", "."), value=value) for name, value in values.items()]
+
+
+def on_target(**values) -> list[Parameter]:
+    x, y, width, height = map(float, TARGET)
+    return overrides(target__x=x, target__y=y, target__width=width, target__height=height, **values)
+
+
+def values_of(answer: DiagnosticArray) -> dict[str, str]:
+    return {item.key: item.value for item in answer.status[0].values}
+
+
+class Rig:
+    """The node under test, a publisher of images, and everything that it answered."""
+
+    def __init__(self, bench, parameters=(), variant: str = "apf", kind=Image, topic="image"):
+        self.bench = bench
+        self.kind = kind
+        self.node = bench.add(
+            TrackerNode(
+                find_variant(variant),
+                context=bench.context,
+                parameter_overrides=[Parameter("queue_depth", value=50), *parameters],
+            )
+        )
+        self.name = f"/{variant}_tracker"
+        self.camera = bench.publisher(kind, topic, QUEUE)
+        self.modes = bench.collect(DiagnosticArray, f"{self.name}/mode", QUEUE)
+        self.positions = bench.collect(PointStamped, f"{self.name}/position", QUEUE)
+
+    def show(self, message) -> DiagnosticArray:
+        """Publish one image and return its one answer."""
+        before = len(self.modes)
+        self.camera.publish(message)
+        self.bench.wait_for(lambda: len(self.modes) > before)
+        answer = self.modes[-1]
+        assert len(self.modes) == before + 1
+        assert answer.header == message.header
+        return answer
+
+    def show_frame(self, frame: np.ndarray, index: int) -> DiagnosticArray:
+        return self.show(image_message(header(index), frame))
+
+    def play(self, frames, first: int = 0) -> list[str]:
+        """Show frames with stamps in step; return what each mode said."""
+        answers = [self.show_frame(frame, first + index) for index, frame in enumerate(frames)]
+        return [answer.status[0].message for answer in answers]
+
+    def position_at(self, answer: DiagnosticArray) -> PointStamped:
+        """Wait for the position of an answered image."""
+        wanted = stamp_ns(answer.header)
+
+        def found():
+            return next((p for p in self.positions if stamp_ns(p.header) == wanted), None)
+
+        return self.bench.wait_for(found)
