@@ -13,7 +13,7 @@ from vehicle_pf_tracker.recordings.topics import DIAGNOSTIC_ARRAY, IMAGE_TYPES
 from vehicle_pf_tracker.ros.spinner import Spinner
 
 _MODE = "/mode"
-_LONGEST = 3.0
+_LONGEST = 5.0
 _QUIET = 1.0
 """A search ends so many s after the last node was found."""
 

@@ -1,0 +1,85 @@
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from vehicle_pf_tracker.ros import transport
+from vehicle_pf_tracker.ros.transport import image_transport, is_free_to_choose, segment_size
+
+MB = 1024 * 1024
+FAST_DDS = "rmw_fastrtps_cpp"
+SPACE = "{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}"
+
+
+@pytest.mark.parametrize(
+    ("image_mb", "free_mb", "size_mb"),
+    [
+        (0, 1000, 4),  # never less than 4 MB
+        (1, 1000, 4),
+        (6, 1000, 24),  # four images
+        (6, 40, 20),  # half of what is free
+        (6, 24, 12),  # two images are the least
+        (6, 23, None),
+        (0, 4, 2),
+        (0, 3, None),
+    ],
+)
+def test_segment_holds_four_images_if_there_is_room(image_mb, free_mb, size_mb):
+    expected = None if size_mb is None else size_mb * MB
+    assert segment_size(image_mb * MB, free_mb * MB) == expected
+
+
+def test_profile_is_named_while_it_lasts_and_then_gone():
+    environment = {}
+    with image_transport(6 * MB, FAST_DDS, environment) as notices:
+        path = Path(environment["FASTRTPS_DEFAULT_PROFILES_FILE"])
+        root = ElementTree.parse(path).getroot()
+    assert notices == []
+    assert environment == {}
+    assert not path.exists()
+    assert not path.parent.exists()
+    assert int(root.find(f".//{SPACE}segment_size").text) >= 12 * MB
+    used = {item.text for item in root.findall(f".//{SPACE}userTransports/{SPACE}transport_id")}
+    kinds = {
+        item.find(f"{SPACE}transport_id").text: item.find(f"{SPACE}type").text
+        for item in root.iter(f"{SPACE}transport_descriptor")
+    }
+    assert {kinds[name] for name in used} == {"SHM", "UDPv4"}
+    assert root.find(f"{SPACE}participant").attrib["is_default_profile"] == "true"
+
+
+def test_profile_goes_also_after_an_error():
+    environment = {}
+    with pytest.raises(RuntimeError), image_transport(0, FAST_DDS, environment):
+        raise RuntimeError
+    assert environment == {}
+
+
+@pytest.mark.parametrize("name", transport.USER_VARIABLES)
+def test_a_choice_of_the_user_is_never_overridden(name):
+    environment = {name: "their own"}
+    with image_transport(6 * MB, FAST_DDS, environment) as notices:
+        assert environment == {name: "their own"}
+    assert environment == {name: "their own"}
+    assert notices == []
+
+
+@pytest.mark.parametrize("middleware", ["rmw_cyclonedds_cpp", "rmw_zenoh_cpp"])
+def test_other_middlewares_are_left_alone(middleware):
+    environment = {}
+    with image_transport(6 * MB, middleware, environment):
+        assert environment == {}
+
+
+def test_both_kinds_of_fast_dds_are_known():
+    assert is_free_to_choose({}, "rmw_fastrtps_cpp")
+    assert is_free_to_choose({}, "rmw_fastrtps_dynamic_cpp")
+
+
+def test_too_little_shared_memory_is_told(monkeypatch):
+    monkeypatch.setattr(transport, "SHARED_MEMORY", Path("/nowhere/at/all"))
+    environment = {}
+    with image_transport(6 * MB, FAST_DDS, environment) as (notice,):
+        assert environment == {}
+    assert "0.0 MB free" in notice
+    assert "6.3 MB" in notice
