@@ -59,7 +59,8 @@ def run(args: argparse.Namespace) -> int:
     folder.write_run(rows, describe_run(info, tracker.session))
     metrics = measure(score_frames(rows, recording.truth(), args.max_diff))
     folder.write_metrics(metrics)
-    show(comparison({variant.name: metrics}, title=f"{args.recording} -> {args.output}"))
+    show(comparison({variant.name: metrics}))
+    print(f"results are in {folder.path}")
     return 0
 
 

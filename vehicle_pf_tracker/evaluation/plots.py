@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 from matplotlib.patheffects import Normal, Stroke
 
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
@@ -36,10 +35,13 @@ _STYLES = (
     _Style("#56B4E9", (0, (8, 2)), "P"),
 )
 _SHADES = {Occlusion.PARTIAL: ("0.93", "partly hidden"), Occlusion.TOTAL: ("0.78", "hidden")}
-_LEAST_ERROR = 0.1
+_LEAST_ERROR = 0.5
 """Errors below this, in px, are drawn at the foot of the logarithmic scale."""
 _MARKER_EVERY = 20
 _DPI = 150
+_DASHED = (0, (2, 1.4))
+_OUTLINE = (Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal())
+"""Keeps lines visible on any scenery."""
 
 
 def error_figure(runs: Mapping[str, Scores], title: str = "") -> Figure:
@@ -87,13 +89,14 @@ def path_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Fi
     figure = Figure(figsize=(9, 9 * height / width + 0.8), layout="constrained")
     axes = figure.add_subplot()
     axes.imshow(frame, extent=(0, width, height, 0))
-    for (name, scores), style in zip(runs.items(), itertools.cycle(_STYLES), strict=False):
-        estimated = [(f.row.position, f.hidden) for f in scores.frames]
-        _draw_path(axes, estimated, name, style.colour, style.marker)
     for scores in itertools.islice(runs.values(), 1):
         true = [(f.truth.box.centre if f.truth else None, f.hidden) for f in scores.frames]
         _draw_path(axes, true, "truth", "black", "")
         _draw_first_box(axes, scores)
+    for (name, scores), style in zip(runs.items(), itertools.cycle(_STYLES), strict=False):
+        estimated = [(f.row.position, f.hidden) for f in scores.frames]
+        _draw_path(axes, estimated, name, style.colour, style.marker)
+    axes.plot([], [], color="0.4", lw=1.7, ls=_DASHED, label="while hidden")
     axes.set(xlim=(0, width), ylim=(height, 0), xlabel="x, px", ylabel="y, px", title=title)
     figure.legend(loc="outside lower center", ncols=6, frameon=False)
     return figure
@@ -137,11 +140,10 @@ def _draw_path(
     marker: str,
 ) -> None:
     """Draw a path solid where it is seen and dashed where hidden; None breaks it."""
-    outline = [Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal()]
     for hidden, line in _lines(points):
         xs, ys = zip(*line, strict=True)
-        style = (0, (2, 1.4)) if hidden else "-"
-        axes.plot(xs, ys, color=colour, lw=1.7, ls=style, path_effects=outline)
+        style = _DASHED if hidden else "-"
+        axes.plot(xs, ys, color=colour, lw=1.7, ls=style, path_effects=_OUTLINE)
     marks = [point for point, _ in points[::_MARKER_EVERY] if point is not None]
     xs, ys = zip(*marks, strict=True) if marks and marker else ((), ())
     axes.plot(xs, ys, ls="", color=colour, marker=marker, ms=6, mec="white", mew=0.8)
@@ -165,6 +167,6 @@ def _lines(
 def _draw_first_box(axes: Axes, scores: Scores) -> None:
     box = next((f.truth.box for f in scores.counted if f.truth is not None), None)
     if box is not None:
-        axes.add_patch(
-            Rectangle((box.x, box.y), box.width, box.height, fill=False, ec="black", lw=1.2)
-        )
+        corners = [*box.corners, box.corners[0]]
+        xs, ys = zip(*corners, strict=True)
+        axes.plot(xs, ys, color="black", lw=1.2, path_effects=_OUTLINE)

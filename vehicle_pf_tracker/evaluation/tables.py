@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from rich.table import Table as RichTable
+from rich.text import Text
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
 
 Cell: TypeAlias = float | int | bool | str | None
-NOTHING = "–"
+NOTHING = "-"
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,28 +32,25 @@ class Line:
 class Table:
     """One line per metric, one column per run."""
 
-    title: str
     columns: tuple[str, ...]
     lines: tuple[Line, ...]
 
     def to_rich(self) -> RichTable:
         """For a terminal."""
-        table = RichTable("", *self.columns, title=self.title or None, title_justify="left")
-        for column in table.columns[1:]:
-            column.justify = "right"
-        for line in self.lines:
-            table.add_row(_label(line), *(_text(cell, line.decimals) for cell in line.cells))
+        # As `Text`, since a name in brackets would be taken for a style otherwise.
+        table = RichTable("")
+        for name in self.columns:
+            table.add_column(Text(name), justify="right")
+        for line in self._rows():
+            table.add_row(*map(Text, line))
         return table
 
     def to_markdown(self) -> str:
-        """For documents; without the title."""
+        """For documents."""
         rows = [
             ["", *self.columns],
             ["---", *("---:" for _ in self.columns)],
-            *(
-                [_label(line), *(_text(cell, line.decimals) for cell in line.cells)]
-                for line in self.lines
-            ),
+            *self._rows(),
         ]
         return "".join(f"| {' | '.join(row)} |\n" for row in rows)
 
@@ -64,16 +62,15 @@ class Table:
         writer.writerows([line.label, line.unit, *line.cells] for line in self.lines)
         return text.getvalue()
 
+    def _rows(self) -> Iterator[list[str]]:
+        for line in self.lines:
+            yield [_label(line), *(_text(cell, line.decimals) for cell in line.cells)]
 
-def comparison(runs: Mapping[str, Metrics], title: str = "") -> Table:
-    """Put runs on the same recording side by side.
 
-    Parameters
-    ----------
-    runs : mapping of str to Metrics
-        By the name of their column.
-    title : str
-        Stands over the table.
+def comparison(runs: Mapping[str, Metrics]) -> Table:
+    """Put runs on the same recording side by side, each under its name.
+
+    Metrics that no run has are left out.
     """
     metrics = list(runs.values())
 
@@ -97,7 +94,7 @@ def comparison(runs: Mapping[str, Metrics], title: str = "") -> Table:
     ]
     has_values = [any(cell is not None for cell in line.cells) for line in lines]
     kept = tuple(line for line, filled in zip(lines, has_values, strict=True) if filled)
-    return Table(title, tuple(runs), kept)
+    return Table(tuple(runs), kept)
 
 
 def _occlusion_lines(metrics: list[Metrics]) -> list[Line]:
