@@ -52,7 +52,8 @@ class TopicPublisher:
         try:
             self._publisher = node.create_publisher(kind, name, qos)
         except NameValidationException as error:
-            raise InputError(f"{name!r} is no topic name: {error.error_msg}") from None
+            reason = str(error).splitlines()[0].rstrip(":").rpartition(": ")[2]
+            raise InputError(f"{name!r} is no topic name: {reason}") from None
         self._convert = convert
 
     @property
