@@ -16,6 +16,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.features.colour import Histogram, bin_count, bin_indices
 from vehicle_pf_tracker.features.colour_kernel import Coefficients
 from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient
 from vehicle_pf_tracker.features.window import Centres, Positions, Window, centres
 
 Array = npt.NDArray[np.float64]
@@ -26,7 +27,7 @@ Indices = npt.NDArray[np.intp]
 class Kernel:
     """Pixels of the ellipse in a window: offsets (P, 2) in px, Epanechnikov profile (P,)."""
 
-    offsets: Indices
+    offsets: Array
     profile: Array
 
 
@@ -38,7 +39,7 @@ def epanechnikov(window: Window) -> Kernel:
     ]
     radius = np.square(x / (window.half_width + 0.5)) + np.square(y / (window.half_height + 0.5))
     inside = radius < 1
-    return Kernel(np.column_stack([x[inside], y[inside]]), 1.0 - radius[inside])
+    return Kernel(np.column_stack([x[inside], y[inside]]) * 1.0, 1.0 - radius[inside])
 
 
 def kernel_histogram(
@@ -62,16 +63,16 @@ def kernel_histogram(
     (bin_count(bits),) array
         Sums to one.
     """
-    kernel, bins = epanechnikov(window), bin_count(bits)
+    bins = bin_count(bits)
     pixel = _pixels(frame, np.asarray([position]))
-    columns = _columns(frame, pixel, window, np.arange(bins), bits)
-    return np.asarray(_masses(columns, kernel, bins)[0])
+    cells = _cells(frame, pixel, window, np.arange(bins), bits)
+    return np.asarray(_masses(cells, epanechnikov(window), bins)[0])
 
 
-def mean_shift(
+def kernel_similarity(
     frame: Frame, positions: Positions, window: Window, reference: Histogram, bits: int
-) -> tuple[Positions, Coefficients]:
-    """Move every position one mean-shift step towards the reference's colours (eq. 25 and 26).
+) -> Coefficients:
+    """Bhattacharyya coefficient of each kernel-weighted histogram with `reference` (eq. 17).
 
     Parameters
     ----------
@@ -88,24 +89,42 @@ def mean_shift(
 
     Returns
     -------
-    shifted : (N, 2) array
+    (N,) array
+        From 0 to 1.
+    """
+    active = np.flatnonzero(reference)
+    cells = _cells(frame, _pixels(frame, positions), window, active, bits)
+    masses = _masses(cells, epanechnikov(window), len(active))
+    return bhattacharyya_coefficient(masses, reference[active])
+
+
+def mean_shift(
+    frame: Frame, positions: Positions, window: Window, reference: Histogram, bits: int
+) -> Positions:
+    """Move every position one mean-shift step towards the reference's colours (eq. 25 and 26).
+
+    Parameters
+    ----------
+    frame, positions, window, reference, bits
+        As for `kernel_similarity`.
+
+    Returns
+    -------
+    (N, 2) array
         Mean of the ellipse's pixels, each weighted by ``sqrt(q / p)`` of its colour; the position
         itself where the ellipse has no colour of the reference.
-    coefficients : (N,) array
-        Bhattacharyya coefficients at `positions`, before the step.
     """
     kernel, active = epanechnikov(window), np.flatnonzero(reference)
     pixel = _pixels(frame, positions)
-    columns = _columns(frame, pixel, window, active, bits)
-    masses, wanted = _masses(columns, kernel, len(active)), reference[active]
-    coefficients = np.minimum(np.sqrt(masses * wanted).sum(axis=1), 1.0)
-    weights = _pixel_weights(masses, wanted, columns)
+    cells = _cells(frame, pixel, window, active, bits)
+    masses = _masses(cells, kernel, len(active))
+    weights = _pixel_weights(masses, reference[active], cells)
     total = weights.sum(axis=1)
     moved = total > 0
     step = (weights @ kernel.offsets)[moved] / total[moved, np.newaxis]
     shifted = np.array(positions, dtype=np.float64)
     shifted[moved] = pixel[moved] + 0.5 + step
-    return shifted, coefficients
+    return shifted
 
 
 def _pixels(frame: Frame, positions: Positions) -> Centres:
@@ -113,10 +132,11 @@ def _pixels(frame: Frame, positions: Positions) -> Centres:
     return np.asarray(np.clip(centres(positions), 0, [width - 1, height - 1]))
 
 
-def _columns(frame: Frame, pixel: Centres, window: Window, active: Indices, bits: int) -> Indices:
-    """Column of each kernel pixel's bin in the table of masses, shape (N, P).
+def _cells(frame: Frame, pixel: Centres, window: Window, active: Indices, bits: int) -> Indices:
+    """Cell of each kernel pixel in the flat table of masses, shape (N, P).
 
-    Active bins come first, then one column for all other colours, and one for no pixel at all.
+    The table has a row for each window. In a row the active bins come first, then one cell for all
+    other colours, and one for what lies outside the image.
     """
     table = np.full(bin_count(bits), len(active))
     table[active] = np.arange(len(active))
@@ -128,24 +148,23 @@ def _columns(frame: Frame, pixel: Centres, window: Window, active: Indices, bits
     covered = frame[low[1] : high[1], low[0] : high[0]]
     region[top:bottom, left:right] = table[bin_indices(covered, bits)]
     stride = np.array([1, region.shape[1]])
-    starts = (pixel - first) @ stride
-    places = starts[:, np.newaxis] + epanechnikov(window).offsets @ stride
-    return np.asarray(region.ravel()[places])
+    reads = (epanechnikov(window).offsets @ stride).astype(np.intp)
+    columns = region.ravel().take(((pixel - first) @ stride)[:, np.newaxis] + reads)
+    return np.asarray(columns + (len(active) + 2) * np.arange(len(pixel))[:, np.newaxis])
 
 
-def _masses(columns: Indices, kernel: Kernel, bins: int) -> Array:
+def _masses(cells: Indices, kernel: Kernel, bins: int) -> Array:
     """Normalised kernel mass of each active bin, shape (N, bins)."""
-    count, width = len(columns), bins + 2
-    rows = columns + width * np.arange(count)[:, np.newaxis]
-    profile = np.broadcast_to(kernel.profile, columns.shape)
-    masses = np.bincount(rows.ravel(), profile.ravel(), minlength=count * width)
+    count, width = len(cells), bins + 2
+    profile = np.broadcast_to(kernel.profile, cells.shape)
+    masses = np.bincount(cells.ravel(), profile.ravel(), minlength=count * width)
     masses = masses.reshape(count, width)
     # The centre pixel always exists, so the sum without the last column is never zero.
     return np.asarray(masses[:, :bins] / masses[:, :-1].sum(axis=1, keepdims=True))
 
 
-def _pixel_weights(masses: Array, wanted: Histogram, columns: Indices) -> Array:
+def _pixel_weights(masses: Array, wanted: Histogram, cells: Indices) -> Array:
     """``sqrt(q / p)`` of each kernel pixel's colour (eq. 25), shape (N, P)."""
     table = np.zeros((len(masses), masses.shape[1] + 2))
     np.divide(wanted, masses, out=table[:, :-2], where=masses > 0)
-    return np.take_along_axis(np.sqrt(table), columns, axis=1)
+    return np.sqrt(table).ravel().take(cells)

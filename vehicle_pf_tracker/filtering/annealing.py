@@ -6,10 +6,12 @@ share of the particles survives the resampling that follows.
 
 from __future__ import annotations
 
-from vehicle_pf_tracker.filtering.weights import Weights, effective_sample_size, from_log
+import numpy as np
 
-_HALVINGS = 40
-"""Bisection steps; 40 leave the rate exact to 1e-12 of the interval."""
+from vehicle_pf_tracker.filtering.weights import Weights
+
+_PRECISION = 1e-4
+_MOST_HALVINGS = 60
 
 
 def survival_rate(log_weights: Weights, beta: float) -> float:
@@ -18,9 +20,9 @@ def survival_rate(log_weights: Weights, beta: float) -> float:
     Parameters
     ----------
     log_weights : (N,) array
-        Logarithms of the weights in any offset.
+        Logarithms of the weights in any offset, all finite.
     beta : float
-        Annealing rate, above 0.
+        Annealing rate, at least 0.
 
     Returns
     -------
@@ -28,8 +30,8 @@ def survival_rate(log_weights: Weights, beta: float) -> float:
         ``D(beta) / N`` with the survival diagnostic ``D = 1 / sum(w²)`` of the normalised
         ``w ** beta``: from the share of particles that have the largest weight, to 1.
     """
-    weights, _ = from_log(beta * log_weights)
-    return effective_sample_size(weights) / len(weights)
+    weights = np.exp(beta * (log_weights - log_weights.max()))
+    return float(weights.sum() ** 2 / (weights @ weights) / len(weights))
 
 
 def annealing_rate(log_weights: Weights, survival: float, largest: float) -> float:
@@ -38,7 +40,7 @@ def annealing_rate(log_weights: Weights, survival: float, largest: float) -> flo
     Parameters
     ----------
     log_weights : (N,) array
-        Logarithms of the weights in any offset.
+        Logarithms of the weights in any offset, all finite.
     survival : float
         Wanted survival rate alpha, 0 to 1.
     largest : float
@@ -48,15 +50,18 @@ def annealing_rate(log_weights: Weights, survival: float, largest: float) -> flo
     Returns
     -------
     float
-        From 0 to `largest`. The survival rate falls as the rate grows, so there is one solution.
+        From 0 to `largest`, to four digits. The survival rate falls as the rate grows, so there is
+        one solution.
     """
     low, high = 0.0, largest
     if survival_rate(log_weights, high) >= survival:
         return high
-    for _ in range(_HALVINGS):
+    for _ in range(_MOST_HALVINGS):
         middle = (low + high) / 2
         if survival_rate(log_weights, middle) >= survival:
             low = middle
         else:
             high = middle
-    return low
+        if high - low <= _PRECISION * high:
+            break
+    return high

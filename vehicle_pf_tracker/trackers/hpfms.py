@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.features.mean_shift import kernel_histogram, mean_shift
-from vehicle_pf_tracker.features.window import keep_inside
+from vehicle_pf_tracker.features.mean_shift import kernel_histogram, kernel_similarity, mean_shift
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
@@ -82,7 +81,7 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         parents = self._resample(self._cloud)
         particles, left_image = self._diffuse(frame, parents, self._spread() * elapsed)
         for _ in range(settings.iterations):
-            particles = keep_inside(frame, self._shift(frame, particles)[0])
+            particles = self._shift(frame, particles)
         rho = self._similarity(frame, particles)
         cloud = Cloud(particles, *from_log(log_likelihood(rho, settings.likelihood)))
         outcome = self._report(frame, cloud, elapsed, left_image=left_image)
@@ -99,8 +98,9 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         return doubt * max(settings.sigma, transition.speed_share * speed)
 
     def _similarity(self, frame: Frame, positions: Array) -> Array:
-        return self._shift(frame, positions)[1]
+        bits = self.parameters.histogram_bits
+        return kernel_similarity(frame, positions, self.window, self._reference, bits)
 
-    def _shift(self, frame: Frame, positions: Array) -> tuple[Array, Array]:
+    def _shift(self, frame: Frame, positions: Array) -> Array:
         bits = self.parameters.histogram_bits
         return mean_shift(frame, positions, self.window, self._reference, bits)

@@ -13,7 +13,7 @@ import numpy as np
 
 from vehicle_pf_tracker.features.colour import Histogram
 from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.features.mean_shift import kernel_histogram, mean_shift
+from vehicle_pf_tracker.features.mean_shift import kernel_histogram, kernel_similarity, mean_shift
 from vehicle_pf_tracker.features.similarity import hellinger_distance
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
 from vehicle_pf_tracker.trackers.colour_tracker import VELOCITY_WINDOW
@@ -74,28 +74,24 @@ class MsTracker(BaseTracker[MsParameters]):
         return np.asarray([centre])
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        before = self._cloud.mean()
-        found, coefficient = self._climb(frame, self._cloud.positions)
-        cloud = Cloud.uniform(found)
+        before, bits = self._cloud.mean(), self.parameters.histogram_bits
+        cloud = Cloud.uniform(self._climb(frame, self._cloud.positions))
         position = cloud.mean()
-        similarity = float(1.0 - hellinger_distance(coefficient)[0])
+        rho = kernel_similarity(frame, cloud.positions, self.window, self._reference, bits)
+        similarity = float(1.0 - hellinger_distance(rho)[0])
         self._velocity.add(before, position, elapsed)
         return Outcome(
             cloud, position, self._velocity.value, "regular", similarity, {"pi": similarity}
         )
 
-    def _climb(self, frame: Frame, position: Array) -> tuple[Array, Array]:
-        """Step until a step is short; returns the position and the coefficient there."""
+    def _climb(self, frame: Frame, position: Array) -> Array:
+        """Step until a step is short."""
         settings = self.parameters
         for _ in range(settings.iterations):
-            shifted, coefficient = self._step(frame, position)
-            length = float(np.hypot(*(shifted - position)[0]))
-            position = shifted
-            if length < settings.shortest_step:
+            before = position
+            position = mean_shift(
+                frame, before, self.window, self._reference, settings.histogram_bits
+            )
+            if np.hypot(*(position - before)[0]) < settings.shortest_step:
                 break
-        _, coefficient = self._step(frame, position)
-        return position, coefficient
-
-    def _step(self, frame: Frame, position: Array) -> tuple[Array, Array]:
-        bits = self.parameters.histogram_bits
-        return mean_shift(frame, position, self.window, self._reference, bits)
+        return position
