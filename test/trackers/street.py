@@ -17,9 +17,9 @@ SIZE = (24, 16)
 def vehicle():
     """Patch of four colours, so that a histogram tells where its halves are."""
     patch = np.empty((SIZE[1], SIZE[0], 3), np.uint8)
-    patch[:8, :12] = (200, 40, 40)
+    patch[:8, :12] = (90, 0, 0)
     patch[:8, 12:] = (230, 200, 60)
-    patch[8:, :12] = (60, 40, 190)
+    patch[8:, :12] = (0, 0, 130)
     patch[8:, 12:] = (240, 240, 240)
     return patch
 
