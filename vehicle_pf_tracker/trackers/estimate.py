@@ -43,7 +43,8 @@ class Estimate:
     confidence : float
         Evidence relative to its clear level, 0 to 1; 0 where the weights said nothing.
     similarities : mapping of str to float
-        The similarities that the algorithm decides by, each 0 to 1.
+        The similarities that the algorithm decides by, each 0 to 1; ratios of two (`lc_*`) may be
+        larger.
     effective_sample_size : float
         1 to N, before resampling.
     resampling_passes, resampled_particles : int
