@@ -66,5 +66,10 @@ def _offers(
 ) -> list[tuple[int, int, int]]:
     """Return (difference in ns, `i`, j) for the nearest free j, as a list of one or none."""
     right = bisect.bisect_left(free, (stamp, -1))
-    near = [(abs(other - stamp), i, j) for other, j in free[max(right - 1, 0) : right + 1]]
-    return [offer for offer in sorted(near)[:1] if offer[0] <= limit]
+    sides = [right] if right < len(free) else []
+    if right > 0:  # of repeated stamps the first
+        sides.append(bisect.bisect_left(free, (free[right - 1][0], -1)))
+    near = [(abs(free[side][0] - stamp), side) for side in sides]
+    return [
+        (distance, i, free[side][1]) for distance, side in sorted(near)[:1] if distance <= limit
+    ]

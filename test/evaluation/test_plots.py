@@ -1,0 +1,73 @@
+import cv2
+import numpy as np
+import pytest
+from scoring_samples import NONE, PARTIAL, TOTAL, row, run_of, scored
+
+from vehicle_pf_tracker.evaluation.plots import error_figure, path_figure, save
+from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
+from vehicle_pf_tracker.features.errors import InputError
+
+FRAME = np.full((240, 320, 3), 128, np.uint8)
+RUNS = {
+    "one": run_of((10, 1, NONE), (4, 5, PARTIAL), (6, 30, TOTAL), (10, 2, NONE)),
+    "two": run_of((10, 2, NONE), (4, 5, PARTIAL), (6, 90, TOTAL), (10, 0, NONE)),
+}
+
+
+def named_lines(figure):
+    return {line.get_label(): line for line in figure.axes[0].lines if line.get_label()[0] != "_"}
+
+
+def test_errors_are_drawn_by_frame_on_a_scale_that_has_a_foot():
+    line = named_lines(error_figure(RUNS))["two"]
+    assert list(line.get_xdata()) == list(range(1, 31))
+    assert line.get_ydata()[0] == 2
+    assert line.get_ydata()[-1] == 0.5
+
+
+def test_occlusions_are_shaded_once():
+    spans = [
+        (patch.get_label(), patch.get_extents().transformed(axes.transData.inverted()))
+        for axes in error_figure(RUNS).axes
+        for patch in axes.patches
+    ]
+    found = {label: (round(box.x0, 3), round(box.x1, 3)) for label, box in spans}
+    assert found == {"partly hidden": (10.5, 14.5), "hidden": (14.5, 20.5)}
+    assert len(spans) == 2
+
+
+def test_runs_differ_in_colour_and_in_line():
+    lines = named_lines(error_figure(RUNS))
+    assert lines["one"].get_color() != lines["two"].get_color()
+    assert lines["one"].get_linestyle() != lines["two"].get_linestyle()
+
+
+def test_paths_are_dashed_exactly_where_the_vehicle_is_hidden():
+    figure = path_figure(FRAME, {"one": RUNS["one"]})
+    drawn = [
+        (line.is_dashed(), len(line.get_xdata()))
+        for line in figure.axes[0].lines
+        if line.get_color() == "#0072B2" and line.get_linestyle() != "None"
+    ]
+    # 14 frames, then 6 hidden begun at the last one seen, then 10 begun at the last one hidden.
+    assert drawn[:3] == [(False, 14), (True, 7), (False, 11)]
+
+
+def test_a_gap_breaks_the_path():
+    frames = [scored(n, None if n == 5 else 1) for n in range(1, 10)]
+    figure = path_figure(FRAME, {"one": Scores(tuple(frames))})
+    lengths = [len(line.get_xdata()) for line in figure.axes[0].lines
+               if line.get_color() == "#0072B2" and line.get_linestyle() == "-"]  # fmt: skip
+    assert lengths[:2] == [4, 4]
+
+
+@pytest.mark.parametrize("runs", [{}, {"no truth": score_frames([row(1, 5.0), row(2, 6.0)], [])}])
+def test_runs_without_truth_can_be_drawn(tmp_path, runs):
+    save(error_figure(runs), tmp_path / "error.png")
+    save(path_figure(FRAME, runs), tmp_path / "path.png")
+    assert cv2.imread(str(tmp_path / "path.png")).shape[1] == 1350
+
+
+def test_a_picture_that_cannot_be_written_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"cannot write .*missing/error\.png"):
+        save(error_figure(RUNS), tmp_path / "missing" / "error.png")
