@@ -6,7 +6,10 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 NAME = "vehicle_pf_tracker"
-VARIANTS = ("apf", "pf", "sapf", "hpfms", "pfcl", "ms")  # those of trackers/registry.py
+VARIANTS = (  # those of trackers/registry.py
+    "apf", "pf", "sapf", "hpfms", "pfcl", "ms",
+    "mfpf", "sfpf_color", "sfpf_edge", "sfpf_texture",
+)  # fmt: skip
 JAZZY_WHEELS = "sys_platform == 'linux' and platform_machine == 'x86_64'"
 
 RUNTIME = [

@@ -102,6 +102,14 @@ def sample_normal_rayleigh(
     return np.column_stack([along * cosine - across * sine, along * sine + across * cosine])
 
 
+def sample_disc(rng: np.random.Generator, count: int, radius: float) -> Array:
+    """Draw `count` displacements evenly from a disc of `radius` px, shape (count, 2), in px."""
+    angle = rng.uniform(0.0, 2 * np.pi, count)
+    # The root makes every area as likely as any other.
+    distance = radius * np.sqrt(rng.random(count))
+    return np.column_stack([distance * np.cos(angle), distance * np.sin(angle)])
+
+
 def expected_drift(steps: int, sigma_r: float) -> float:
     """Mean displacement along the motion after `steps` draws, in px (eq. 20, READINGS 4)."""
     return steps * RAYLEIGH_MEAN * sigma_r

@@ -12,10 +12,18 @@ from vehicle_pf_tracker.trackers.apf import ApfTracker
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
 from vehicle_pf_tracker.trackers.base import BaseTracker
 from vehicle_pf_tracker.trackers.hpfms import HpfmsParameters, HpfmsTracker
+from vehicle_pf_tracker.trackers.mfpf import MfpfTracker
+from vehicle_pf_tracker.trackers.mfpf_parameters import (
+    MfpfParameters,
+    SfpfColorParameters,
+    SfpfEdgeParameters,
+    SfpfTextureParameters,
+)
 from vehicle_pf_tracker.trackers.ms import MsParameters, MsTracker
 from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
 from vehicle_pf_tracker.trackers.pfcl import PfclParameters, PfclTracker
 from vehicle_pf_tracker.trackers.sapf import SapfParameters, SapfTracker
+from vehicle_pf_tracker.trackers.sfpf import SfpfColorTracker, SfpfEdgeTracker, SfpfTextureTracker
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +75,30 @@ VARIANTS: Mapping[str, Variant] = MappingProxyType(
                 MsTracker,
                 MsParameters,
                 "mean shift, without particles (Comaniciu et al. 2003)",
+            ),
+            Variant(
+                "mfpf",
+                MfpfTracker,
+                MfpfParameters,
+                "colour, edges and texture with adaptive weights (Abdulla et al. 2022)",
+            ),
+            Variant(
+                "sfpf_color",
+                SfpfColorTracker,
+                SfpfColorParameters,
+                "colour alone (Abdulla et al. 2022)",
+            ),
+            Variant(
+                "sfpf_edge",
+                SfpfEdgeTracker,
+                SfpfEdgeParameters,
+                "edge directions alone (Abdulla et al. 2022)",
+            ),
+            Variant(
+                "sfpf_texture",
+                SfpfTextureTracker,
+                SfpfTextureParameters,
+                "texture alone (Abdulla et al. 2022)",
             ),
         )
     }

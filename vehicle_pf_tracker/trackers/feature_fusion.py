@@ -1,0 +1,101 @@
+"""How P2 decides which features to believe: AS, LC and WF (section IV, eq. 16 to 18).
+
+Arrays have one row or entry for each feature, in the tracker's order.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehicle_pf_tracker.filtering.resampling import Ancestors
+from vehicle_pf_tracker.trackers.estimate import Array
+
+
+def average_similarities(distances: Array, best_share: float) -> Array:
+    """Average similarity AS of each feature over the particles most like its reference.
+
+    Parameters
+    ----------
+    distances : (F, N) array
+        Bhattacharyya distances of the particles (eq. 8), 0 to 1.
+    best_share : float
+        Share of the particles that count; 1 is all of them, as printed (READINGS 19).
+
+    Returns
+    -------
+    (F,) array
+        Mean of ``1 - BD`` (eq. 16), 0 to 1.
+    """
+    count = max(math.ceil(best_share * distances.shape[1]), 1)
+    best = np.partition(distances, count - 1, axis=1)[:, :count]
+    return np.asarray(1.0 - best.mean(axis=1))
+
+
+@dataclass(frozen=True, slots=True)
+class Fusion:
+    """What the features are worth in one frame; arrays of shape (F,).
+
+    Attributes
+    ----------
+    averages : array
+        Average similarity AS, 0 to 1.
+    confidences : array
+        Level of confidence LC, AS over its value in the first frame after the start; 0 for a
+        feature below its threshold. May exceed 1.
+    factors : array
+        Weighting factor WF (eq. 17), 0 to 1; all 0 if no feature is in use.
+    """
+
+    averages: Array
+    confidences: Array
+    factors: Array
+
+    @property
+    def full_occlusion(self) -> bool:
+        """Whether every feature is below its threshold."""
+        return not self.factors.any()
+
+    def combine(self, candidates: Array) -> Array:
+        """Weighted average of the features' own positions (F, 2), eq. 18."""
+        return np.asarray(self.factors @ candidates)
+
+
+def fuse(averages: Array, initial: Array, threshold: float) -> Fusion:
+    """Compare each feature's average similarity with its initial one.
+
+    Parameters
+    ----------
+    averages, initial : (F,) arrays
+        AS now, and in the first frame after the start.
+    threshold : float
+        Share of `initial` below which a feature drops out.
+    """
+    useful = (averages > 0) & (averages >= threshold * initial)
+    ratios = averages / np.where(initial > 0, initial, 1.0)
+    confidences = np.where(useful & (initial > 0), ratios, 0.0)
+    total = confidences.sum()
+    return Fusion(averages, confidences, confidences / total if total > 0 else confidences)
+
+
+def common_survivors(sets: Sequence[Ancestors], count: int, otherwise: Ancestors) -> Ancestors:
+    """Keep the particles that survive in every feature's own resampling, as printed.
+
+    The paper does not say how the set is filled up again (READINGS 18); here its members are
+    repeated in turn.
+
+    Parameters
+    ----------
+    sets : sequence of arrays of ancestor indices
+        One for each feature.
+    count : int
+        Number of indices to return.
+    otherwise : array of ancestor indices
+        Taken where no particle survives in all sets.
+    """
+    common = functools.reduce(np.intersect1d, sets)
+    return np.resize(common, count) if len(common) else otherwise

@@ -1,0 +1,239 @@
+"""Parameters of `mfpf` and `sfpf_*` (P2), with a switch for every reading of the print."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from vehicle_pf_tracker.features.glcm import Cooccurrence
+from vehicle_pf_tracker.features.haralick import HaralickStatistics
+from vehicle_pf_tracker.features.lbp import BinaryPatterns
+from vehicle_pf_tracker.features.window_feature import WindowFeature
+from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.trackers.contract import ParticleParameters
+from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
+from vehicle_pf_tracker.trackers.parameters import group, parameter
+
+TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
+    "glcm": Cooccurrence,
+    "lbp": BinaryPatterns,
+    "haralick": HaralickStatistics,
+}
+"""The textures that P2 tried, by the word that the parameter takes."""
+
+
+@dataclass(frozen=True, slots=True)
+class DispersionParameters:
+    """How far particles are dispersed."""
+
+    radius: float = parameter(
+        14.0,
+        "Larger: follows faster changes of speed, and more look-alikes.",
+        minimum=0.01,
+        maximum=1000.0,
+        unit="px/frame",
+        source="P2 section IV, DR",
+    )
+    uncertain_factor: float = parameter(
+        2.0,
+        "Larger: searches further around the start and around predictions.",
+        minimum=1.0,
+        maximum=100.0,
+        unit="radii",
+        source="P2 section IV",
+    )
+    growth: float = parameter(
+        1.0,
+        "Larger: the search around predictions widens faster during an occlusion.",
+        minimum=0.0,
+        maximum=100.0,
+        unit="px/frame",
+        source="P2 section IV, READINGS 19 (no value printed)",
+    )
+    largest: float = parameter(
+        60.0,
+        "Larger: the search may widen further, at more time per frame.",
+        minimum=0.0,
+        maximum=10_000.0,
+        unit="px",
+        source="READINGS 19",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ConfidenceParameters:
+    """When a feature is believed."""
+
+    best_share: float = parameter(
+        0.1,
+        "Higher: the average similarity takes in particles further from the vehicle; 1 takes all, "
+        "as printed.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="share of the particles",
+        source="P2 section IV, READINGS 19",
+    )
+    threshold: float = parameter(
+        0.7,
+        "Higher: features drop out at smaller losses of similarity (printed: 0.8).",
+        minimum=0.0,
+        maximum=1.0,
+        unit="share of the initial average similarity",
+        source="P2 Table II, READINGS 19",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeParameters:
+    """Which pixels are edge points, and what their direction is."""
+
+    threshold: float = parameter(
+        0.3,
+        "Higher: only the strongest edges count (printed: 0.8).",
+        minimum=0.01,
+        maximum=1.0,
+        unit="share of the window's strongest gradient",
+        source="P2 section III-C, READINGS 14",
+        effect="relearns",
+    )
+    in_frame: bool = parameter(
+        True,
+        "Take the gradient in the frame; off takes it in each window by itself, as printed.",
+        source="P2 eq. 6, READINGS 14",
+        effect="relearns",
+    )
+    signed: bool = parameter(
+        True,
+        "Tell light-to-dark from dark-to-light; off folds them by the printed arctangent.",
+        source="P2 eq. 7, READINGS 13",
+        effect="relearns",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class FeatureFilterParameters(ParticleParameters):
+    """What `mfpf` and its single-feature filters have in common."""
+
+    as_printed: bool = parameter(
+        False,
+        "Follow the paper to the letter: overrides every reading below that departs from it.",
+        source="READINGS 1, 12 to 19",
+    )
+    reference_weight: float = parameter(
+        0.7,
+        "Higher: the reference keeps more of the first frame and follows the last one less.",
+        minimum=0.0,
+        maximum=1.0,
+        source="P2 eq. 9, READINGS 15 (no value printed)",
+    )
+    velocity_window: int = parameter(
+        5,
+        "Longer: a steadier speed that follows turns later; 1 takes the last move, as printed.",
+        minimum=1,
+        maximum=10_000,
+        unit="frames",
+        source="P2 eq. 5, READINGS 12",
+    )
+    estimate: str = parameter(
+        "mean",
+        "The weighted mean of the particles, or the best one, as printed.",
+        choices=("mean", "best"),
+        source="P2 eq. 12, 13 and 18, READINGS 17",
+    )
+    resampling: str = parameter(
+        "multinomial",
+        "How ancestors are drawn; systematic and stratified vary less.",
+        choices=SCHEMES,
+        source="P2 eq. 15",
+    )
+    resample_below: float = parameter(
+        0.5,
+        "Higher: resamples at larger effective sample sizes; 1 always.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="share of the particles",
+        source="P2 eq. 14, READINGS 16",
+    )
+    likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.15)
+    dispersion: DispersionParameters = group(DispersionParameters)
+    confidence: ConfidenceParameters = group(ConfidenceParameters)
+
+
+@dataclass(frozen=True, slots=True)
+class SfpfColorParameters(FeatureFilterParameters):
+    """Parameters of `sfpf_color`."""
+
+    def effective(self) -> SfpfColorParameters:
+        """Return the parameters in force: those of the print where `as_printed` is set."""
+        return _common_print(self) if self.as_printed else self
+
+
+@dataclass(frozen=True, slots=True)
+class SfpfEdgeParameters(FeatureFilterParameters):
+    """Parameters of `sfpf_edge`."""
+
+    edges: EdgeParameters = group(EdgeParameters)
+
+    def effective(self) -> SfpfEdgeParameters:
+        """Return the parameters in force: those of the print where `as_printed` is set."""
+        return replace(_common_print(self), edges=_PRINTED_EDGES) if self.as_printed else self
+
+
+@dataclass(frozen=True, slots=True)
+class SfpfTextureParameters(FeatureFilterParameters):
+    """Parameters of `sfpf_texture`."""
+
+    texture: str = parameter(
+        "glcm",
+        "The histogram that describes texture; the paper tried all three and kept glcm.",
+        choices=TEXTURES,
+        source="P2 section III-D",
+        effect="relearns",
+    )
+
+    def effective(self) -> SfpfTextureParameters:
+        """Return the parameters in force: those of the print where `as_printed` is set."""
+        return _common_print(self) if self.as_printed else self
+
+
+@dataclass(frozen=True, slots=True)
+class MfpfParameters(FeatureFilterParameters):
+    """Parameters of `mfpf`."""
+
+    edges: EdgeParameters = group(EdgeParameters)
+    texture: str = parameter(
+        "glcm",
+        "The histogram that describes texture; the paper tried all three and kept glcm.",
+        choices=TEXTURES,
+        source="P2 section III-D",
+        effect="relearns",
+    )
+    joint_resampling: bool = parameter(
+        True,
+        "Resample once, on the product of the features' weights; off keeps the particles that "
+        "survive in every feature's own resampling, as printed.",
+        source="P2 section IV, READINGS 18",
+    )
+
+    def effective(self) -> MfpfParameters:
+        """Return the parameters in force: those of the print where `as_printed` is set."""
+        if not self.as_printed:
+            return self
+        return replace(_common_print(self), edges=_PRINTED_EDGES, joint_resampling=False)
+
+
+FilterParametersT = TypeVar("FilterParametersT", bound=FeatureFilterParameters)
+
+_PRINTED_EDGES = EdgeParameters(threshold=0.8, in_frame=False, signed=False)
+
+
+def _common_print(parameters: FilterParametersT) -> FilterParametersT:
+    return replace(
+        parameters,
+        velocity_window=1,
+        estimate="best",
+        resample_below=1.0,
+        likelihood=LikelihoodParameters(sigma_v=1.5),
+        confidence=ConfidenceParameters(best_share=1.0, threshold=0.8),
+    )
