@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehicle_pf_tracker.cli.console import UsageError, tell_notices
+from vehicle_pf_tracker.cli.parameter_options import parse_box
 from vehicle_pf_tracker.cli.replay_progress import progress_view
 from vehicle_pf_tracker.evaluation.estimates import write_estimates
 from vehicle_pf_tracker.evaluation.output_files import make_folder
-from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.recordings.reader import Recording
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay_options import NodeReport, ReplayOptions, ReplayReport
-
-_USAGE = 2
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -60,7 +58,7 @@ def _add_tracking_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     target = parser.add_mutually_exclusive_group()
     target.add_argument(
-        "--target", type=_box, metavar="X,Y,W,H",
+        "--target", type=parse_box, metavar="X,Y,W,H",
         help="box to start on in px, top-left corner and size; otherwise the first true box",
     )  # fmt: skip
     target.add_argument(
@@ -81,27 +79,31 @@ def _add_tracking_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Play the recording; 0 also when the user ends it with Ctrl-C."""
+    """Play the recording; Ctrl-C is a good end too.
+
+    Raises
+    ------
+    UsageError
+        If options contradict each other, or there is no target to start on.
+    """
     if args.loop and args.output:
-        return _refuse("-o needs an end, so it cannot go with --loop")
+        raise UsageError("-o needs an end, so it cannot go with --loop")
     from vehicle_pf_tracker.ros.interruption import noted_interrupts
     from vehicle_pf_tracker.ros.replaying import NoTargetError, replay
 
     recording = Recording(args.recording, args.topic)
-    for notice in recording.notices:
-        _tell(notice)
+    told = recording.notices
+    tell_notices(told)
     if args.output:
         make_folder(args.output)
-    told = recording.notices
     with noted_interrupts():
         try:
             with progress_view() as on_progress:
                 report = replay(recording, options_of(args), on_progress, _tell)
         except NoTargetError as error:
-            return _refuse(str(error))
-        for notice in (*recording.notices, *report.notices):
-            if notice not in told:
-                _tell(notice)
+            raise UsageError(str(error)) from None
+        later = [notice for notice in recording.notices if notice not in told]
+        tell_notices([*later, *report.notices])
         print(summary(report), flush=True)
         if args.output:
             write_answers(args.output, report.nodes)
@@ -164,13 +166,8 @@ def summary(report: ReplayReport) -> str:
     return "\n".join(lines)
 
 
-def _refuse(sentence: str) -> int:
-    print(f"vehicle-pf-tracker replay: {sentence}", file=sys.stderr)
-    return _USAGE
-
-
 def _tell(sentence: str) -> None:
-    print(sentence, file=sys.stderr, flush=True)
+    tell_notices([sentence])
 
 
 def _seconds(text: str) -> float:
@@ -195,13 +192,6 @@ def _number(text: str) -> float:
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"{text!r} is no number")
     return value
-
-
-def _box(text: str) -> Box:
-    numbers = [_number(word) for word in text.split(",")]
-    if len(numbers) != 4:
-        raise argparse.ArgumentTypeError(f"{text!r} is not x,y,w,h")
-    return Box(*numbers)
 
 
 def _remapping(text: str) -> tuple[str, str]:

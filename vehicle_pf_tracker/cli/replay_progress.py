@@ -70,22 +70,27 @@ class _Lines:
     def __init__(self, stream: TextIO, clock: Callable[[], float]) -> None:
         self._stream = stream
         self._clock = clock
-        self._began = self._said = clock()
+        self._began = self._pass_began = self._said = clock()
+        self._position = 0.0
 
     def __call__(self, progress: ReplayProgress) -> None:
         now = self._clock()
         if progress.frames == 1:
-            self._began = self._said = now
-        if now - self._said < _LINE_SECONDS:
-            return
-        self._said = now
-        elapsed = now - self._began
-        line = f"{progress.frames} frames, {_rate(progress, elapsed)}"
-        if progress.position > 0:
-            left = elapsed * (progress.length / progress.position - 1)
-            share = progress.position / progress.length
-            line = f"{share:4.0%}, {line}, {left:.0f} s left"
-        print(line, file=self._stream, flush=True)
+            self._began = self._pass_began = self._said = now
+        if progress.position < self._position:  # a loop begins again
+            self._pass_began = now
+        self._position = progress.position
+        if now - self._said >= _LINE_SECONDS:
+            self._said = now
+            print(self._line(progress, now), file=self._stream, flush=True)
+
+    def _line(self, progress: ReplayProgress, now: float) -> str:
+        line = f"{progress.frames} frames, {_rate(progress, now - self._began)}"
+        if not progress.position:
+            return line
+        share = progress.position / progress.length
+        left = (now - self._pass_began) * (1 / share - 1)
+        return f"{share:4.0%}, {line}, {left:.0f} s left"
 
 
 def _rate(progress: ReplayProgress, elapsed: float) -> str:

@@ -12,8 +12,10 @@ from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.topics import DIAGNOSTIC_ARRAY, IMAGE_TYPES
 from vehicle_pf_tracker.ros.spinner import Spinner
 
+DISCOVERY = 5.0
+"""As long as discovery usually takes at most, in s; no search for a node is shorter."""
+
 _MODE = "/mode"
-_LONGEST = 5.0
 _QUIET = 1.0
 """A search ends so many s after the last node was found."""
 
@@ -47,8 +49,9 @@ class Lookout:
         Raises
         ------
         InputError
-            If one does not within `timeout` s.
+            If one does not within `timeout` s, or within `DISCOVERY` s if that is longer.
         """
+        timeout = max(timeout, DISCOVERY)
         wanted = list(dict.fromkeys(map(full_name, names)))
         for name in wanted:
             if not self._spinner.until(self._has_subscribed(name), timeout):
@@ -58,16 +61,16 @@ class Lookout:
                 )
         return wanted
 
-    def find(self, timeout: float | None = None) -> list[str]:
+    def find(self, timeout: float = 0.0) -> list[str]:
         """Find all tracker nodes that subscribe.
 
         Parameters
         ----------
-        timeout : float or None
-            How long to look for the first in s; None takes as long as discovery usually does.
+        timeout : float
+            How long to look for the first in s, if that is longer than `DISCOVERY`.
         """
         found: set[str] = set()
-        deadline = time.monotonic() + (timeout or _LONGEST)
+        deadline = time.monotonic() + max(timeout, DISCOVERY)
 
         def grows() -> bool:
             now = self._trackers() & self._subscribers(self._topic)

@@ -42,7 +42,7 @@ class ReplayOptions:
     set_target : bool
         Whether to set the nodes' targets and reset them.
     timeout : float
-        Longest wait for a node, in s.
+        Longest wait for an answer, in s; the search for nodes lasts at least as long as discovery.
     ros_args : tuple of str
         What follows ``--ros-args`` on the command line.
     """

@@ -132,7 +132,7 @@ class _Replay:
         if options.nodes:
             names = lookout.await_named(options.nodes, options.timeout)
         else:
-            names = lookout.find(options.timeout if options.lockstep else None)
+            names = lookout.find(options.timeout if options.lockstep else 0.0)
         if not names:
             if options.lockstep:
                 raise InputError(lookout.nobody())

@@ -15,6 +15,7 @@ from std_srvs.srv import Trigger
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.ros.answers import Answers
+from vehicle_pf_tracker.ros.discovery import DISCOVERY
 from vehicle_pf_tracker.ros.spinner import Spinner
 
 _DEEP = QoSProfile(depth=1000)
@@ -37,14 +38,14 @@ class TrackerLink:
     name : str
         Full name of the tracker node.
     timeout : float
-        Longest wait for one answer in s.
+        Longest wait for one answer of a service in s, if longer than `DISCOVERY`.
     """
 
     def __init__(self, node: Node, spinner: Spinner, name: str, timeout: float) -> None:
         self.name = name
         self.answers = Answers()
         self._spinner = spinner
-        self._timeout = timeout
+        self._timeout = max(timeout, DISCOVERY)
         self._mode = node.create_subscription(
             DiagnosticArray, f"{name}/mode", self.answers.receive, _DEEP
         )

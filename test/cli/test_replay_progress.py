@@ -1,0 +1,59 @@
+import io
+
+from vehicle_pf_tracker.cli.replay_progress import progress_view
+from vehicle_pf_tracker.ros.replay_options import Progress
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+class Watch:
+    now = 0.0
+
+    def __call__(self):
+        return self.now
+
+
+def lines(*moments):
+    """Show (time, frames, position) of a recording that lasts 20 s; return what was written."""
+    watch, stream = Watch(), io.StringIO()
+    with progress_view(stream, watch) as show:
+        for moment, frames, position in moments:
+            watch.now = moment
+            show(Progress(frames, position, 20.0))
+    return stream.getvalue().splitlines()
+
+
+def test_a_line_every_five_seconds_from_the_first_frame_on():
+    moments = [(100.0 + second, 1 + 10 * second, float(second)) for second in range(13)]
+    assert lines(*moments) == [
+        " 25%, 51 frames, 10.0 frames/s, 15 s left",
+        " 50%, 101 frames, 10.0 frames/s, 10 s left",
+    ]
+
+
+def test_the_time_left_is_that_of_the_present_pass_of_a_loop():
+    moments = [(0.0, 1, 0.0), (4.0, 41, 20.0), (4.1, 42, 0.0), (6.1, 62, 10.0)]
+    assert lines(*moments) == [" 50%, 62 frames, 10.0 frames/s, 2 s left"]
+
+
+def test_quick_replays_say_nothing():
+    assert lines((0.0, 1, 0.0), (4.9, 50, 20.0)) == []
+
+
+def test_a_recording_of_one_moment_has_no_end_to_wait_for():
+    assert lines((0.0, 1, 0.0), (6.0, 2, 0.0)) == ["2 frames, 0.2 frames/s"]
+
+
+def test_a_terminal_shows_a_bar():
+    watch, stream = Watch(), Terminal()
+    with progress_view(stream, watch) as show:
+        show(Progress(1, 0.0, 20.0))
+        watch.now = 2.0
+        show(Progress(41, 10.0, 20.0))
+    shown = stream.getvalue()
+    assert "50 %" in shown
+    assert "41 frames" in shown
+    assert "20.0 frames/s" in shown

@@ -1,0 +1,125 @@
+"""The command itself, in a process of its own, to real nodes in processes of theirs."""
+
+import signal
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from replay_rig import IMAGE_TOPIC, StubTracker, record, spinning
+from tracker_rig import FIRST_NS, PERIOD_NS, SPEED, TARGET, road
+
+from vehicle_pf_tracker.evaluation.estimates import read_estimates
+from vehicle_pf_tracker.evaluation.offline import OfflineTracker
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+pytestmark = pytest.mark.ros
+
+COMMAND = (
+    "-c",
+    "import sys; from vehicle_pf_tracker.cli.main import bag_replay; sys.exit(bag_replay())",
+)
+FRAMES = 40
+
+
+@pytest.fixture
+def recording(tmp_path):
+    """A vehicle on a road; the truth begins at the third frame."""
+    x, y, width, height = TARGET
+    with RecordingWriter(tmp_path / "bag") as writer:
+        for index, frame in enumerate(road(FRAMES)):
+            stamp = FIRST_NS + index * PERIOD_NS
+            writer.write_image(stamp, frame)
+            if index >= 2:
+                box = Box(x + SPEED * index, y, width, height)
+                writer.write_truth(Truth(stamp, box, Occlusion.NONE))
+    return Recording(tmp_path / "bag")
+
+
+def numbers(rows):
+    """All that must repeat: every column but the time that a step took."""
+    return [
+        (row.frame, row.stamp_ns, row.x, row.y, row.width, row.height, row.mode,
+         row.confidence, row.n_eff)
+        for row in rows
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("variant", ["apf", "pf"])
+def test_lockstep_and_offline_runs_give_identical_numbers(
+    start_node, start_process, recording, tmp_path, variant
+):
+    kind = find_variant(variant)
+    tracker = OfflineTracker(
+        kind, from_mapping(kind.parameters, {"seed": 5}), first_truth=recording.first_truth()
+    )
+    offline = list(tracker.rows((item.stamp_ns, item.frame) for item in recording.frames()))
+    assert [row.mode for row in offline[:3]] == ["WAITING", "WAITING", "TRACKING"]
+    start_node(variant, "-p", "seed:=5", "-r", f"image:={IMAGE_TOPIC}")
+    for turn in ("first", "second"):
+        out = tmp_path / turn
+        words = ["--lockstep", "--node", f"{variant}_tracker", "-o", str(out), "--timeout", "20"]
+        replay = start_process(*COMMAND, str(recording.path), *words)
+        assert replay.wait() == 0, replay.output
+        assert f"/{variant}_tracker: {FRAMES} answered, 0 not" in replay.output
+        assert numbers(read_estimates(out / "estimates.csv")) == numbers(offline)
+
+
+def test_ctrl_c_twice_ends_well(start_process, tmp_path, bench):
+    seen = []
+    StubTracker(bench, on_image=seen.append)
+    record(tmp_path / "bag")
+    words = ["--loop", "--lockstep", "--node", "stub_tracker", "--timeout", "20"]
+    replay = start_process(*COMMAND, str(tmp_path / "bag"), *words, TMPDIR=str(tmp_path))
+    bench.wait_for(lambda: len(seen) > 20)
+    replay.send(signal.SIGINT)
+    replay.send(signal.SIGINT)
+    with spinning(bench):
+        assert replay.wait() == 0, replay.output
+    assert "interrupted after" in replay.output
+    assert "Traceback" not in replay.output
+    assert list(tmp_path.glob("vehicle_pf_tracker_*")) == []  # the transport profile is gone
+
+
+def test_a_mute_node_ends_with_status_1_and_one_line(start_process, tmp_path, bench):
+    StubTracker(bench, mute_at=2)
+    record(tmp_path / "bag")
+    words = ["--lockstep", "--node", "stub_tracker", "--timeout", "0.5"]
+    replay = start_process(*COMMAND, str(tmp_path / "bag"), *words)
+    with spinning(bench):
+        assert replay.wait() == 1
+    (line,) = replay.output.splitlines()
+    assert "/stub_tracker did not answer frame 2" in line
+
+
+def test_no_target_is_a_usage_error(start_process, tmp_path, bench):
+    StubTracker(bench)
+    record(tmp_path / "bag", truth_from=None)
+    words = ["--lockstep", "--node", "stub_tracker", "--timeout", "20"]
+    replay = start_process(*COMMAND, str(tmp_path / "bag"), *words)
+    with spinning(bench):
+        assert replay.wait() == 2
+    assert "--target x,y,w,h" in replay.output
+
+
+def test_a_truncated_recording_is_played_as_far_as_it_goes(
+    start_process, recording, tmp_path, bench
+):
+    stub = StubTracker(bench)
+    (file,) = recording.path.glob("*.mcap")
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(file.read_bytes()[: file.stat().st_size * 2 // 3])
+    left = Recording(cut).frame_count
+    assert 0 < left < FRAMES
+    words = ["--lockstep", "--node", "stub_tracker", "--timeout", "20"]
+    replay = start_process(*COMMAND, str(cut), *words)
+    with spinning(bench):
+        assert replay.wait() == 0, replay.output
+    assert stub.stamps == [FIRST_NS + index * PERIOD_NS for index in range(left)]
+    assert f"truncated after frame {left}" in replay.output
+    assert f"played {left} frames" in replay.output
