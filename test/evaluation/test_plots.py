@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 from scoring_samples import NONE, PARTIAL, TOTAL, row, run_of, scored
 
-from vehicle_pf_tracker.evaluation.plots import error_figure, path_figure, save
+from vehicle_pf_tracker.evaluation.plots import error_figure, overview_figure, path_figure, save
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.features.errors import InputError
 
@@ -71,3 +71,9 @@ def test_runs_without_truth_can_be_drawn(tmp_path, runs):
 def test_a_picture_that_cannot_be_written_is_named(tmp_path):
     with pytest.raises(InputError, match=r"cannot write .*missing/error\.png"):
         save(error_figure(RUNS), tmp_path / "missing" / "error.png")
+
+
+def test_the_overview_has_both():
+    path, error = overview_figure(FRAME, RUNS).axes
+    assert path.get_ylabel() == "y, px"
+    assert error.get_yscale() == "log"

@@ -55,20 +55,7 @@ def error_figure(runs: Mapping[str, Scores], title: str = "") -> Figure:
         Stands over the figure.
     """
     figure = Figure(figsize=(9, 4), layout="constrained")
-    axes = figure.add_subplot()
-    for scores in itertools.islice(runs.values(), 1):
-        _shade_occlusions(axes, scores)
-    for (name, scores), style in zip(runs.items(), itertools.cycle(_STYLES), strict=False):
-        drawn = [(f.row.frame, f.error) for f in scores.counted]
-        errors = [float("nan") if e is None else max(e, _LEAST_ERROR) for _, e in drawn]
-        frames = [number for number, _ in drawn]
-        axes.plot(frames, errors, color=style.colour, linestyle=style.line, lw=1.6, label=name)
-    axes.axhline(CLOSE_PX, color="0.35", lw=0.8, ls=(0, (1, 2)), label=f"{CLOSE_PX:g} px")
-    axes.set(xlabel="frame", ylabel="error of the centre, px", yscale="log", title=title)
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.margins(x=0.01)
-    axes.grid(axis="y", color="0.88", lw=0.6)
-    axes.set_axisbelow(True)
+    _draw_errors(figure.add_subplot(), runs, title)
     figure.legend(loc="outside lower center", ncols=6, frameon=False)
     return figure
 
@@ -87,18 +74,20 @@ def path_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Fi
     """
     width, height = frame_size(frame)
     figure = Figure(figsize=(9, 9 * height / width + 0.8), layout="constrained")
-    axes = figure.add_subplot()
-    axes.imshow(frame, extent=(0, width, height, 0))
-    for scores in itertools.islice(runs.values(), 1):
-        true = [(f.truth.box.centre if f.truth else None, f.hidden) for f in scores.frames]
-        _draw_path(axes, true, "truth", "black", "")
-        _draw_first_box(axes, scores)
-    for (name, scores), style in zip(runs.items(), itertools.cycle(_STYLES), strict=False):
-        estimated = [(f.row.position, f.hidden) for f in scores.frames]
-        _draw_path(axes, estimated, name, style.colour, style.marker)
-    axes.plot([], [], color="0.4", lw=1.7, ls=_DASHED, label="while hidden")
-    axes.set(xlim=(0, width), ylim=(height, 0), xlabel="x, px", ylabel="y, px", title=title)
+    _draw_paths(figure.add_subplot(), frame, runs, title)
     figure.legend(loc="outside lower center", ncols=6, frameon=False)
+    return figure
+
+
+def overview_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Figure:
+    """Draw what `path_figure` and `error_figure` draw, one above the other."""
+    width, height = frame_size(frame)
+    figure = Figure(figsize=(9, 9 * height / width + 4.5), layout="constrained")
+    rows = figure.subfigures(2, 1, height_ratios=(9 * height / width + 0.8, 3.7))
+    _draw_paths(rows[0].add_subplot(), frame, runs, title)
+    _draw_errors(rows[1].add_subplot(), runs, "")
+    for row in rows:
+        row.legend(loc="outside lower center", ncols=6, frameon=False)
     return figure
 
 
@@ -112,6 +101,36 @@ def save(figure: Figure, path: Path) -> None:
     """
     with replacing(path) as partial:
         figure.savefig(partial, dpi=_DPI)
+
+
+def _draw_errors(axes: Axes, runs: Mapping[str, Scores], title: str) -> None:
+    for scores in itertools.islice(runs.values(), 1):
+        _shade_occlusions(axes, scores)
+    for (name, scores), style in zip(runs.items(), itertools.cycle(_STYLES), strict=False):
+        drawn = [(f.row.frame, f.error) for f in scores.counted]
+        errors = [float("nan") if e is None else max(e, _LEAST_ERROR) for _, e in drawn]
+        frames = [number for number, _ in drawn]
+        axes.plot(frames, errors, color=style.colour, linestyle=style.line, lw=1.6, label=name)
+    axes.axhline(CLOSE_PX, color="0.35", lw=0.8, ls=(0, (1, 2)), label=f"{CLOSE_PX:g} px")
+    axes.set(xlabel="frame", ylabel="error of the centre, px", yscale="log", title=title)
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.margins(x=0.01)
+    axes.grid(axis="y", color="0.88", lw=0.6)
+    axes.set_axisbelow(True)
+
+
+def _draw_paths(axes: Axes, frame: Frame, runs: Mapping[str, Scores], title: str) -> None:
+    width, height = frame_size(frame)
+    axes.imshow(frame, extent=(0, width, height, 0))
+    for scores in itertools.islice(runs.values(), 1):
+        true = [(f.truth.box.centre if f.truth else None, f.hidden) for f in scores.frames]
+        _draw_path(axes, true, "truth", "black", "")
+        _draw_first_box(axes, scores)
+    for (name, scores), style in zip(runs.items(), itertools.cycle(_STYLES), strict=False):
+        estimated = [(f.row.position, f.hidden) for f in scores.frames]
+        _draw_path(axes, estimated, name, style.colour, style.marker)
+    axes.plot([], [], color="0.4", lw=1.7, ls=_DASHED, label="while hidden")
+    axes.set(xlim=(0, width), ylim=(height, 0), xlabel="x, px", ylabel="y, px", title=title)
 
 
 def _shade_occlusions(axes: Axes, scores: Scores) -> None:
