@@ -14,6 +14,7 @@ from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.recordings.importing import FORMATS, JPEG_QUALITY
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
+from vehicle_pf_tracker.scenes.scene import Scene
 from vehicle_pf_tracker.trackers.parameters import specs
 
 
@@ -43,19 +44,27 @@ def run(args: argparse.Namespace) -> int:
     if args.scene is None or args.out is None:
         raise UsageError("synth wants SCENE and OUT; `synth --list` shows the scenes")
     scene = make_scene(args.scene, seed=args.seed, settings=args.settings)
-    with (
-        RecordingWriter(args.out, overwrite=args.overwrite) as writer,
-        counting("rendered") as progress,
-    ):
-        for number, rendered in enumerate(scene.frames(), start=1):
-            _write_image(writer, rendered.truth.stamp_ns, rendered.frame, args.format)
-            writer.write_truth(rendered.truth)
-            progress(number, scene.frame_count)
+    record_scene(scene, args.out, args.format, overwrite=args.overwrite)
     print(
         f"{args.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
         f"at {scene.frame_rate:g} frames/s, all with truth"
     )
     return 0
+
+
+def record_scene(scene: Scene, out: Path, form: str = "raw", *, overwrite: bool = False) -> None:
+    """Render `scene` into the rosbag2 folder `out`, with truth; shows progress.
+
+    Raises
+    ------
+    InputError
+        If the folder is not empty, or cannot be written.
+    """
+    with RecordingWriter(out, overwrite=overwrite) as writer, counting("rendered") as progress:
+        for number, rendered in enumerate(scene.frames(), start=1):
+            _write_image(writer, rendered.truth.stamp_ns, rendered.frame, form)
+            writer.write_truth(rendered.truth)
+            progress(number, scene.frame_count)
 
 
 def _listing() -> Iterator[str]:

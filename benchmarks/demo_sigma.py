@@ -1,0 +1,58 @@
+"""Find each variant's own best sigma for the demo, on scenes and seeds that the demo does not use.
+
+    python benchmarks/demo_sigma.py
+
+prints, for each sigma, the mean RMSE and how many total occlusions the track recovered from.
+"""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Sequence
+
+from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
+from vehicle_pf_tracker.evaluation.offline import OfflineTracker
+from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.scenes.catalogue import make_scene
+from vehicle_pf_tracker.scenes.scene import SceneFrame
+from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+SCENE_SEEDS = (101, 102, 103)
+TRACKER_SEEDS = (101, 102, 103)
+SIGMAS = (2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
+NAMES = {"apf": "motion.sigma_w", "pf": "sigma"}
+
+
+def run(variant_name: str, sigma: float, seed: int, frames: Sequence[SceneFrame]) -> Metrics:
+    """Track one rendered scene and score it."""
+    variant = find_variant(variant_name)
+    values = {NAMES[variant_name]: sigma, "seed": seed}
+    parameters = from_mapping(variant.parameters, values)
+    tracker = OfflineTracker(variant, parameters, first_truth=frames[0].truth)
+    rows = list(tracker.rows((frame.truth.stamp_ns, frame.frame) for frame in frames))
+    return measure(score_frames(rows, [frame.truth for frame in frames]))
+
+
+def main() -> None:
+    """Sweep and print."""
+    scored: dict[tuple[str, float], list[Metrics]] = {}
+    for scene_seed in SCENE_SEEDS:
+        frames = list(make_scene("highway", seed=scene_seed).frames())
+        for variant_name in NAMES:
+            for sigma in SIGMAS:
+                for seed in TRACKER_SEEDS:
+                    metrics = run(variant_name, sigma, seed, frames)
+                    scored.setdefault((variant_name, sigma), []).append(metrics)
+    print("variant sigma  mean RMSE, px  recovered")
+    for (variant_name, sigma), runs in sorted(scored.items()):
+        errors = [metrics.rmse_px for metrics in runs if metrics.rmse_px is not None]
+        verdicts = [verdict for metrics in runs for verdict in metrics.recovered]
+        print(
+            f"{variant_name:7} {sigma:5g}  {statistics.fmean(errors):13.1f}"
+            f"  {verdicts.count(True)} of {len(verdicts)}"
+        )
+
+
+if __name__ == "__main__":
+    main()

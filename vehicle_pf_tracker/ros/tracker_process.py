@@ -1,0 +1,70 @@
+"""A tracker node as a process of its own, for as long as it is needed."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.trackers.parameters import Value
+
+_SCRIPT = "import sys; from vehicle_pf_tracker.ros.executables import main; sys.exit(main({!r}))"
+_END_SECONDS = 10.0
+
+# glibc would give every image's memory back to the system and fetch it again for the next one.
+_ALLOCATOR = {
+    "MALLOC_MMAP_THRESHOLD_": "1073741824",
+    "MALLOC_TRIM_THRESHOLD_": "1073741824",
+    "MALLOC_TOP_PAD_": "67108864",
+}
+
+
+@contextmanager
+def tracker_process(
+    variant: str, parameters: Mapping[str, Value], image_topic: str
+) -> Iterator[subprocess.Popen[bytes]]:
+    """Run the node of `variant` until the block ends.
+
+    Parameters
+    ----------
+    variant : str
+        Name in the registry.
+    parameters : mapping
+        Parameters over the defaults, by dotted name.
+    image_topic : str
+        Topic that its `image` input is remapped to.
+
+    Raises
+    ------
+    InputError
+        If the node ended by itself with an error.
+    """
+    words = ["--ros-args", "--log-level", "warn", "-r", f"image:={image_topic}"]
+    for name, value in parameters.items():
+        words += ["-p", f"{name}:={str(value).lower() if isinstance(value, bool) else value}"]
+    # The very same interpreter: another one's libraries would be looked up in this one's place.
+    process = subprocess.Popen(
+        [sys.executable, "-c", _SCRIPT.format(variant), *words], env=_ALLOCATOR | dict(os.environ)
+    )
+    try:
+        yield process
+    finally:
+        status = _end(process)
+    if status not in {0, -signal.SIGINT}:
+        raise InputError(
+            f"the node {variant}_tracker ended with status {status}; see its log above"
+        )
+
+
+def _end(process: subprocess.Popen[bytes]) -> int:
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+    try:
+        return process.wait(_END_SECONDS)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        return process.wait()
