@@ -7,6 +7,7 @@ the present state end the process.
 from __future__ import annotations
 
 import traceback
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -18,7 +19,7 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from vehicle_pf_tracker.features.errors import InputError
 
 
-class ManagedNode(LifecycleNode):  # type: ignore[misc]
+class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
     """Calls `configure`, `activate`, `deactivate` and `cleanup`, which raise where they fail.
 
     An `InputError` leaves the node in the state that it was in; any other exception takes it back
@@ -31,21 +32,21 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]
         self._change_state = self._service_change_state.callback
         self._service_change_state.callback = self._answer_change_state
 
+    @abstractmethod
     def configure(self) -> None:
         """Make what an inactive node has."""
-        raise NotImplementedError
 
+    @abstractmethod
     def activate(self) -> None:
         """Begin to listen."""
-        raise NotImplementedError
 
+    @abstractmethod
     def deactivate(self) -> None:
         """Cease to listen."""
-        raise NotImplementedError
 
+    @abstractmethod
     def cleanup(self) -> None:
         """Let go of what `configure` made."""
-        raise NotImplementedError
 
     def start(self) -> None:
         """Configure and activate.

@@ -15,6 +15,7 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.ros.allocator import keep_image_memory
 from vehicle_pf_tracker.ros.node import TrackerNode
 from vehicle_pf_tracker.trackers.registry import Variant
 
@@ -53,6 +54,7 @@ def run_node(variant: Variant, arguments: Sequence[str]) -> int:
     """
     interrupts = _Interrupts()
     name = f"{variant.name}_tracker"
+    keep_image_memory()
     try:
         rclpy.init(args=list(arguments))
         interrupts.left_to_ros = True

@@ -115,7 +115,7 @@ class Stream:
 
     def reset(self) -> None:
         """Go back to the configured target, or to waiting for one."""
-        self._asked = None
+        self._asked = self.estimate = None
         self._session.reset()
 
     def reconfigure(self, configuration: Configuration) -> None:
