@@ -6,10 +6,9 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 NAME = "vehicle_pf_tracker"
-VARIANTS = (  # those of trackers/registry.py
-    "apf", "pf", "sapf", "hpfms", "pfcl", "ms",
-    "mfpf", "sfpf_color", "sfpf_edge", "sfpf_texture",
-)  # fmt: skip
+# Those of trackers/registry.py, in its order; a test holds them equal.
+VARIANTS = ("apf", "pf", "sapf", "hpfms", "pfcl", "ms", "mfpf")
+VARIANTS += ("sfpf_color", "sfpf_edge", "sfpf_texture")
 JAZZY_WHEELS = "sys_platform == 'linux' and platform_machine == 'x86_64'"
 
 RUNTIME = [
