@@ -83,7 +83,8 @@ def overview_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -
     """Draw what `path_figure` and `error_figure` draw, one above the other."""
     width, height = frame_size(frame)
     figure = Figure(figsize=(9, 9 * height / width + 4.5), layout="constrained")
-    rows = figure.subfigures(2, 1, height_ratios=(9 * height / width + 0.8, 3.7))
+    ratios = (9 * height / width + 0.8, 3.7)
+    rows = figure.subfigures(2, 1, squeeze=False, height_ratios=ratios)[:, 0]
     _draw_paths(rows[0].add_subplot(), frame, runs, title)
     _draw_errors(rows[1].add_subplot(), runs, "")
     for row in rows:
