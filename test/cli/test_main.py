@@ -1,0 +1,111 @@
+import importlib
+import os
+import subprocess
+import sys
+
+import pytest
+
+from vehicle_pf_tracker import __version__
+from vehicle_pf_tracker.cli import main as command
+from vehicle_pf_tracker.cli import params
+from vehicle_pf_tracker.cli.console import UsageError
+from vehicle_pf_tracker.features.errors import InputError
+
+CALL = "import sys; from vehicle_pf_tracker.cli.main import main; sys.exit(main())"
+
+
+@pytest.fixture
+def failing(monkeypatch):
+    """Let the verb `params` end with an error."""
+
+    def fail_with(error):
+        def run(args):
+            raise error
+
+        monkeypatch.setattr(params, "run", run)
+        return command.main(["params", "apf"])
+
+    return fail_with
+
+
+def test_help_lists_every_verb(capsys):
+    assert command.main(["--help"]) == 0
+    text = capsys.readouterr().out
+    assert all(f"    {verb} " in text for verb in command.VERBS)
+
+
+@pytest.mark.parametrize("verb", command.VERBS)
+def test_every_verb_has_help_of_its_own(capsys, verb):
+    assert command.main([verb, "--help"]) == 0
+    assert f"usage: vehicle-pf-tracker {verb}" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("verb", command.VERBS)
+def test_every_verb_has_the_two_functions(verb):
+    module = importlib.import_module(f"vehicle_pf_tracker.cli.{command.VERBS[verb][0]}")
+    assert callable(module.add_arguments)
+    assert callable(module.run)
+
+
+def test_help_loads_nothing_heavy():
+    code = (
+        "import sys; from vehicle_pf_tracker.cli.main import main; main(['--help']);"
+        "print(sorted({'numpy', 'cv2', 'rich', 'matplotlib', 'mcap', 'rclpy'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_version(capsys):
+    assert command.main(["--version"]) == 0
+    assert capsys.readouterr().out == f"vehicle-pf-tracker {__version__}\n"
+
+
+@pytest.mark.parametrize("words", [[], ["fly"], ["params"], ["params", "apf", "--wings"]])
+def test_wrong_usage_is_2_with_the_usage_on_stderr(capsys, words):
+    assert command.main(words) == 2
+    assert "usage: vehicle-pf-tracker" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "line"),
+    [
+        (InputError("the thing\nis broken"), 1, "vehicle-pf-tracker: error: the thing is broken\n"),
+        (UsageError("say which"), 2, "vehicle-pf-tracker: error: say which\n"),
+        (OSError(28, "No space left on device", "out.csv"), 1,
+         "vehicle-pf-tracker: error: out.csv: No space left on device\n"),
+        (OSError("odd"), 1, "vehicle-pf-tracker: error: odd\n"),
+        (KeyboardInterrupt(), 130, ""),
+    ],
+)  # fmt: skip
+def test_errors_become_one_line_and_a_status(capsys, failing, error, status, line):
+    assert failing(error) == status
+    assert capsys.readouterr().err == line
+
+
+def test_a_missing_library_is_named(capsys, failing):
+    assert failing(ModuleNotFoundError("no", name="rclpy")) == 1
+    assert "the Python module rclpy is not there" in capsys.readouterr().err
+
+
+def test_a_fault_of_the_program_is_not_hidden(failing):
+    with pytest.raises(ZeroDivisionError):
+        failing(ZeroDivisionError())
+    with pytest.raises(ModuleNotFoundError):
+        failing(ModuleNotFoundError("no", name="vehicle_pf_tracker.wings"))
+
+
+def test_a_reader_that_leaves_early_is_no_error():
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, "-c", CALL, "params", "apf"],
+        stdout=write, stderr=subprocess.PIPE, text=True, check=False,
+    )  # fmt: skip
+    os.close(write)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+def test_bag_replay_is_the_verb_replay(capsys):
+    assert command.bag_replay(["--help"]) == 0
+    assert "usage: vehicle-pf-tracker replay" in capsys.readouterr().out

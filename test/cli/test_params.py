@@ -1,0 +1,50 @@
+from pathlib import Path
+
+import pytest
+
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.cli.params import default_yaml
+from vehicle_pf_tracker.ros.configuration import Configuration
+from vehicle_pf_tracker.trackers.parameter_files import read_yaml
+from vehicle_pf_tracker.trackers.registry import VARIANTS
+
+CONFIG = Path(__file__).resolve().parents[2] / "config"
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_config_holds_what_params_prints(name):
+    # `make config` writes them anew.
+    assert (CONFIG / f"{name}.yaml").read_text(encoding="utf-8") == default_yaml(VARIANTS[name])
+
+
+def test_config_has_no_file_too_many():
+    assert {path.name for path in CONFIG.iterdir()} == {f"{name}.yaml" for name in VARIANTS}
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_the_printed_file_is_the_defaults(tmp_path, capsys, name):
+    assert main(["params", name]) == 0
+    path = tmp_path / "printed.yaml"
+    path.write_text(capsys.readouterr().out)
+    assert read_yaml(path, f"{name}_tracker") == Configuration.of(VARIANTS[name]).to_mapping()
+
+
+def test_path_is_that_of_the_installed_file(capsys):
+    assert main(["params", "apf", "--path"]) == 0
+    assert Path(capsys.readouterr().out.strip()).name == "apf.yaml"
+
+
+def test_markdown_has_a_row_for_each_parameter(capsys):
+    assert main(["params", "pf", "--markdown"]) == 0
+    head, rule, *rows = capsys.readouterr().out.splitlines()
+    assert len(rows) == len(Configuration.of(VARIANTS["pf"]).specs())
+    assert rule == "| --- | --- | --- | --- | --- | --- |"
+    assert {line.count(" | ") for line in (head, rule, *rows)} == {5}
+    assert any(row.startswith("| `sigma` | 8.0 | from 0.01 to 1000 | px/frame |") for row in rows)
+
+
+def test_an_unknown_variant_is_named_with_the_known_ones(capsys):
+    assert main(["params", "kalman"]) == 1
+    error = capsys.readouterr().err
+    assert "no variant 'kalman'" in error
+    assert "apf, pf" in error
