@@ -6,6 +6,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
+import cv2
 from replay_rig import IMAGE_TOPIC, StubTracker, record, spinning
 from tracker_rig import FIRST_NS, PERIOD_NS, SPEED, TARGET, road
 
@@ -27,18 +28,20 @@ COMMAND = (
 FRAMES = 40
 
 
-@pytest.fixture
-def recording(tmp_path):
-    """A vehicle on a road; the truth begins at the third frame."""
+def drive(folder, compressed=False):
+    """Record a vehicle on a road; the truth begins at the third frame."""
     x, y, width, height = TARGET
-    with RecordingWriter(tmp_path / "bag") as writer:
+    with RecordingWriter(folder) as writer:
         for index, frame in enumerate(road(FRAMES)):
             stamp = FIRST_NS + index * PERIOD_NS
-            writer.write_image(stamp, frame)
+            if compressed:
+                writer.write_compressed(stamp, "jpeg", cv2.imencode(".jpg", frame)[1].tobytes())
+            else:
+                writer.write_image(stamp, frame)
             if index >= 2:
                 box = Box(x + SPEED * index, y, width, height)
                 writer.write_truth(Truth(stamp, box, Occlusion.NONE))
-    return Recording(tmp_path / "bag")
+    return Recording(folder)
 
 
 def numbers(rows):
@@ -50,21 +53,35 @@ def numbers(rows):
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("variant", ["apf", "pf"])
-def test_lockstep_and_offline_runs_give_identical_numbers(
-    start_node, start_process, recording, tmp_path, variant
-):
+def track_offline(variant, recording):
     kind = find_variant(variant)
-    tracker = OfflineTracker(
-        kind, from_mapping(kind.parameters, {"seed": 5}), first_truth=recording.first_truth()
-    )
-    offline = list(tracker.rows((item.stamp_ns, item.frame) for item in recording.frames()))
+    parameters = from_mapping(kind.parameters, {"seed": 5})
+    tracker = OfflineTracker(kind, parameters, first_truth=recording.first_truth())
+    return list(tracker.rows((item.stamp_ns, item.frame) for item in recording.frames()))
+
+
+@pytest.mark.parametrize(
+    ("variant", "compressed", "transport", "words"),
+    [
+        ("apf", False, "raw", []),
+        ("pf", False, "raw", []),
+        ("apf", True, "raw", ["--decompress"]),
+        ("apf", True, "compressed", []),
+    ],
+)
+def test_lockstep_and_offline_runs_give_identical_numbers(
+    start_node, start_process, tmp_path, variant, compressed, transport, words
+):
+    recording = drive(tmp_path / "bag", compressed)
+    offline = track_offline(variant, recording)
     assert [row.mode for row in offline[:3]] == ["WAITING", "WAITING", "TRACKING"]
-    start_node(variant, "-p", "seed:=5", "-r", f"image:={IMAGE_TOPIC}")
+    settings = [f"image_transport:={transport}", "seed:=5"]
+    options = [word for setting in settings for word in ("-p", setting)]
+    start_node(variant, *options, "-r", f"image:={IMAGE_TOPIC}")
+    words = [*words, "--lockstep", "--node", f"{variant}_tracker", "--timeout", "20"]
     for turn in ("first", "second"):
         out = tmp_path / turn
-        words = ["--lockstep", "--node", f"{variant}_tracker", "-o", str(out), "--timeout", "20"]
-        replay = start_process(*COMMAND, str(recording.path), *words)
+        replay = start_process(*COMMAND, str(recording.path), *words, "-o", str(out))
         assert replay.wait() == 0, replay.output
         assert f"/{variant}_tracker: {FRAMES} answered, 0 not" in replay.output
         assert numbers(read_estimates(out / "estimates.csv")) == numbers(offline)
@@ -107,11 +124,9 @@ def test_no_target_is_a_usage_error(start_process, tmp_path, bench):
     assert "--target x,y,w,h" in replay.output
 
 
-def test_a_truncated_recording_is_played_as_far_as_it_goes(
-    start_process, recording, tmp_path, bench
-):
+def test_a_truncated_recording_is_played_as_far_as_it_goes(start_process, tmp_path, bench):
     stub = StubTracker(bench)
-    (file,) = recording.path.glob("*.mcap")
+    (file,) = drive(tmp_path / "bag").path.glob("*.mcap")
     cut = tmp_path / "cut.mcap"
     cut.write_bytes(file.read_bytes()[: file.stat().st_size * 2 // 3])
     left = Recording(cut).frame_count
