@@ -1,0 +1,75 @@
+"""The hybrid of particle filter and mean shift: refined particles, adaptive spread."""
+
+import numpy as np
+import pytest
+from street import Street, error, follow
+
+from vehicle_pf_tracker.trackers.hpfms import HpfmsParameters, HpfmsTracker
+from vehicle_pf_tracker.trackers.parameters import from_mapping
+
+
+def make(**values):
+    return HpfmsTracker(from_mapping(HpfmsParameters, values))
+
+
+def spread(estimate):
+    return float(estimate.particles.std(axis=0).mean())
+
+
+def test_mean_shift_gathers_the_particles_on_the_vehicle():
+    street, times = Street(), range(20)
+    spreads = [
+        np.mean([spread(e) for e in follow(make(iterations=count), street, times)[5:]])
+        for count in (0, 1, 3)
+    ]
+    assert spreads[0] > spreads[1] > spreads[2]
+
+
+def test_few_particles_are_enough():
+    street, times = Street(), range(40)
+    for seed in range(5):
+        estimates = follow(make(num_particles=20, seed=seed), street, times)
+        errors = [error(e, street, t) for e, t in zip(estimates, times, strict=True)]
+        assert np.median(errors) < 4
+
+
+def test_the_spread_follows_the_speed():
+    # Twelve px a frame are more than sigma, two are less.
+    values = {"sigma": 5.0, "transition.widest": 1.0}
+    slow, fast = make(**values), make(**values)
+    follow(slow, Street(speed=2.0), range(12))
+    follow(fast, Street(speed=8.0), range(12))
+    assert slow._spread() == pytest.approx(5.0)
+    assert fast._spread() == pytest.approx(8.0, rel=0.1)
+
+
+def test_the_spread_grows_with_doubt_up_to_its_bound():
+    values = {"sigma": 5.0, "transition.speed_share": 0.0, "transition.widest": 2.0}
+    tracker = make(**values)
+    street = Street(speed=0.0, hidden=(15, 99))
+    tracker.start(street.frame(0), street.box(0))
+    assert tracker._spread() == pytest.approx(10.0)  # nothing is known of the speed yet
+    for time in range(1, 15):
+        tracker.step(street.frame(time))
+    assert tracker._spread() == pytest.approx(5.0, rel=0.1)
+    tracker.step(street.frame(15))
+    assert tracker._spread() == pytest.approx(10.0)
+
+
+def test_without_mean_shift_the_moves_have_the_spread():
+    values = {"sigma": 4.0, "transition.speed_share": 0.0, "transition.widest": 1.0}
+    tracker = make(num_particles=20_000, iterations=0, **values, **{"likelihood.sigma_v": 100.0})
+    street = Street(speed=0.0)
+    started = tracker.start(street.frame(0), street.box(0))
+    stepped = tracker.step(street.frame(1))
+    # Flat weights: 16 px² are added to the 16 that were there.
+    assert started.particles[:, 1].var() == pytest.approx(16.0, rel=0.05)
+    assert stepped.particles[:, 1].var() == pytest.approx(32.0, rel=0.05)
+
+
+def test_starting_again_knows_nothing_of_the_speed():
+    tracker = make(**{"transition.widest": 2.0})
+    street = Street(speed=3.0)
+    follow(tracker, street, range(12))
+    tracker.start(street.frame(0), street.box(0))
+    assert tracker._spread() == pytest.approx(16.0)

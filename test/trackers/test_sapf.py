@@ -1,0 +1,64 @@
+"""The annealed particle filter: its layers, their rates and their diffusion."""
+
+import numpy as np
+import pytest
+from street import Street, error, follow
+
+from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.trackers.sapf import SapfParameters, SapfTracker
+
+
+def make(**values):
+    return SapfTracker(from_mapping(SapfParameters, values))
+
+
+def spread(estimate):
+    return float(estimate.particles.std(axis=0).mean())
+
+
+def test_each_layer_resamples_its_particles():
+    estimate = follow(make(**{"annealing.layers": 3}), Street(), range(3))[-1]
+    assert estimate.resampling_passes == 3
+    assert estimate.resampled_particles == 150
+    assert len(estimate.weights) == 50
+
+
+def test_later_layers_spread_less():
+    # Flat weights resample alike in every layer, so that variances add: with sigma 8 and decay 0.5
+    # two layers add 64 + 16 to the variance that was there.
+    values = {"annealing.decay": 0.5, "annealing.layers": 2, "likelihood.sigma_v": 100.0}
+    street = Street(speed=0.0)
+    tracker = make(num_particles=20_000, resampling="systematic", **values)
+    started = tracker.start(street.frame(0), street.box(0))
+    stepped = tracker.step(street.frame(1))
+    # Vertically, no particle comes near the border of the image.
+    grown = stepped.particles[:, 1].var() - started.particles[:, 1].var()
+    assert grown == pytest.approx(80.0, rel=0.1)
+
+
+def test_the_wanted_share_survives_the_last_layer():
+    values = {"annealing.survival": 0.3, "annealing.largest_rate": 1e6}
+    for estimate in follow(make(**values), Street(), range(10))[1:]:
+        assert estimate.effective_sample_size == pytest.approx(0.3 * 50, rel=0.01)
+
+
+def test_no_layer_is_sharper_than_the_likelihood_by_default():
+    values = {"annealing.survival": 0.01}
+    flat = follow(make(**{"likelihood.sigma_v": 50.0}, **values), Street(), range(4))
+    assert min(e.effective_sample_size for e in flat) > 49
+
+
+def test_narrower_than_one_layer_of_as_many_particles():
+    street, times = Street(), range(30)
+    layered = follow(make(), street, times)
+    single = follow(make(num_particles=200, **{"annealing.layers": 1}), street, times)
+    assert np.mean([spread(e) for e in layered[5:]]) < np.mean([spread(e) for e in single[5:]])
+
+
+def test_finds_a_vehicle_that_jumped():
+    street = Street(speed=0.0)
+    tracker = make()
+    follow(tracker, street, range(5))
+    far = Street(speed=14.0)
+    tracker.step(far.frame(1))
+    assert error(tracker.step(far.frame(1)), far, 1) < 6
