@@ -8,9 +8,11 @@ from types import MappingProxyType
 from typing import Any
 
 from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.trackers.adaptive import AdaptiveParameters, AdaptiveTracker
 from vehicle_pf_tracker.trackers.apf import ApfTracker
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
 from vehicle_pf_tracker.trackers.base import BaseTracker
+from vehicle_pf_tracker.trackers.conventional import ConventionalParameters, ConventionalTracker
 from vehicle_pf_tracker.trackers.hpfms import HpfmsParameters, HpfmsTracker
 from vehicle_pf_tracker.trackers.mfpf import MfpfTracker
 from vehicle_pf_tracker.trackers.mfpf_parameters import (
@@ -99,6 +101,18 @@ VARIANTS: Mapping[str, Variant] = MappingProxyType(
                 SfpfTextureTracker,
                 SfpfTextureParameters,
                 "texture alone (Abdulla et al. 2022)",
+            ),
+            Variant(
+                "conventional",
+                ConventionalTracker,
+                ConventionalParameters,
+                "colour, all particles resampled until enough count (Khong et al.)",
+            ),
+            Variant(
+                "adaptive",
+                AdaptiveTracker,
+                AdaptiveParameters,
+                "colour, only low weights resampled until enough count (Khong et al.)",
             ),
         )
     }

@@ -1,0 +1,134 @@
+"""`adaptive`: the particle filter with adaptive resampling of P3 (Khong et al., Table II).
+
+While the effective sample size is too small, only the particles of low weight are drawn anew;
+under occlusion all but the best one are, around it. Step numbers are those of Table II.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.similarity import hellinger_distance
+from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.filtering.weights import effective_sample_size
+from vehicle_pf_tracker.trackers.parameters import group, parameter
+from vehicle_pf_tracker.trackers.repeated_resampling import (
+    RepeatedResampling,
+    RepeatedResamplingParameters,
+    WeighedParticles,
+)
+
+OCCLUSION_TESTS = ("n_eff", "similarity")
+
+
+@dataclass(frozen=True, slots=True)
+class OcclusionTestParameters:
+    """When the best particle alone is kept."""
+
+    test: str = parameter(
+        "n_eff",
+        "Take a small effective sample size as occlusion, as printed, or a best particle unlike "
+        "the reference.",
+        choices=OCCLUSION_TESTS,
+        source="P3 Table II step 15, READINGS 22",
+    )
+    n_eff: float = parameter(
+        0.3,
+        "Higher: more peaked weights count as occlusion.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="share of the particles",
+        source="P3 T_thres, READINGS 22",
+    )
+    similarity: float = parameter(
+        0.7,
+        "Higher: smaller losses of the best particle's similarity count as occlusion.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="share of the clear level",
+        source="READINGS 22",
+    )
+    jitter: float = parameter(
+        0.25,
+        "Larger: searches further around the best particle.",
+        minimum=0.0,
+        maximum=10.0,
+        unit="share of sigma",
+        source="P3 Table II step 17, READINGS 23",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class AdaptiveParameters(RepeatedResamplingParameters):
+    """Parameters of `adaptive`."""
+
+    low_weight: float = parameter(
+        1.0,
+        "Higher: more particles are drawn anew in each pass.",
+        minimum=0.0,
+        maximum=100.0,
+        unit="of the mean weight 1/N",
+        source="P3 Table II step 19, READINGS 23",
+    )
+    occlusion: OcclusionTestParameters = group(OcclusionTestParameters)
+
+    def effective(self) -> AdaptiveParameters:
+        """Return the parameters in force: those of the print where `as_printed` is set."""
+        if not self.as_printed:
+            return self
+        occlusion = replace(self.occlusion, test="n_eff")
+        return replace(self, criterion=1.0, weighted_mean=False, occlusion=occlusion)
+
+
+class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
+    """Table II of P3."""
+
+    @property
+    def _settings(self) -> AdaptiveParameters:
+        return self.parameters.effective()
+
+    def _pass(
+        self, frame: Frame, particles: WeighedParticles, elapsed: float
+    ) -> tuple[WeighedParticles, int, str]:
+        settings = self._settings
+        weights, count = particles.cloud.weights, len(particles.positions)
+        occluded = self._is_occluded(particles)  # step 15
+        if occluded:
+            kept = np.arange(count) == weights.argmax()  # step 16
+            spread = settings.occlusion.jitter * settings.sigma * elapsed
+        else:
+            kept = weights >= min(settings.low_weight / count, weights.max())  # step 19
+            spread = settings.jitter * settings.sigma * elapsed
+        weighed = self._regenerate(frame, particles, kept, spread)  # steps 17, 20 and 22
+        return weighed, count - int(kept.sum()), "occlusion" if occluded else "regular"
+
+    def _is_occluded(self, particles: WeighedParticles) -> bool:
+        test = self._settings.occlusion
+        if test.test == "n_eff":
+            limit = test.n_eff * len(particles.positions)
+            return effective_sample_size(particles.cloud.weights) < limit
+        best = 1.0 - hellinger_distance(particles.coefficients.max())
+        return bool(best < test.similarity * self._judge.level)
+
+    def _regenerate(
+        self,
+        frame: Frame,
+        particles: WeighedParticles,
+        kept: npt.NDArray[np.bool_],
+        spread: float,
+    ) -> WeighedParticles:
+        """Replace all particles but the kept ones by copies of those; only these are weighed."""
+        missing = len(kept) - int(kept.sum())
+        if missing == 0:
+            return particles
+        scheme = SCHEMES[self._settings.resampling]
+        ancestors = scheme(np.where(kept, particles.cloud.weights, 0.0), missing, self._rng)
+        copies = self._scattered(frame, particles.positions[ancestors], spread)
+        positions, coefficients = particles.positions.copy(), particles.coefficients.copy()
+        positions[~kept] = copies
+        coefficients[~kept] = self._similarity(frame, copies)
+        return self._weigh(positions, coefficients)

@@ -1,0 +1,43 @@
+"""`conventional`: the particle filter that P3 improves on (Khong et al., Table I).
+
+While the effective sample size is too small, every particle is drawn anew from the weighted ones,
+jittered and weighed again. Step numbers are those of Table I.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.trackers.repeated_resampling import (
+    RepeatedResampling,
+    RepeatedResamplingParameters,
+    WeighedParticles,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ConventionalParameters(RepeatedResamplingParameters):
+    """Parameters of `conventional`."""
+
+    def effective(self) -> ConventionalParameters:
+        """Return the parameters in force: those of the print where `as_printed` is set."""
+        return replace(self, criterion=1.0, weighted_mean=False) if self.as_printed else self
+
+
+class ConventionalTracker(RepeatedResampling[ConventionalParameters]):
+    """Table I of P3."""
+
+    @property
+    def _settings(self) -> ConventionalParameters:
+        return self.parameters.effective()
+
+    def _pass(
+        self, frame: Frame, particles: WeighedParticles, elapsed: float
+    ) -> tuple[WeighedParticles, int, str]:
+        settings = self._settings
+        parents = self._resample(particles.cloud)  # step 15
+        spread = settings.jitter * settings.sigma * elapsed
+        copies = self._scattered(frame, parents, spread)  # step 16
+        weighed = self._weigh(copies, self._similarity(frame, copies))  # step 17
+        return weighed, len(copies), "regular"

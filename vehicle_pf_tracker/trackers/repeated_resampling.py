@@ -1,0 +1,143 @@
+"""What `conventional` and `adaptive` share (P3, Tables I and II): resampling within one frame.
+
+Particles are weighed, and while their effective sample size is too small they are replaced and
+weighed again. The two filters differ in which particles they replace.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.similarity import hellinger_distance
+from vehicle_pf_tracker.features.window import keep_inside
+from vehicle_pf_tracker.filtering.motion import sample_normal
+from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
+from vehicle_pf_tracker.trackers.base import Cloud, Outcome
+from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.estimate import Array
+from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters, log_likelihood
+from vehicle_pf_tracker.trackers.parameters import group, parameter
+
+
+@dataclass(frozen=True, slots=True)
+class RepeatedResamplingParameters(ColourParameters):
+    """What both filters of P3 have."""
+
+    as_printed: bool = parameter(
+        False,
+        "Follow the paper to the letter: overrides every reading below that departs from it.",
+        source="READINGS 21 and 22",
+    )
+    sigma: float = parameter(
+        14.0,
+        "About 1.75 times the vehicle's speed: less loses fast vehicles, more follows look-alikes.",
+        minimum=0.01,
+        maximum=1000.0,
+        unit="px/frame",
+        source="P3 Table I step 5, READINGS 23",
+    )
+    jitter: float = parameter(
+        0.5,
+        "Larger: regenerated particles lie further from the ones they are copies of.",
+        minimum=0.0,
+        maximum=10.0,
+        unit="share of sigma",
+        source="P3 Table I step 16, READINGS 23",
+    )
+    criterion: float = parameter(
+        0.7,
+        "Higher: more passes a frame until the effective sample size is reached; 1, as printed, "
+        "never is.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="share of the particles",
+        source="P3 Table I step 13, READINGS 21",
+    )
+    most_passes: int = parameter(
+        20,
+        "Lower: a frame takes less time at most.",
+        minimum=0,
+        maximum=1000,
+        unit="passes/frame",
+        source="P3 section VI",
+    )
+    weighted_mean: bool = parameter(
+        True,
+        "Weigh particles in the estimate; off takes their plain mean, as printed.",
+        source="P3 section V",
+    )
+    likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.2)
+
+
+RepeatedParametersT = TypeVar("RepeatedParametersT", bound=RepeatedResamplingParameters)
+
+
+@dataclass(frozen=True, slots=True)
+class WeighedParticles:
+    """Particles with what is known about them.
+
+    Attributes
+    ----------
+    positions : (N, 2) array
+        In px.
+    coefficients : (N,) array
+        Bhattacharyya coefficients with the reference.
+    cloud : Cloud
+        The positions with their normalised weights.
+    """
+
+    positions: Array
+    coefficients: Array
+    cloud: Cloud
+
+
+class RepeatedResampling(ColourTracker[RepeatedParametersT]):
+    """Tables I and II of P3 but for the pass of resampling."""
+
+    @property
+    @abstractmethod
+    def _settings(self) -> RepeatedParametersT:
+        """The parameters in force."""
+
+    @abstractmethod
+    def _pass(
+        self, frame: Frame, particles: WeighedParticles, elapsed: float
+    ) -> tuple[WeighedParticles, int, str]:
+        """Replace particles once; returns also how many, and the branch taken."""
+
+    def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        settings = self._settings
+        parents = self._cloud.positions
+        moved, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)  # steps 3 to 7
+        particles = self._weigh(moved, self._similarity(frame, moved))  # steps 8 to 11
+        passes, replaced, regime = 0, 0, "regular"
+        while passes < settings.most_passes and self._is_degenerate(particles):  # steps 12 and 13
+            particles, count, regime = self._pass(frame, particles, elapsed)
+            passes, replaced = passes + 1, replaced + count
+        cloud = particles.cloud
+        reported = cloud if settings.weighted_mean else Cloud.uniform(cloud.positions)
+        outcome = self._report(frame, reported, elapsed, left_image=left_image)  # step 21
+        best = float(1.0 - hellinger_distance(particles.coefficients.max()))
+        return replace(
+            outcome,
+            cloud=cloud,
+            regime=regime,
+            similarities={**outcome.similarities, "best": best},
+            resampling_passes=passes,
+            resampled_particles=replaced,
+        )
+
+    def _weigh(self, positions: Array, coefficients: Array) -> WeighedParticles:
+        weights = from_log(log_likelihood(coefficients, self._settings.likelihood))
+        return WeighedParticles(positions, coefficients, Cloud(positions, *weights))
+
+    def _is_degenerate(self, particles: WeighedParticles) -> bool:
+        limit = self._settings.criterion * len(particles.positions)
+        return effective_sample_size(particles.cloud.weights) < limit
+
+    def _scattered(self, frame: Frame, parents: Array, spread: float) -> Array:
+        """Jitter copies of `parents` by `spread` px, inside the image."""
+        return keep_inside(frame, parents + sample_normal(self._rng, len(parents), spread))
