@@ -155,7 +155,7 @@ class FeatureFilterParameters(ParticleParameters):
         unit="share of the particles",
         source="P2 eq. 14, READINGS 16",
     )
-    likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.15)
+    likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.1)
     dispersion: DispersionParameters = group(DispersionParameters)
     confidence: ConfidenceParameters = group(ConfidenceParameters)
 
