@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import argparse
 import math
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.evaluation.offline import with_target
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.parameter_files import read_yaml
@@ -66,9 +64,14 @@ def chosen(variant: Variant, args: argparse.Namespace) -> Configuration:
     configuration = configuration.updated(parse_assignments(table, args.assignments))
     if args.seed is not None:
         configuration = configuration.updated({"seed": args.seed})
-    if args.target is None:
-        return configuration
-    return replace(configuration, session=with_target(configuration.session, args.target))
+    return configuration if args.target is None else _with_target(configuration, args.target)
+
+
+def _with_target(configuration: Configuration, box: Box) -> Configuration:
+    if not any((box.width, box.height)):  # in a file, zeros wait for a target
+        raise InputError(f"the target {box} is smaller than one pixel; give x,y,w,h in px")
+    values = {f"target.{name}": getattr(box, name) for name in ("x", "y", "width", "height")}
+    return configuration.updated(values)
 
 
 def _with_file(configuration: Configuration, variant: Variant, path: Path) -> Configuration:

@@ -1,0 +1,70 @@
+"""Recordings of a red vehicle that drives over grey noise, and ways to spoil them."""
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.recordings import messages, topics
+from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
+
+COUNT = 12
+TARGET = "8,24,16,12"
+
+
+def stamp_of(index):
+    return 1_000_000_000 + index * 40_000_000
+
+
+def box_of(index):
+    return Box(8 + 2.0 * index, 24, 16, 12)
+
+
+def frame_of(index):
+    frame = np.random.default_rng(index).integers(90, 120, (64, 96, 3), np.uint8)
+    left = int(box_of(index).x)
+    frame[24:36, left : left + 16] = (200, 30, 30)
+    return frame
+
+
+def truth_of(index):
+    return Truth(stamp_of(index), box_of(index), Occlusion.NONE, 1.0)
+
+
+def record(folder, *, truths=range(COUNT), count=COUNT, compression="lz4"):
+    """Write a recording with truth for the frames `truths`."""
+    with RecordingWriter(folder, compression=compression) as writer:
+        for index in range(count):
+            writer.write_image(stamp_of(index), frame_of(index))
+            if index in truths:
+                writer.write_truth(truth_of(index))
+    return folder
+
+
+def record_two_cameras(folder):
+    with RecordingWriter(folder) as writer:
+        for index in range(3):
+            image = messages.image(stamp_of(index), frame_of(index))
+            for topic in ("/left/image", "/right/image"):
+                writer.write(topic, topics.IMAGE, stamp_of(index), image)
+    return folder
+
+
+def record_without_images(folder):
+    with RecordingWriter(folder) as writer:
+        writer.write_truth(truth_of(0))
+    return folder
+
+
+def frame_folder(folder):
+    """Write the vehicle as a folder of JPEG files with truth."""
+    (folder / "img").mkdir(parents=True)
+    lines = ["frame,x,y,w,h,visible,occ"]
+    for index in range(COUNT):
+        bgr = np.ascontiguousarray(frame_of(index)[:, :, ::-1])
+        cv2.imwrite(str(folder / "img" / f"{index + 1:06d}.jpg"), bgr)
+        box = box_of(index)
+        lines.append(f"{index + 1},{box.x},{box.y},{box.width},{box.height},1,0")
+    (folder / "groundtruth.csv").write_text("\n".join(lines) + "\n")
+    (folder / "sequence.json").write_text('{"fps": 25}')
+    return folder

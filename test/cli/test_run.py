@@ -1,0 +1,109 @@
+import json
+
+import pytest
+from small_recordings import COUNT, TARGET, box_of, record, record_two_cameras
+
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.evaluation.estimates import WAITING, read_estimates
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Call `run` with apf on a recording into a new folder, and return what it wrote."""
+
+    def call(recording, *words, variant="apf"):
+        out = tmp_path / "out"
+        assert main(["run", str(recording), "--variant", variant, "-o", str(out), *words]) == 0
+        names = {path.name for path in out.iterdir()}
+        assert names == {"estimates.csv", "metrics.json", "run.json"}
+        documents = [json.loads((out / name).read_text()) for name in ("metrics.json", "run.json")]
+        return read_estimates(out / "estimates.csv"), *documents
+
+    return call
+
+
+@pytest.fixture
+def bag(tmp_path):
+    return record(tmp_path / "bag")
+
+
+@pytest.mark.parametrize("variant", ["apf", "pf"])
+def test_a_recording_with_truth_is_tracked_and_scored(run, bag, variant, capsys):
+    rows, metrics, info = run(bag, variant=variant)
+    assert [row.frame for row in rows] == list(range(1, COUNT + 1))
+    assert (metrics["frames"], metrics["frames_scored"]) == (COUNT, COUNT)
+    assert metrics["on_target"] == 1.0
+    assert (info["variant"], info["target"]) == (variant, [8.0, 24.0, 16.0, 12.0])
+    assert info["recording"] == str(bag)
+    assert info["command"][:3] == ["vehicle-pf-tracker", "run", str(bag)]
+    out, err = capsys.readouterr()
+    assert "on target while visible" in out
+    assert err == ""
+
+
+def test_two_runs_with_one_seed_are_equal_but_for_the_time(run, bag):
+    def numbers(*words):
+        return [(row.x, row.y, row.mode, row.n_eff) for row in run(bag, *words)[0]]
+
+    assert numbers("--seed", "5") == numbers("--seed", "5")
+    assert numbers("--seed", "5") != numbers("--seed", "6")
+
+
+def test_a_drawn_seed_is_kept(run, bag):
+    _, _, info = run(bag, "--seed", "-1")
+    assert info["parameters"]["seed"] == -1
+    assert info["seed"] >= 0
+
+
+def test_the_target_may_be_given_where_there_is_no_truth(run, tmp_path):
+    recording = record(tmp_path / "bag", truths=())
+    rows, metrics, info = run(recording, "--target", TARGET)
+    assert rows[0].position == box_of(0).centre
+    assert (metrics["rmse_px"], metrics["frames_without_truth"]) == (None, COUNT)
+    assert info["target"] == [8.0, 24.0, 16.0, 12.0]
+
+
+def test_frames_before_the_first_truth_wait(run, tmp_path):
+    rows, metrics, info = run(record(tmp_path / "bag", truths=range(3, COUNT)))
+    assert [row.mode for row in rows[:4]] == [WAITING] * 3 + ["TRACKING"]
+    assert (metrics["frames_waiting"], info["start_frame"]) == (3, 4)
+
+
+def test_a_bare_file_of_the_recording_does_too(run, bag):
+    assert len(run(bag / "bag_0.mcap")[0]) == COUNT
+
+
+def test_one_of_two_cameras_can_be_chosen(run, tmp_path):
+    recording = record_two_cameras(tmp_path / "bag")
+    rows, _, info = run(recording, "--topic", "/right/image", "--target", TARGET)
+    assert (len(rows), info["image_topic"]) == (3, "/right/image")
+
+
+def test_what_is_left_of_a_truncated_recording_is_used_and_said(run, tmp_path, capsys):
+    path = record(tmp_path / "bag", compression="none", count=100) / "bag_0.mcap"
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    rows, metrics, info = run(cut)
+    assert 0 < len(rows) == metrics["frames"] < 100
+    assert "is truncated" in info["notices"][0]
+    assert f"vehicle-pf-tracker: note: {info['notices'][0]}" in capsys.readouterr().err
+
+
+def test_parameters_come_from_the_file_then_set_then_seed(run, bag, tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text(
+        "/**:\n  ros__parameters:\n    use_sim_time: true\n    queue_depth: 10\n    seed: 3\n"
+        "    num_particles: 50\n    motion:\n      sigma_w: 4\n    target.x: 9.0\n"
+        "    target.y: 25.0\n    target.width: 14.0\n    target.height: 10.0\n"
+        "    qos_overrides./image.subscription.depth: 5\n"
+    )
+    _, _, info = run(bag, "--params", str(path), "--set", "num_particles=60", "--seed", "4")
+    used = info["parameters"]
+    assert (used["seed"], used["num_particles"], used["motion.sigma_w"]) == (4, 60, 4.0)
+    assert info["target"] == [9.0, 25.0, 14.0, 10.0]
+
+
+def test_the_target_of_the_command_line_goes_before_that_of_the_file(run, bag):
+    words = [f"--set=target.{name}=10" for name in ("x", "y", "width", "height")]
+    assert run(bag, *words)[2]["target"] == [10.0] * 4
+    assert run(bag, *words, "--target", TARGET)[2]["target"] == [8.0, 24.0, 16.0, 12.0]
