@@ -1,0 +1,78 @@
+import cv2
+import numpy as np
+import pytest
+from small_recordings import COUNT, box_of, frame_folder, frame_of
+
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
+
+SHORT = ["--set", "speed=40", "--set", "width=0"]
+
+
+def call(*words):
+    assert main([str(word) for word in words]) == 0
+
+
+def test_a_frame_folder_becomes_a_recording(tmp_path, capsys):
+    source = frame_folder(tmp_path / "source")
+    call("import", source, tmp_path / "bag")
+    recording = Recording(tmp_path / "bag")
+    assert recording.image_type == "sensor_msgs/msg/CompressedImage"
+    assert recording.frame_count == COUNT
+    assert recording.truth()[3].box == box_of(3)
+    out = capsys.readouterr().out
+    assert out.endswith("bag: 12 frames of 96x64 px at 25 frames/s, 12 with truth\n")
+
+
+def test_the_format_can_be_chosen_and_a_recording_replaced(tmp_path, capsys):
+    source = frame_folder(tmp_path / "source")
+    call("import", source, tmp_path / "bag")
+    assert main(["import", str(source), str(tmp_path / "bag")]) == 1
+    assert "is not empty" in capsys.readouterr().err
+    call("import", source, tmp_path / "bag", "--format", "raw", "--overwrite")
+    assert Recording(tmp_path / "bag").image_type == "sensor_msgs/msg/Image"
+
+
+def test_a_video_file_becomes_a_recording(tmp_path, capsys):
+    video = cv2.VideoWriter(
+        str(tmp_path / "a.avi"), cv2.VideoWriter_fourcc(*"MJPG"), 20.0, (96, 64)
+    )
+    if not video.isOpened():
+        pytest.skip("this OpenCV writes no MJPG")
+    for index in range(5):
+        video.write(np.ascontiguousarray(frame_of(index)[:, :, ::-1]))
+    video.release()
+    call("import", tmp_path / "a.avi", tmp_path / "bag")
+    assert Recording(tmp_path / "bag").frame_count == 5
+    assert "5 frames of 96x64 px at 20 frames/s, 0 with truth" in capsys.readouterr().out
+
+
+def test_a_scene_becomes_a_recording_with_its_frames_and_truth(tmp_path, capsys):
+    call("synth", "bar", tmp_path / "bag", "--seed", "3", *SHORT)
+    scene = make_scene("bar", seed=3, settings={"speed": 40.0, "width": 0.0})
+    recording = Recording(tmp_path / "bag")
+    rendered = [frame.frame for frame in scene.frames()]
+    read = [image.frame for image in recording.frames()]
+    assert len(read) == len(rendered) == scene.frame_count
+    assert all(map(np.array_equal, read, rendered))
+    assert [truth.stamp_ns for truth in recording.truth()] == [
+        scene.stamp_ns(index) for index in range(scene.frame_count)
+    ]
+    assert f"{scene.frame_count} frames of 640x480 px" in capsys.readouterr().out
+
+
+def test_a_scene_can_be_kept_as_jpeg(tmp_path):
+    call("synth", "bar", tmp_path / "bag", "--format", "compressed", *SHORT)
+    recording = Recording(tmp_path / "bag")
+    assert recording.image_type == "sensor_msgs/msg/CompressedImage"
+    rendered = next(make_scene("bar", settings={"speed": 40.0, "width": 0.0}).frames()).frame
+    read = next(recording.frames()).frame
+    assert np.abs(read.astype(int) - rendered.astype(int)).mean() < 4
+
+
+def test_the_list_names_scenes_and_settings(capsys):
+    call("synth", "--list")
+    out = capsys.readouterr().out
+    assert all(f"{name}: {kind.summary}" in out for name, kind in SCENES.items())
+    assert "  width=30.0 [px, from 0 to 120]: " in out
