@@ -36,6 +36,26 @@ def test_a_signal_ends_the_node_well(start_node, signals):
     assert "Traceback" not in node.output
 
 
+def test_a_second_ctrl_c_does_not_reach_the_clean_up(start_process):
+    code = (
+        "import os, signal, sys\n"
+        "from vehicle_pf_tracker.ros.executables import apf_tracker\n"
+        "from vehicle_pf_tracker.ros.node import TrackerNode\n"
+        "destroy = TrackerNode.destroy_node\n"
+        "def interrupted(node):\n"
+        "    os.kill(os.getpid(), signal.SIGINT)\n"
+        "    destroy(node)\n"
+        "    print('cleaned up')\n"
+        "TrackerNode.destroy_node = interrupted\n"
+        "sys.exit(apf_tracker())"
+    )
+    process = start_process("-c", code)
+    process.wait_for_output("ready")
+    process.send(signal.SIGINT)
+    assert process.wait() == 0
+    assert process.output.endswith("cleaned up\n")
+
+
 def test_a_signal_while_libraries_load_leaves_no_traceback(start_process):
     code = (
         "import os, signal, sys\n"

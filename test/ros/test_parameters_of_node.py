@@ -165,6 +165,13 @@ def test_a_wrong_value_at_start_is_one_sentence(make, values, words):
         make(**values)
 
 
+def test_a_node_that_could_not_start_leaves_nothing_behind(bench, make):
+    with pytest.raises(InputError) as caught:
+        make(num_particles=0)
+    bench.wait_for(lambda: "apf_tracker" not in bench.node.get_node_names())
+    assert caught.tb is not None  # which would keep the node alive if nothing destroyed it
+
+
 def test_all_wrong_values_are_named_together(make):
     with pytest.raises(InputError) as caught:
         make(num_particles=0, queue_depth=0, reset_on_time_jump=3)

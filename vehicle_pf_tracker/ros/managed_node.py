@@ -60,6 +60,11 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
             if trigger() != TransitionCallbackReturn.SUCCESS:
                 raise InputError(self._failure)
 
+    def destroy_node(self) -> None:
+        """Destroy the node and its state machine, without which it would stay in the graph."""
+        super().destroy_node()
+        self._state_machine.destroy_when_not_in_use()
+
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """See `configure`."""
         return self._transit(self.configure, partial(super().on_configure, state))
