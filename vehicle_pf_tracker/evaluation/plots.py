@@ -56,7 +56,6 @@ def error_figure(runs: Mapping[str, Scores], title: str = "") -> Figure:
     """
     figure = Figure(figsize=(9, 4), layout="constrained")
     _draw_errors(figure.add_subplot(), runs, title)
-    figure.legend(loc="outside lower center", ncols=6, frameon=False)
     return figure
 
 
@@ -75,7 +74,6 @@ def path_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Fi
     width, height = frame_size(frame)
     figure = Figure(figsize=(9, 9 * height / width + 0.8), layout="constrained")
     _draw_paths(figure.add_subplot(), frame, runs, title)
-    figure.legend(loc="outside lower center", ncols=6, frameon=False)
     return figure
 
 
@@ -87,8 +85,6 @@ def overview_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -
     rows = figure.subfigures(2, 1, squeeze=False, height_ratios=ratios)[:, 0]
     _draw_paths(rows[0].add_subplot(), frame, runs, title)
     _draw_errors(rows[1].add_subplot(), runs, "")
-    for row in rows:
-        row.legend(loc="outside lower center", ncols=6, frameon=False)
     return figure
 
 
@@ -118,6 +114,7 @@ def _draw_errors(axes: Axes, runs: Mapping[str, Scores], title: str) -> None:
     axes.margins(x=0.01)
     axes.grid(axis="y", color="0.88", lw=0.6)
     axes.set_axisbelow(True)
+    _add_legend(axes)
 
 
 def _draw_paths(axes: Axes, frame: Frame, runs: Mapping[str, Scores], title: str) -> None:
@@ -132,6 +129,14 @@ def _draw_paths(axes: Axes, frame: Frame, runs: Mapping[str, Scores], title: str
         _draw_path(axes, estimated, name, style.colour, style.marker)
     axes.plot([], [], color="0.4", lw=1.7, ls=_DASHED, label="while hidden")
     axes.set(xlim=(0, width), ylim=(height, 0), xlabel="x, px", ylabel="y, px", title=title)
+    _add_legend(axes)
+
+
+def _add_legend(axes: Axes) -> None:
+    """Put the legend below the axis labels; the pad is in font sizes."""
+    axes.legend(
+        loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.6, ncols=6, frameon=False
+    )
 
 
 def _shade_occlusions(axes: Axes, scores: Scores) -> None:
