@@ -94,11 +94,19 @@ def test_a_target_outside_is_refused_and_the_track_goes_on():
     at_work = session(street.box(0))
     feed(at_work, street, range(4))
     at_work.set_target(Box(5000, 0, 10, 10))
-    with pytest.raises(InputError, match="outside"):
-        feed(at_work, street, [4])
-    estimate = feed(at_work, street, [5])[0]
+    estimate = feed(at_work, street, [4])[0]
+    assert "outside" in at_work.events[0]
     assert estimate.regime != "start"
-    assert error(estimate, street, 5) < 10
+    assert error(estimate, street, 4) < 10
+
+
+def test_a_target_outside_without_a_track_is_refused_once_and_then_waited_for():
+    street = Street()
+    at_work = session(Box(5000, 0, 10, 10))
+    with pytest.raises(InputError, match="outside"):
+        feed(at_work, street, [0])
+    assert at_work.waiting
+    assert feed(at_work, street, [1]) == [None]
 
 
 def test_a_new_image_size_starts_again_and_says_so():
@@ -143,6 +151,15 @@ def test_a_changed_target_parameter_starts_on_it_and_others_keep_the_track():
     assert feed(at_work, street, [5])[0].regime == "start"
 
 
-def test_a_target_parameter_without_size_is_refused():
+def test_a_target_may_be_set_one_parameter_after_the_other():
+    settings = SessionParameters()
+    for name, value in (("x", 5.0), ("y", 6.0), ("width", 7.0)):
+        settings = from_mapping(SessionParameters, {f"target.{name}": value}, settings)
+        assert settings.target.box is None
+    settings = from_mapping(SessionParameters, {"target.height": 8.0}, settings)
+    assert settings.target.box == Box(5, 6, 7, 8)
+
+
+def test_a_target_below_a_pixel_is_refused():
     with pytest.raises(InputError, match=r"target\.width"):
-        from_mapping(SessionParameters, {"target.x": 5.0})
+        from_mapping(SessionParameters, {"target.width": 0.5, "target.height": 5.0})

@@ -34,7 +34,7 @@ ROS_SEED = 0
 # scenes and seeds: `python benchmarks/demo_sigma.py`.
 CONTESTANTS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
     {
-        "apf": {"num_particles": 200, "histogram_bits": 3, "motion.sigma_w": 4.0},
+        "apf": {"num_particles": 200, "histogram_bits": 3, "motion.sigma_w": 5.0},
         "pf": {"num_particles": 200, "histogram_bits": 3, "sigma": 2.0},
     }
 )

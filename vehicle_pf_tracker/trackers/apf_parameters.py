@@ -87,7 +87,7 @@ class ApfVelocityParameters:
     """The mean velocity that gives the direction of the drift."""
 
     window: int = parameter(
-        8,
+        16,
         "Longer: a steadier direction that follows turns later; 0 takes all estimates.",
         minimum=0,
         maximum=10_000,

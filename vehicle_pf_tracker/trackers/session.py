@@ -32,14 +32,14 @@ class TargetParameters:
     )
     width: float = parameter(
         0.0,
-        "Width of the target; all four 0 waits for a target.",
+        "Width of the target; 0 waits for a target.",
         minimum=0.0,
         maximum=_LARGEST,
         unit="px",
     )
     height: float = parameter(
         0.0,
-        "Height of the target; all four 0 waits for a target.",
+        "Height of the target; 0 waits for a target.",
         minimum=0.0,
         maximum=_LARGEST,
         unit="px",
@@ -47,8 +47,11 @@ class TargetParameters:
 
     @property
     def box(self) -> Box | None:
-        """The box, or None where there is none to start on."""
-        if not any((self.x, self.y, self.width, self.height)):
+        """The box, or None where there is none to start on.
+
+        A side of 0 is none, so that the four can also be set one after the other.
+        """
+        if not (self.width and self.height):
             return None
         return Box(self.x, self.y, self.width, self.height)
 
@@ -63,12 +66,12 @@ class SessionParameters:
     )
 
     def validate(self) -> None:
-        """Refuse a target without a size."""
+        """Refuse a target too small for any tracker."""
         box = self.target.box
         if box is not None and min(box.width, box.height) < 1:
             raise InputError(
                 f"the target {box} is smaller than one pixel; "
-                "set target.width and target.height, or all four to 0 to wait for a target"
+                "give target.width and target.height at least 1, or 0 to wait for a target"
             )
 
 
@@ -136,8 +139,8 @@ class Session:
         Raises
         ------
         InputError
-            If the frame or the target to start on is not usable. A track that was there goes on
-            with the next frame.
+            If the frame is not usable, or the target to start on is none in it. Where there is a
+            track, such a target is told in `events` instead, and the track goes on.
         """
         self.events = []
         size = frame_size(check_frame(frame))
@@ -154,14 +157,22 @@ class Session:
             )
             self._forget()
         self.tracker.frame_period = self._clock.period or DEFAULT_PERIOD
-        if self._pending is not None:
-            return self._start(frame, size)
+        box, self._pending = self._pending, None
+        if box is not None and self._is_usable(box, size):
+            return self._start(frame, box, size)
         return None if self._size is None else self.tracker.step(frame, tick.elapsed)
 
-    def _start(self, frame: Frame, size: tuple[int, int]) -> Estimate:
-        box, self._pending = self._pending, None
-        assert box is not None
-        check_target(box, *size)
+    def _is_usable(self, box: Box, size: tuple[int, int]) -> bool:
+        try:
+            check_target(box, *size)
+        except InputError as error:
+            if self._size is None:
+                raise
+            self.events.append(f"target refused: {error}")
+            return False
+        return True
+
+    def _start(self, frame: Frame, box: Box, size: tuple[int, int]) -> Estimate:
         estimate = self.tracker.start(frame, box)
         self._size = size
         return estimate
