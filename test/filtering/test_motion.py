@@ -10,6 +10,7 @@ from vehicle_pf_tracker.filtering.motion import (
     normal_pdf,
     normal_rayleigh_pdf,
     rayleigh_pdf,
+    sample_disc,
     sample_normal,
     sample_normal_rayleigh,
 )
@@ -113,3 +114,15 @@ def test_same_seed_gives_the_same_draws():
     first = sample_normal_rayleigh(np.random.default_rng(5), 10, (1.0, 1.0), 2.0, 1.0)
     second = sample_normal_rayleigh(np.random.default_rng(5), 10, (1.0, 1.0), 2.0, 1.0)
     assert np.array_equal(first, second)
+
+
+def test_disc_is_filled_evenly():
+    distance = np.hypot(*sample_disc(np.random.default_rng(7), DRAWS, 10.0).T)
+    assert distance.max() <= 10.0
+    # Half of the area lies within 10 / sqrt(2); the mean distance is two thirds of the radius.
+    assert np.mean(distance < 10.0 / math.sqrt(2)) == pytest.approx(0.5, abs=0.005)
+    assert distance.mean() == pytest.approx(20 / 3, rel=0.005)
+
+
+def test_disc_of_no_radius_is_its_middle():
+    assert not sample_disc(np.random.default_rng(8), 3, 0.0).any()

@@ -1,0 +1,203 @@
+"""P2: the fused and the single-feature filters, and each of their readings."""
+
+import itertools
+
+import numpy as np
+import pytest
+from street import Street, error, follow
+
+from vehicle_pf_tracker.features.glcm import Cooccurrence
+from vehicle_pf_tracker.features.gradients import GradientDirections
+from vehicle_pf_tracker.features.haralick import HaralickStatistics
+from vehicle_pf_tracker.features.lbp import BinaryPatterns
+from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
+from vehicle_pf_tracker.trackers.mfpf import MfpfTracker
+from vehicle_pf_tracker.trackers.mfpf_parameters import (
+    ConfidenceParameters,
+    EdgeParameters,
+    MfpfParameters,
+    SfpfColorParameters,
+    SfpfEdgeParameters,
+    SfpfTextureParameters,
+)
+from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.trackers.registry import VARIANTS
+
+NAMES = ("color", "edge", "texture")
+
+
+def make(**values):
+    return MfpfTracker(from_mapping(MfpfParameters, values))
+
+
+def spread(estimate):
+    """Largest distance of a particle from the estimate, in px."""
+    return np.hypot(*(estimate.particles - estimate.position).T).max()
+
+
+def test_says_what_every_feature_is_worth():
+    estimate = follow(make(), Street(), range(6))[-1]
+    expected = {f"{column}_{name}" for column in ("as", "lc", "wf", "used") for name in NAMES}
+    assert set(estimate.similarities) == expected
+    assert sum(estimate.similarities[f"wf_{name}"] for name in NAMES) == pytest.approx(1.0)
+    assert {estimate.similarities[f"used_{name}"] for name in NAMES} == {1.0}
+
+
+def test_confidences_are_one_in_the_first_frame_after_the_start():
+    first = follow(make(), Street(), range(2))[1].similarities
+    assert [first[f"lc_{name}"] for name in NAMES] == pytest.approx([1.0] * 3)
+    assert [first[f"wf_{name}"] for name in NAMES] == pytest.approx([1 / 3] * 3)
+
+
+def test_the_first_search_and_predictions_reach_twice_as_far():
+    street = Street(speed=0.0, hidden=(10, 30))
+    tracker = make(**{"dispersion.growth": 0.0})
+    estimates = follow(tracker, street, range(20))
+    assert np.hypot(*(estimates[0].particles - street.box(0).centre).T).max() <= 28
+    assert spread(estimates[1]) > 20
+    predicted = [e for e in estimates if e.regime == "prediction"]
+    assert len(predicted) == 10
+    for estimate in predicted[1:]:
+        assert 24 < spread(estimate) <= 28 + 1e-9
+
+
+def test_the_search_grows_in_prediction_mode_up_to_its_limit():
+    street = Street(speed=0.0, hidden=(10, 60))
+    tracker = make(**{"dispersion.growth": 2.0, "dispersion.largest": 40.0})
+    estimates = follow(tracker, street, range(30))
+    assert [e.regime for e in estimates[10:]] == ["prediction"] * 20
+    # Twice 14 px, and 2 px more for each frame of prediction before; the street is 120 px high.
+    assert 28 < spread(estimates[13]) <= 28 + 6
+    assert 36 < spread(estimates[29]) <= 40 + 1e-9
+
+
+def test_predicts_with_the_last_increments_and_leaves_the_references_alone():
+    street = Street(speed=3.0, hidden=(20, 35))
+    tracker = make()
+    estimates = follow(tracker, street, range(21))
+    assert estimates[20].regime == "prediction"
+    kept, velocity = list(tracker._references), estimates[20].velocity
+    for time in range(21, 30):
+        estimate = tracker.step(street.frame(time))
+        assert estimate.regime == "prediction"
+        assert estimate.velocity == velocity
+        assert error(estimate, street, time) < 12
+    assert all(np.array_equal(a, b) for a, b in zip(kept, tracker._references, strict=True))
+    estimates = [tracker.step(street.frame(time)) for time in range(30, 45)]
+    assert estimates[-1].regime == "estimation"
+    assert error(estimates[-1], street, 44) < 6
+
+
+def test_reading_12_velocity_over_a_window_is_steadier_than_the_last_displacement():
+    street = Street(speed=2.0)
+    steps = {
+        window: [e.velocity[0] for e in follow(make(velocity_window=window), street, range(40))]
+        for window in (1, 5)
+    }
+    assert np.std(steps[5][10:]) < 0.6 * np.std(steps[1][10:])
+
+
+def test_reading_15_the_reference_is_the_first_histogram_and_the_last_one():
+    street = Street()
+    tracker = make(reference_weight=1.0)
+    follow(tracker, street, range(5))
+    for first, reference in zip(tracker._first, tracker._references, strict=True):
+        assert np.array_equal(first, reference)
+    tracker = make(reference_weight=0.25)
+    estimate = follow(tracker, street, range(5))[-1]
+    last = tracker._describe(street.frame(4), estimate.position)
+    for first, reference, found in zip(tracker._first, tracker._references, last, strict=True):
+        assert reference == pytest.approx(0.25 * first + 0.75 * found)
+
+
+def test_reading_16_resamples_below_a_share_of_the_particles():
+    street = Street()
+    for share in (0.0, 0.5, 1.0):
+        estimates = follow(make(resample_below=share), street, range(12))
+        for before, now in itertools.pairwise(estimates[1:]):
+            below = before.effective_sample_size < share * 200
+            assert now.resampling_passes == int(below)
+            assert now.resampled_particles == (200 if below else 0)
+
+
+def test_reading_17_the_best_particle_or_the_mean():
+    best = follow(make(estimate="best"), Street(), range(8))[-1]
+    distance = np.hypot(*(best.particles - best.position).T)
+    # With one feature the estimate is a particle itself; with three it lies among their best.
+    assert distance.min() < 3
+    single = VARIANTS["sfpf_color"]
+    tracker = single.tracker(SfpfColorParameters(estimate="best"))
+    estimate = follow(tracker, Street(), range(8))[-1]
+    assert np.hypot(*(estimate.particles - estimate.position).T).min() < 1e-9
+
+
+def test_reading_18_printed_resampling_repeats_the_common_survivors():
+    street = Street()
+    joint, printed = make(resample_below=1.0), make(resample_below=1.0, joint_resampling=False)
+    estimates = [follow(tracker, street, range(12))[-1] for tracker in (joint, printed)]
+    assert all(error(e, street, 11) < 10 for e in estimates)
+    assert not np.array_equal(estimates[0].particles, estimates[1].particles)
+
+
+def test_reading_19_the_mean_over_all_particles_is_lower():
+    street = Street()
+    best = follow(make(), street, range(4))[-1].similarities
+    every = follow(make(**{"confidence.best_share": 1.0}), street, range(4))[-1].similarities
+    assert all(every[f"as_{name}"] < best[f"as_{name}"] - 0.02 for name in NAMES)
+
+
+@pytest.mark.parametrize(
+    ("word", "kind"),
+    [("glcm", Cooccurrence), ("lbp", BinaryPatterns), ("haralick", HaralickStatistics)],
+)
+def test_each_texture_of_the_paper_can_be_chosen(word, kind):
+    street, tracker = Street(), make(texture=word)
+    estimates = follow(tracker, street, range(20))
+    assert isinstance(tracker._features["texture"], kind)
+    assert error(estimates[-1], street, 19) < 10
+
+
+def test_a_feature_changed_while_hidden_is_rebuilt_from_the_first_frame():
+    street, tracker = Street(speed=0.0, hidden=(10, 20)), make()
+    follow(tracker, street, range(15))
+    changed = from_mapping(MfpfParameters, {"texture": "lbp", "edges.threshold": 0.5})
+    tracker.reconfigure(changed)
+    assert tracker._features["edge"] == GradientDirections(0.5)
+    estimates = [tracker.step(street.frame(time)) for time in range(15, 35)]
+    assert estimates[0].regime == "prediction"
+    assert error(estimates[-1], street, 34) < 8
+
+
+@pytest.mark.parametrize(
+    "cls", [MfpfParameters, SfpfColorParameters, SfpfEdgeParameters, SfpfTextureParameters]
+)
+def test_as_printed_overrides_every_reading(cls):
+    assert cls().effective() == cls()
+    settings = cls(as_printed=True, reference_weight=0.6).effective()
+    assert settings.likelihood == LikelihoodParameters(sigma_v=1.5)
+    assert settings.confidence == ConfidenceParameters(best_share=1.0, threshold=0.8)
+    assert (settings.estimate, settings.velocity_window) == ("best", 1)
+    assert (settings.resample_below, settings.reference_weight) == (1.0, 0.6)
+    if cls in (MfpfParameters, SfpfEdgeParameters):
+        assert settings.edges == EdgeParameters(threshold=0.8, in_frame=False, signed=False)
+    if cls is MfpfParameters:
+        assert not settings.joint_resampling
+
+
+def test_as_printed_weights_are_flat():
+    # READINGS 1: exp(-BD² / 4.5) lies between 0.80 and 1.
+    estimates = follow(make(as_printed=True), Street(), range(6))
+    assert min(e.effective_sample_size for e in estimates) > 190
+    assert min(e.effective_sample_size for e in follow(make(), Street(), range(6))[1:]) < 100
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_single_feature_filter_has_the_whole_weight_or_predicts(name):
+    variant = VARIANTS[f"sfpf_{name}"]
+    street = Street(speed=1.0, hidden=(15, 20))
+    estimates = follow(variant.tracker(variant.parameters()), street, range(30))
+    for estimate in estimates[1:]:
+        used = estimate.regime == "estimation"
+        assert estimate.similarities[f"wf_{name}"] == float(used)
+        assert set(estimate.similarities) == {f"{c}_{name}" for c in ("as", "lc", "wf", "used")}
+    assert {e.regime for e in estimates[15:20]} == {"prediction"}

@@ -1,0 +1,176 @@
+"""P3, Tables I and II, and each of their readings."""
+
+import numpy as np
+import pytest
+from street import Street, error, follow
+
+from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.filtering.weights import effective_sample_size
+from vehicle_pf_tracker.trackers.adaptive import AdaptiveParameters, AdaptiveTracker
+from vehicle_pf_tracker.trackers.base import Cloud
+from vehicle_pf_tracker.trackers.conventional import ConventionalParameters, ConventionalTracker
+from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.trackers.repeated_resampling import WeighedParticles
+
+
+def conventional(**values):
+    return ConventionalTracker(from_mapping(ConventionalParameters, values))
+
+
+def adaptive(**values):
+    return AdaptiveTracker(from_mapping(AdaptiveParameters, values))
+
+
+both = pytest.mark.parametrize("make", [conventional, adaptive])
+
+
+def count_weighings(tracker):
+    """Make the tracker write down how many windows each call compares."""
+    sizes, compare = [], tracker._similarity
+    tracker._similarity = lambda frame, positions: (
+        sizes.append(len(positions)) or compare(frame, positions)
+    )
+    return sizes
+
+
+@both
+def test_the_counts_are_the_likelihoods_that_were_evaluated(make):
+    street, tracker = Street(), make()
+    tracker.start(street.frame(0), street.box(0))
+    for time in range(1, 10):
+        sizes = count_weighings(tracker)
+        estimate = tracker.step(street.frame(time))
+        del tracker._similarity
+        # The first weighing takes all particles, the last the estimate alone.
+        assert (sizes[0], sizes[-1]) == (200, 1)
+        assert estimate.resampling_passes == len(sizes) - 2
+        assert estimate.resampled_particles == sum(sizes[1:-1])
+
+
+@both
+def test_repeats_until_the_criterion_or_the_cap(make):
+    estimates = follow(make(criterion=0.95), Street(), range(20))[1:]
+    assert max(e.resampling_passes for e in estimates) > 1
+    for estimate in estimates:
+        enough = estimate.effective_sample_size >= 0.95 * 200
+        assert enough or estimate.resampling_passes == 20
+
+
+@both
+def test_a_cap_of_zero_never_resamples(make):
+    estimates = follow(make(most_passes=0), Street(), range(5))[1:]
+    assert {(e.resampling_passes, e.resampled_particles) for e in estimates} == {(0, 0)}
+
+
+@both
+def test_reading_21_the_printed_criterion_is_never_reached(make):
+    estimates = follow(make(as_printed=True), Street(), range(6))[1:]
+    assert {e.resampling_passes for e in estimates} == {20}
+
+
+def test_conventional_replaces_all_particles_in_every_pass():
+    for estimate in follow(conventional(), Street(), range(10)):
+        assert estimate.resampled_particles == 200 * estimate.resampling_passes
+
+
+def test_adaptive_weighs_far_fewer_again():
+    street, times = Street(), range(40)
+    spent = [
+        sum(e.resampled_particles for e in follow(make(), street, times))
+        for make in (conventional, adaptive)
+    ]
+    assert spent[1] < spent[0] / 5
+
+
+def one_pass(coefficients, **values):
+    """Do one pass of `adaptive` on particles 1 px apart; returns what was before and after."""
+    street, tracker = Street(), adaptive(num_particles=len(coefficients), **values)
+    tracker.start(street.frame(0), street.box(0))
+    positions = np.column_stack(
+        [20.0 + np.arange(len(coefficients)), np.full(len(coefficients), 50)]
+    )
+    before = tracker._weigh(positions, np.asarray(coefficients))
+    return before, *tracker._pass(street.frame(0), before, 1.0)
+
+
+def test_only_particles_below_the_mean_weight_are_replaced():
+    before, after, replaced, regime = one_pass([0.99, 0.2, 0.99, 0.3, 0.99, 0.99])
+    kept = [0, 2, 4, 5]
+    assert (replaced, regime) == (2, "regular")
+    assert np.array_equal(after.positions[kept], before.positions[kept])
+    assert np.array_equal(after.coefficients[kept], before.coefficients[kept])
+    assert not np.any(after.positions[[1, 3]] == before.positions[[1, 3]])
+
+
+def test_particles_of_equal_weight_are_all_good():
+    before, after, replaced, _ = one_pass([0.9] * 5)
+    assert replaced == 0
+    assert after is before
+
+
+def test_under_occlusion_only_the_best_particle_stays_and_the_rest_gathers_around_it():
+    before, after, replaced, regime = one_pass([0.2] * 9 + [0.99] + [0.2] * 30)
+    assert (replaced, regime) == (39, "occlusion")
+    assert np.array_equal(after.positions[9], before.positions[9])
+    # 0.25 of a sigma of 14 px.
+    assert np.std(after.positions - before.positions[9]) == pytest.approx(3.5, rel=0.3)
+
+
+def test_reading_22_the_test_by_similarity_ignores_peaked_weights():
+    _, _, _, regime = one_pass([0.2] * 9 + [0.99] + [0.2] * 30, **{"occlusion.test": "similarity"})
+    assert regime == "regular"
+
+
+def test_reading_22_the_test_by_similarity_sees_that_nothing_is_like_the_vehicle():
+    street, tracker = Street(), adaptive(**{"occlusion.test": "similarity"})
+    follow(tracker, street, range(10))
+    unlike = tracker._weigh(np.full((5, 2), 50.0), np.array([0.1, 0.2, 0.3, 0.2, 0.1]))
+    alike = tracker._weigh(np.full((5, 2), 50.0), np.array([0.1, 0.2, 0.95, 0.2, 0.1]))
+    assert tracker._pass(street.frame(9), unlike, 1.0)[2] == "occlusion"
+    assert tracker._pass(street.frame(9), alike, 1.0)[2] == "regular"
+
+
+@pytest.mark.parametrize("test", ["n_eff", "similarity"])
+def test_reading_22_a_hidden_vehicle_leaves_weights_flat_so_that_nothing_is_resampled(test):
+    street = Street(speed=0.0, hidden=(15, 30))
+    estimates = follow(adaptive(**{"occlusion.test": test}), street, range(30))
+    assert np.mean([e.resampling_passes for e in estimates[2:15]]) >= 1
+    assert {e.resampling_passes for e in estimates[16:]} == {0}
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@both
+def test_every_scheme_follows(make, scheme):
+    street, times = Street(), range(20)
+    estimates = follow(make(resampling=scheme), street, times)
+    assert error(estimates[-1], street, 19) < 8
+
+
+def test_reading_23_copies_are_jittered_by_a_share_of_sigma():
+    tracker, street = conventional(sigma=10.0, jitter=0.3, num_particles=4000), Street()
+    tracker.start(street.frame(0), street.box(0))
+    positions = np.tile([100.0, 60.0], (4000, 1))
+    particles = WeighedParticles(positions, np.full(4000, 0.9), Cloud.uniform(positions))
+    after, replaced, _ = tracker._pass(street.frame(0), particles, 2.0)
+    assert replaced == 4000
+    # 0.3 of 10 px a frame, in two frames.
+    assert np.std(after.positions - positions) == pytest.approx(6.0, rel=0.05)
+
+
+def test_the_plain_mean_as_printed():
+    estimate = follow(adaptive(weighted_mean=False), Street(), range(5))[-1]
+    assert estimate.position == pytest.approx(tuple(estimate.particles.mean(axis=0)))
+    assert estimate.effective_sample_size == pytest.approx(
+        effective_sample_size(np.asarray(estimate.weights))
+    )
+    weighted = follow(adaptive(), Street(), range(5))[-1]
+    assert weighted.position == pytest.approx(tuple(weighted.weights @ weighted.particles))
+
+
+def test_as_printed_overrides_every_reading():
+    settings = ConventionalParameters(as_printed=True).effective()
+    assert (settings.criterion, settings.weighted_mean) == (1.0, False)
+    values = {"as_printed": True, "occlusion.test": "similarity", "sigma": 9.0}
+    chosen = from_mapping(AdaptiveParameters, values).effective()
+    assert (chosen.criterion, chosen.weighted_mean) == (1.0, False)
+    assert (chosen.occlusion.test, chosen.sigma) == ("n_eff", 9.0)
