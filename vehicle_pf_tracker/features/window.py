@@ -81,8 +81,9 @@ def bounds(frame: Frame, positions: Positions, window: Window) -> Bounds:
     """
     width, height = frame_size(frame)
     pixel = centres(positions)
-    x = np.clip(pixel[..., 0], 0, width - 1)
-    y = np.clip(pixel[..., 1], 0, height - 1)
+    # np.clip does the same, four times slower on arrays of this size.
+    x = np.minimum(np.maximum(pixel[..., 0], 0), width - 1)
+    y = np.minimum(np.maximum(pixel[..., 1], 0), height - 1)
     return Bounds(
         np.maximum(x - window.half_width, 0),
         np.maximum(y - window.half_height, 0),

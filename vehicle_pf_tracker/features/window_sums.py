@@ -19,7 +19,7 @@ from vehicle_pf_tracker.features.window import Bounds
 Bins: TypeAlias = npt.NDArray[np.intp]
 Counts: TypeAlias = npt.NDArray[np.int64]
 
-_MOST_PLANES = 32
+_MOST_PLANES = 48
 """Planes integrated at once: OpenCV 5 takes 128 channels at most, and small blocks stay cached."""
 
 _EXACT_BITS = 53
