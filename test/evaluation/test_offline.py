@@ -140,3 +140,12 @@ def test_frames_are_taken_one_by_one():
 
     next(tracker(TARGET).rows(frames()))
     assert len(taken) <= 2
+
+
+def test_an_image_that_could_not_be_read_is_rejected_and_the_track_goes_on():
+    frames = [
+        (stamp, None if index == 4 else frame) for index, (stamp, frame) in enumerate(drive())
+    ]
+    rows = list(tracker(TARGET).rows(frames))
+    assert [row.mode for row in rows[3:6]] == ["TRACKING", "REJECTED", "TRACKING"]
+    assert [row.frame for row in rows] == list(range(1, 21))

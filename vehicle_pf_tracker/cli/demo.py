@@ -19,7 +19,7 @@ from vehicle_pf_tracker.evaluation.output_files import make_folder, write_text
 from vehicle_pf_tracker.evaluation.plots import overview_figure, save
 from vehicle_pf_tracker.evaluation.results import ResultFolder
 from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run
-from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Line, Table, comparison
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.reader import Recording
@@ -71,8 +71,7 @@ def run(args: argparse.Namespace) -> int:
     show(table)
     write_text(folder / "summary.md", table.to_markdown())
     write_text(folder / "summary.csv", table.to_csv())
-    frame = next(recording.frames(recording.duration_ns / 2e9)).frame
-    save(overview_figure(frame, scores, "through ROS, in lock-step"), folder / "demo.png")
+    _draw(recording, scores, folder / "demo.png")
     runs = {f"{name}_tracker": rows for name, rows in answers.items()}
     write_with_estimates(folder / "with_estimates", recording, runs, overwrite=True)
     print(
@@ -156,6 +155,13 @@ def _write(
     folder = ResultFolder(path)
     folder.write_run(rows, describe_run(info, tracker.session))
     folder.write_metrics(metrics)
+
+
+def _draw(recording: Recording, scores: Mapping[str, Scores], path: Path) -> None:
+    """Draw paths over a frame from the middle, and the errors below."""
+    frame = next(recording.frames(recording.duration_ns / 2e9)).frame
+    assert frame is not None, "we have just written it"
+    save(overview_figure(frame, scores, "through ROS, in lock-step"), path)
 
 
 def _table(

@@ -74,7 +74,7 @@ def _first_truth(recording: Recording) -> Truth:
     return truth
 
 
-def _frames(recording: Recording, progress: OnProgress) -> Iterator[tuple[int, Frame]]:
+def _frames(recording: Recording, progress: OnProgress) -> Iterator[tuple[int, Frame | None]]:
     for number, stamped in enumerate(recording.frames(), start=1):
         progress(number, recording.frame_count)
         yield stamped.stamp_ns, stamped.frame

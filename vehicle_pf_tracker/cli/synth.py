@@ -6,12 +6,10 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
-import cv2
-
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.recordings.importing import FORMATS, JPEG_QUALITY
+from vehicle_pf_tracker.recordings.importing import FORMATS, jpeg
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.scene import Scene
@@ -79,6 +77,4 @@ def _write_image(writer: RecordingWriter, stamp_ns: int, frame: Frame, form: str
     if form == "raw":
         writer.write_image(stamp_ns, frame)
         return
-    image = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
-    _, coded = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
-    writer.write_compressed(stamp_ns, "jpeg", coded.tobytes())
+    writer.write_compressed(stamp_ns, "jpeg", jpeg(frame))

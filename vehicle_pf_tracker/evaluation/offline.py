@@ -59,8 +59,10 @@ class OfflineTracker:
         self._first_truth = first_truth if self.session.waiting else None
         self._limit_ns = max_diff_ns(max_diff)
 
-    def rows(self, frames: Iterable[tuple[int, Frame]]) -> Iterator[EstimateRow]:
+    def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]:
         """Track through (stamp in ns, frame) pairs, and give one row for each.
+
+        An image that could not be read has no frame, and is rejected as the node would reject it.
 
         Raises
         ------
@@ -94,7 +96,9 @@ class OfflineTracker:
         self.session.reconfigure(self.session.tracker.parameters, settings)
         self._first_truth = None
 
-    def _row(self, number: int, stamp_ns: int, frame: Frame) -> EstimateRow:
+    def _row(self, number: int, stamp_ns: int, frame: Frame | None) -> EstimateRow:
+        if frame is None:
+            return EstimateRow.without(number, stamp_ns, REJECTED)
         try:
             estimate = self.session.feed(frame, stamp_ns)
         except InputError as error:

@@ -117,10 +117,11 @@ def _write_picture(writer: RecordingWriter, picture: Picture, wanted: str | None
     elif picture.coded_format is not None:
         writer.write_compressed(picture.stamp_ns, picture.coded_format, picture.coded)
     else:
-        writer.write_compressed(picture.stamp_ns, "jpeg", _jpeg(picture.frame))
+        writer.write_compressed(picture.stamp_ns, "jpeg", jpeg(picture.frame))
 
 
-def _jpeg(frame: Frame) -> bytes:
+def jpeg(frame: Frame) -> bytes:
+    """Code an RGB frame as a JPEG file."""
     image = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
     _, coded = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
     return coded.tobytes()

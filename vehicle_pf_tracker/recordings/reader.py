@@ -27,10 +27,10 @@ _UNREADABLE_IN_A_ROW = 10
 
 @dataclass(frozen=True, slots=True)
 class StampedFrame:
-    """An image and the stamp of its header in ns."""
+    """An image and the stamp of its header in ns; no frame where it cannot be read."""
 
     stamp_ns: int
-    frame: Frame
+    frame: Frame | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,7 @@ class Recording:
             first = next(iter(self._unreadable.values()))
             count = len(self._unreadable)
             notices.append(
-                f"unreadable images of {self.image_topic} in {self.path} skipped: {count}; {first}"
+                f"unreadable images of {self.image_topic} in {self.path}: {count}; {first}"
             )
         return notices
 
@@ -130,7 +130,7 @@ class Recording:
     ) -> Iterator[StampedFrame]:
         """Yield the images as RGB frames, in the order of their log times.
 
-        An image that cannot be read is skipped; `notices` counts it.
+        One that cannot be read has its stamp but no frame; `notices` counts it.
 
         Parameters
         ----------
@@ -144,17 +144,21 @@ class Recording:
         InputError
             If no image can be read, or an option is negative or not finite.
         """
-        readable = unreadable = 0
+        # Held back until one can be read, so that a recording of rubbish is an error.
+        unread: list[StampedFrame] = []
+        readable = False
         for _, message in self._select({self.image_topic}, start_offset, duration):
-            frame = self._decode_or_note(message)
-            if frame is not None:
-                readable += 1
-                yield frame
+            image = self._decode_or_note(message)
+            if not readable and image.frame is None:
+                unread.append(image)
+                if len(unread) == _UNREADABLE_IN_A_ROW:
+                    break
                 continue
-            unreadable += 1
-            if readable == 0 and unreadable == _UNREADABLE_IN_A_ROW:
-                break
-        if unreadable and not readable:
+            readable = True
+            yield from unread
+            unread = []
+            yield image
+        if unread:
             reason = next(iter(self._unreadable.values()))
             raise InputError(f"no image of {self.image_topic} in {self.path} can be read; {reason}")
 
@@ -218,13 +222,14 @@ class Recording:
             end = min(end, first + _nanoseconds("duration", duration))
         return merged_messages(self._files, topics, first, end, self._note_block)
 
-    def _decode_or_note(self, message: Message) -> StampedFrame | None:
+    def _decode_or_note(self, message: Message) -> StampedFrame:
         try:
             return _decode(self.image_type, message.data)
         except InputError as error:
             seconds = (message.log_time_ns - self.start_ns) / 1e9
             self._unreadable[message.log_time_ns] = f"{seconds:.3f} s after the start: {error}"
-            return None
+            stamp = header_stamp_ns(message.data)
+            return StampedFrame(message.log_time_ns if stamp is None else stamp, None)
 
     def _has_truth(self) -> bool:
         """Tell whether there is truth; raise if its topics are there but cannot hold any."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
@@ -14,13 +13,6 @@ from vehicle_pf_tracker.trackers.parameters import Value
 
 _SCRIPT = "import sys; from vehicle_pf_tracker.ros.executables import main; sys.exit(main({!r}))"
 _END_SECONDS = 10.0
-
-# glibc would give every image's memory back to the system and fetch it again for the next one.
-_ALLOCATOR = {
-    "MALLOC_MMAP_THRESHOLD_": "1073741824",
-    "MALLOC_TRIM_THRESHOLD_": "1073741824",
-    "MALLOC_TOP_PAD_": "67108864",
-}
 
 
 @contextmanager
@@ -47,9 +39,7 @@ def tracker_process(
     for name, value in parameters.items():
         words += ["-p", f"{name}:={str(value).lower() if isinstance(value, bool) else value}"]
     # The very same interpreter: another one's libraries would be looked up in this one's place.
-    process = subprocess.Popen(
-        [sys.executable, "-c", _SCRIPT.format(variant), *words], env=_ALLOCATOR | dict(os.environ)
-    )
+    process = subprocess.Popen([sys.executable, "-c", _SCRIPT.format(variant), *words])
     try:
         yield process
     finally:

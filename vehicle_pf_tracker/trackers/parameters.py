@@ -100,10 +100,10 @@ class ParameterSpec:
     def bounds(self) -> str:
         """The bounds in words, for messages and tables; empty where there are none."""
         if self.minimum is not None and self.maximum is not None:
-            return f"from {self.minimum:g} to {self.maximum:g}"
+            return f"from {_plain(self.minimum)} to {_plain(self.maximum)}"
         if self.minimum is not None:
-            return f"at least {self.minimum:g}"
-        return "" if self.maximum is None else f"at most {self.maximum:g}"
+            return f"at least {_plain(self.minimum)}"
+        return "" if self.maximum is None else f"at most {_plain(self.maximum)}"
 
     def parse(self, text: str) -> Value:
         """Read a value written on a command line."""
@@ -116,6 +116,10 @@ class ParameterSpec:
                 f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {text!r}"
             ) from None
         return self.check(value)
+
+
+def _plain(number: float) -> str:
+    return str(int(number)) if float(number).is_integer() else f"{number:g}"
 
 
 def _parse_bool(word: str) -> bool:

@@ -1,0 +1,56 @@
+"""The whole chain of the demo on a short scene: recording, node, lock-step replay, scores."""
+
+import csv
+import json
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from vehicle_pf_tracker.cli import demo
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.ros.tracker_process import tracker_process
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.fixture
+def short_demo(monkeypatch):
+    monkeypatch.setattr(demo, "SCENE", "bar")
+    monkeypatch.setattr(demo, "CONTESTANTS", {"apf": {"motion.sigma_w": 5.0}})
+
+
+@pytest.mark.usefixtures("short_demo")
+def test_the_chain_ends_with_scores_pictures_and_a_recording(tmp_path, capfd):
+    assert main(["demo", "-o", str(tmp_path), "--seeds", "1"]) == 0
+    frames = Recording(tmp_path / "recording").frame_count
+    with (tmp_path / "apf" / "estimates.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [int(row["frame"]) for row in rows] == list(range(1, frames + 1))
+    metrics = json.loads((tmp_path / "apf" / "metrics.json").read_text())
+    assert metrics["frames_scored"] == frames
+    assert metrics["rmse_px"] < 15
+    assert json.loads((tmp_path / "apf" / "run.json").read_text())["variant"] == "apf"
+    assert (tmp_path / "demo.png").stat().st_size > 10_000
+    topics = {info.name for info in Recording(tmp_path / "with_estimates").topics}
+    assert {"/camera/image_raw", "/ground_truth/position", "/apf_tracker/position"} <= topics
+    told = capfd.readouterr().out
+    assert "error, RMSE" in told
+    assert f"{frames} frames out, {frames} estimates in" in told
+
+
+def test_a_node_that_fails_is_told(tmp_path, capfd):
+    with (
+        pytest.raises(InputError, match="apf_tracker ended with status 1"),
+        tracker_process("apf", {"motion.sigma_w": -1.0}, "/nobody") as process,
+    ):
+        process.wait(30)
+    assert "motion.sigma_w" in capfd.readouterr().err
+
+
+def test_the_node_is_ended_with_the_block():
+    with tracker_process("pf", {}, "/nobody") as process:
+        assert process.poll() is None
+    assert process.returncode is not None
