@@ -18,6 +18,9 @@ def make(**values):
     return ApfTracker(from_mapping(ApfParameters, values))
 
 
+PRINTED_RULE = {"occlusion.rule": "fixed"}
+
+
 def test_likelihood_by_hand_squared_and_as_printed():
     # rho 0.75 is a distance of 0.5: 0.25 / (2 * 0.01) = 12.5, and 0.5 / (2 * 2.25) = 1/9.
     squared = log_likelihood(np.array([0.75, 1.0]), LikelihoodParameters(0.1, True))
@@ -54,7 +57,7 @@ def test_a_shorter_window_looks_at_the_same_moves():
 def test_the_regime_follows_the_similarities_of_the_frame_before():
     # Step 4: regular at t if both similarities at t - 1 are at least tau.
     street = Street(hidden=(15, 22))
-    estimates = follow(make(), street, range(35))
+    estimates = follow(make(**PRINTED_RULE), street, range(35))
     tau = ApfParameters().occlusion.tau
     for before, now in itertools.pairwise(estimates[1:]):
         clear = min(before.similarities["pi"], before.similarities["pi_up"]) >= tau
@@ -86,7 +89,8 @@ def test_reading_11_drift_is_the_velocity_or_the_printed_sigma():
 
 def test_reading_6_the_reference_is_frozen_while_occluded():
     street = Street(speed=0.0, hidden=(10, 30))
-    kept, learned = make(), make(**{"reference.frozen_while_occluded": False})
+    kept = make(**PRINTED_RULE)
+    learned = make(**PRINTED_RULE, **{"reference.frozen_while_occluded": False})
     before = []
     for tracker in (kept, learned):
         follow(tracker, street, range(11))
@@ -99,8 +103,9 @@ def test_reading_6_the_reference_is_frozen_while_occluded():
 
 def test_reading_7_the_blended_histogram_notices_an_occlusion_late():
     street = Street(speed=0.0, hidden=(10, 30))
-    raw = follow(make(), street, range(14))
-    blended = follow(make(**{"occlusion.raw_histogram": False}), street, range(14))
+    raw = follow(make(**PRINTED_RULE), street, range(14))
+    values = {"occlusion.raw_histogram": False}
+    blended = follow(make(**PRINTED_RULE, **values), street, range(14))
     assert raw[10].similarities["pi"] < 0.5
     assert blended[10].similarities["pi"] > 0.7
     assert min(e.similarities["pi_up"] for e in blended[1:]) > 0.7
@@ -121,6 +126,7 @@ def test_as_printed_overrides_every_reading():
     ).effective()
     assert settings.likelihood == LikelihoodParameters(1.5, False)
     assert not settings.reference.frozen_while_occluded
+    assert settings.occlusion.rule == "fixed"
     assert not settings.occlusion.raw_histogram
     assert settings.velocity.from_origin
     assert settings.velocity.window == 0
@@ -169,3 +175,43 @@ def test_a_drift_out_of_the_image_is_lost_before_the_time_is_up():
     modes = [e.mode for e in estimates]
     assert modes[22] is Mode.OCCLUDED
     assert modes[-1] is Mode.LOST
+
+
+class Repainted(Street):
+    """A vehicle whose lower half is another colour than in the first frame, but for that clear."""
+
+    def frame(self, time):
+        frame = super().frame(time).copy()
+        if time > 0:
+            box = self.box(time)
+            x, y = int(box.x), int(box.y)
+            frame[y + 11 : y + 16, x : x + 24] = (20, 140, 60)
+        return frame
+
+
+def test_a_lasting_change_of_look_is_an_occlusion_by_the_fixed_rule_alone():
+    street = Repainted(speed=2.0)
+    fixed = follow(make(**PRINTED_RULE), street, range(30))
+    relative = follow(make(), street, range(30))
+    assert {e.regime for e in fixed[2:]} == {"occlusion"}
+    assert {e.regime for e in relative[1:]} == {"regular"}
+    assert max(e.similarities["pi"] for e in relative[1:]) < ApfParameters().occlusion.tau
+
+
+def test_the_relative_rule_sees_an_occlusion_and_its_end():
+    estimates = follow(make(), Street(hidden=(25, 33)), range(45))
+    regimes = [e.regime for e in estimates]
+    # The regime is that of the similarities of the frame before.
+    assert set(regimes[26:33]) == {"occlusion"}
+    assert set(regimes[1:25]) == set(regimes[-5:]) == {"regular"}
+
+
+def test_with_the_relative_rule_the_reference_follows_good_frames_only():
+    street = Street(speed=0.0, hidden=(15, 30))
+    tracker = make(**{"reference.steady_alpha": 0.5})
+    follow(tracker, street, range(15))
+    followed = tracker._reference
+    assert not np.array_equal(followed, tracker._first)
+    for time in range(15, 30):
+        tracker.step(street.frame(time))
+        assert np.array_equal(tracker._reference, followed)

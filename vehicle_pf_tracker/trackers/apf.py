@@ -23,6 +23,7 @@ from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
+from vehicle_pf_tracker.trackers.clear_level import ClearLevel
 from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.likelihood import log_likelihood
 from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
@@ -38,6 +39,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         self._velocity = MeanVelocity(0)
         self._position = (0.0, 0.0)
         self._pi = self._pi_up = 1.0
+        self._levels = ClearLevel(), ClearLevel()
 
     def reconfigure(self, parameters: ApfParameters) -> None:
         """Take new parameters; a new velocity window looks at the same history."""
@@ -51,6 +53,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
     def _scatter(self, centre: tuple[float, float]) -> Array:
         settings = self.parameters.effective()
         self._pi = self._pi_up = 1.0  # step 2
+        self._levels = ClearLevel(), ClearLevel()
         self._velocity = MeanVelocity(settings.velocity.window)
         self._position = (0.0, 0.0) if settings.velocity.from_origin else centre
         moves = sample_normal(self._rng, settings.num_particles, settings.motion.sigma_w)
@@ -90,6 +93,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         )
 
     def _is_clear(self, settings: ApfParameters) -> bool:
+        if settings.occlusion.rule == "relative":
+            return all(level.clear for level in self._levels)
         return min(self._pi, self._pi_up) >= settings.occlusion.tau
 
     def _resample(self, settings: ApfParameters) -> Array:
@@ -111,13 +116,31 @@ class ApfTracker(ParticleTracker[ApfParameters]):
 
     def _compare_and_learn(self, settings: ApfParameters, histogram: Histogram) -> None:
         """Do steps 15 and 16."""
-        alpha = settings.reference.alpha
+        alpha = self._follow_rate(settings, histogram)
         blended = alpha * histogram + (1 - alpha) * self._reference
         judged = histogram if settings.occlusion.raw_histogram else blended
         self._pi = _similarity(judged, self._first)
         self._pi_up = _similarity(judged, self._reference)
+        self._keep_levels(settings)
         if self._is_clear(settings) or not settings.reference.frozen_while_occluded:
             self._reference = blended
+
+    def _follow_rate(self, settings: ApfParameters, histogram: Histogram) -> float:
+        """Return alpha of step 15; with the relative rule only good frames have one."""
+        if settings.occlusion.rule == "fixed":
+            return settings.reference.alpha
+        good = settings.reference.steady_above * self._levels[0].value
+        return settings.reference.steady_alpha * (_similarity(histogram, self._first) >= good)
+
+    def _keep_levels(self, settings: ApfParameters) -> None:
+        """Judge Pi and Pi_up by their clear levels, which follow in frames where both are clear."""
+        level = settings.occlusion.level
+        similarities = self._pi, self._pi_up
+        for kept, similarity in zip(self._levels, similarities, strict=True):
+            kept.judge(similarity, level)
+        if all(kept.clear for kept in self._levels):
+            for kept, similarity in zip(self._levels, similarities, strict=True):
+                kept.follow(similarity, level)
 
     def _follow(
         self,

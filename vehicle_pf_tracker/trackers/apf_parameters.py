@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.trackers.clear_level import ClearLevelParameters
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.parameters import group, parameter
@@ -52,14 +53,29 @@ class ApfReferenceParameters:
 
     alpha: float = parameter(
         0.1,
-        "Higher: the reference follows changes of the vehicle's look faster.",
+        "Higher: the reference follows changes of the vehicle's look faster. Counts with the fixed "
+        "occlusion rule.",
         minimum=0.0,
         maximum=1.0,
         source="P1 Algorithm 1 step 15",
     )
+    steady_alpha: float = parameter(
+        0.01,
+        "Higher: as alpha, with the relative occlusion rule, which is regular in more frames.",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    steady_above: float = parameter(
+        0.95,
+        "Higher: with the relative rule, the reference follows in fewer and better frames only.",
+        minimum=0.0,
+        maximum=2.0,
+        unit="of Pi's clear level",
+    )
     frozen_while_occluded: bool = parameter(
         True,
-        "Keep the reference while occluded; off lets it learn the occluder, as printed.",
+        "Keep the reference while occluded; off lets it learn the occluder, as printed. Counts "
+        "with the fixed occlusion rule.",
         source="P1 Algorithm 1 step 15, READINGS 6",
     )
 
@@ -68,9 +84,17 @@ class ApfReferenceParameters:
 class ApfOcclusionParameters:
     """When the occlusion regime is entered and left."""
 
+    rule: str = parameter(
+        "relative",
+        "relative holds the similarities against their own clear level; fixed against tau, as "
+        "printed, which takes most of a real video for an occlusion.",
+        choices=("fixed", "relative"),
+        source="P1 Algorithm 1 step 4",
+    )
     tau: float = parameter(
         0.8,
-        "Higher: smaller changes of the histogram switch to the occlusion regime.",
+        "Higher: smaller changes of the histogram switch to the occlusion regime. Counts with the "
+        "fixed rule.",
         minimum=0.0,
         maximum=1.0,
         source="P1 Algorithm 1 step 4, READINGS 8",
@@ -80,6 +104,7 @@ class ApfOcclusionParameters:
         "Judge the window's own histogram; off judges the blended reference, as printed.",
         source="P1 Algorithm 1 step 16, READINGS 7",
     )
+    level: ClearLevelParameters = group(ClearLevelParameters)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +170,6 @@ class ApfParameters(ParticleParameters):
             likelihood=LikelihoodParameters(sigma_v=1.5, squared_distance=False),
             motion=replace(self.motion, sigma_n=0.0, sigma_r=0.0, drift_from_velocity=False),
             reference=replace(self.reference, frozen_while_occluded=False),
-            occlusion=replace(self.occlusion, raw_histogram=False),
+            occlusion=replace(self.occlusion, rule="fixed", raw_histogram=False),
             velocity=ApfVelocityParameters(window=0, from_origin=True, frozen_while_occluded=False),
         )

@@ -1,0 +1,56 @@
+"""The clear level of a similarity: level, deviation and hysteresis by hand."""
+
+import pytest
+
+from vehicle_pf_tracker.trackers.clear_level import ClearLevel, ClearLevelParameters
+
+SETTINGS = ClearLevelParameters(enter=4.0, leave=2.0, rate=0.5)
+
+
+def level_of(*similarities):
+    level = ClearLevel()
+    for similarity in similarities:
+        level.follow(similarity, SETTINGS)
+    return level
+
+
+def test_the_first_similarity_is_clear_and_becomes_the_level():
+    level = ClearLevel()
+    level.judge(0.1, SETTINGS)
+    assert level.clear
+    level.follow(0.1, SETTINGS)
+    assert level.value == pytest.approx(0.1)
+    assert level.deviation == pytest.approx(0.05)
+
+
+def test_level_and_deviation_by_hand():
+    # Second: 0.2 away, so the deviation goes half way from 0.05 to 0.2, and the level to the mean.
+    level = level_of(0.8, 0.6)
+    assert level.deviation == pytest.approx(0.125)
+    assert level.value == pytest.approx(0.7)
+    # Third: 0.1 away. A third is below the rate of a half, so the rate decides.
+    level.follow(0.8, SETTINGS)
+    assert level.deviation == pytest.approx(0.1125)
+    assert level.value == pytest.approx(0.75)
+
+
+def test_it_is_left_and_entered_again_at_different_depths():
+    level = level_of(0.8)  # deviation 0.05: left below 0.6, entered again at 0.7
+    for similarity, clear in ((0.61, True), (0.59, False), (0.69, False), (0.71, True)):
+        level.judge(similarity, SETTINGS)
+        assert level.clear is clear
+
+
+def test_a_level_that_never_varied_still_bears_noise():
+    level = level_of(*[0.8] * 60)
+    level.judge(0.8 - 4 * 0.005 + 1e-9, SETTINGS)
+    assert level.clear
+    level.judge(0.8 - 4 * 0.005 - 1e-6, SETTINGS)
+    assert not level.clear
+
+
+def test_judging_does_not_count():
+    level = level_of(0.8, 0.7)
+    before = level.value, level.deviation
+    level.judge(0.1, SETTINGS)
+    assert (level.value, level.deviation) == before

@@ -1,0 +1,44 @@
+"""The first paper's baselines on real vehicles in plain sight, where the sequences are at hand."""
+
+import csv
+import functools
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+SEQUENCES = Path(__file__).resolve().parents[3] / "shared" / "sequences"
+
+pytestmark = pytest.mark.skipif(
+    not SEQUENCES.is_dir(), reason="the real sequences are not beside the repository"
+)
+
+
+@functools.cache
+def load(name):
+    folder = SEQUENCES / name
+    with (folder / "groundtruth.csv").open() as lines:
+        boxes = [Box(*(float(row[key]) for key in "xywh")) for row in csv.DictReader(lines)]
+    paths = sorted((folder / "img").glob("*.jpg"))[: len(boxes)]
+    return [cv2.imread(str(path))[..., ::-1] for path in paths], boxes
+
+
+@pytest.mark.parametrize("variant", ["apf", "pf", "sapf", "hpfms", "pfcl", "ms"])
+@pytest.mark.parametrize(
+    "name", ["cdnet_highway/car_a", "cdnet_highway/car_e", "m6_dual_carriageway/red_car"]
+)
+def test_stays_on_a_vehicle_in_plain_sight(variant, name):
+    frames, boxes = load(name)
+    found = find_variant(variant)
+    tracker = found.tracker(from_mapping(found.parameters, {}))
+    tracker.start(frames[0], boxes[0])
+    on_target = []
+    for frame, box in zip(frames[1:], boxes[1:], strict=True):
+        error = np.subtract(tracker.step(frame).position, box.centre)
+        on_target.append(np.hypot(*error) < box.diagonal / 2)
+    assert np.mean(on_target) >= 0.95
