@@ -42,6 +42,7 @@ def test_strength_by_hand_and_exact_at_its_largest():
 
 def test_no_gradient_makes_no_edge_point():
     assert squared_limits(np.array([0, 100], np.float32), 0.5).tolist() == [np.inf, 25]
+    assert squared_limits(np.array([0, 100], np.float32), 0.5, 6.0).tolist() == [np.inf, 36]
 
 
 @pytest.mark.parametrize("in_frame", [True, False])
@@ -81,6 +82,13 @@ def test_reading_14_the_threshold_is_a_share_of_the_strongest():
     assert directions(frame, window, position, threshold=0.3)[[0, 32]].tolist() == [0.5, 0.5]
 
 
+def test_below_the_floor_nothing_is_an_edge():
+    # A step of 9 grey levels makes a gradient of 36, one of 11 makes 44.
+    assert not directions(step_edge(dark=100, light=109), floor=40).any()
+    assert directions(step_edge(dark=100, light=111), floor=40)[32] == 1.0
+    assert directions(step_edge(dark=100, light=109))[32] == 1.0
+
+
 def test_reading_14_the_window_border_hides_what_the_frame_shows():
     # The window's first column is 6: only the frame shows the step before it.
     window, position = Window(2, 2), (8.5, 4.5)
@@ -88,7 +96,7 @@ def test_reading_14_the_window_border_hides_what_the_frame_shows():
     assert not directions(step_edge(), window, position, in_frame=False).any()
 
 
-def direct(frame, position, window, *, threshold, in_frame, signed):
+def direct(frame, position, window, *, threshold, in_frame, signed, floor):
     """The definition, one window at a time, by OpenCV's own Sobel."""
     left, top, right, bottom = (
         int(side[0]) for side in bounds(frame, np.array([position]), window)
@@ -100,7 +108,8 @@ def direct(frame, position, window, *, threshold, in_frame, signed):
     gx = cv2.Sobel(image, cv2.CV_64F, 1, 0)[inner]
     gy = cv2.Sobel(image, cv2.CV_64F, 0, 1)[inner]
     strength = np.hypot(gx, gy)
-    edges = (strength > 0) & (strength >= threshold * strength.max() - 1e-9)
+    limit = max(threshold * strength.max(), floor)
+    edges = (strength > 0) & (strength >= limit - 1e-9)
     bins = direction_bins(gx[edges], gy[edges], signed=signed)
     counts = np.bincount(bins, minlength=64)
     return counts / max(counts.sum(), 1)
@@ -114,13 +123,16 @@ def direct(frame, position, window, *, threshold, in_frame, signed):
     threshold=st.sampled_from([0.037, 0.31, 0.83]),
     in_frame=st.booleans(),
     signed=st.booleans(),
+    floor=st.sampled_from([0.0, 60.5]),
 )
-def test_agrees_with_the_definition(seed, size, half, threshold, in_frame, signed):
+def test_agrees_with_the_definition(seed, size, half, threshold, in_frame, signed, floor):
     rng = np.random.default_rng(seed)
     frame = cv2.GaussianBlur(rng.integers(0, 256, (*size, 3)).astype(np.uint8), (0, 0), 1.5)
     frame = frame.reshape(*size, 3)
     positions = rng.uniform(-5, 45, (9, 2))
-    switches = {"threshold": threshold, "in_frame": in_frame, "signed": signed}
+    switches = {
+        "threshold": threshold, "in_frame": in_frame, "signed": signed, "floor": floor
+    }  # fmt: skip
     found = GradientDirections(**switches).histograms(frame, positions, Window(*half))
     expected = [direct(frame, tuple(p), Window(*half), **switches) for p in positions]
     assert found == pytest.approx(np.array(expected), abs=1e-9)

@@ -10,6 +10,7 @@ from vehicle_pf_tracker.features.glcm import Cooccurrence
 from vehicle_pf_tracker.features.gradients import GradientDirections
 from vehicle_pf_tracker.features.haralick import HaralickStatistics
 from vehicle_pf_tracker.features.lbp import BinaryPatterns
+from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.mfpf import MfpfTracker
 from vehicle_pf_tracker.trackers.mfpf_parameters import (
@@ -88,6 +89,13 @@ def test_predicts_with_the_last_increments_and_leaves_the_references_alone():
     assert error(estimates[-1], street, 44) < 6
 
 
+def test_claims_no_vehicle_while_only_one_feature_is_fooled():
+    # On even asphalt all gradients are noise: without a floor the edges find what they look for.
+    street, tracker = Street(speed=3.0, hidden=(20, 40)), make(**{"edges.floor": 0.0})
+    estimates = follow(tracker, street, range(40))
+    assert all(e.mode is Mode.OCCLUDED for e in estimates[21:])
+
+
 def test_reading_12_velocity_over_a_window_is_steadier_than_the_last_displacement():
     street = Street(speed=2.0)
     steps = {
@@ -162,7 +170,7 @@ def test_a_feature_changed_while_hidden_is_rebuilt_from_the_first_frame():
     follow(tracker, street, range(15))
     changed = from_mapping(MfpfParameters, {"texture": "lbp", "edges.threshold": 0.5})
     tracker.reconfigure(changed)
-    assert tracker._features["edge"] == GradientDirections(0.5)
+    assert tracker._features["edge"] == GradientDirections(0.5, floor=40.0)
     estimates = [tracker.step(street.frame(time)) for time in range(15, 35)]
     assert estimates[0].regime == "prediction"
     assert error(estimates[-1], street, 34) < 8
@@ -179,7 +187,7 @@ def test_as_printed_overrides_every_reading(cls):
     assert (settings.estimate, settings.velocity_window) == ("best", 1)
     assert (settings.resample_below, settings.reference_weight) == (1.0, 0.6)
     if cls in (MfpfParameters, SfpfEdgeParameters):
-        assert settings.edges == EdgeParameters(threshold=0.8, in_frame=False, signed=False)
+        assert settings.edges == EdgeParameters(0.8, floor=0.0, in_frame=False, signed=False)
     if cls is MfpfParameters:
         assert not settings.joint_resampling
 

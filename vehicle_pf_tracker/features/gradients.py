@@ -51,11 +51,15 @@ class GradientDirections(CountedFeature):
     signed : bool
         Tell dark-to-light from light-to-dark; False takes the printed ``atan``, which folds
         opposite directions into the middle 32 bins (READINGS 13).
+    floor : float
+        Gradient that an edge point has at least (a step of one grey level makes 4). Without one, a
+        window of nothing but noise is full of edge points.
     """
 
     threshold: float = 0.3
     in_frame: bool = True
     signed: bool = True
+    floor: float = 0.0
 
     bins = DIRECTION_BINS
 
@@ -67,7 +71,7 @@ class GradientDirections(CountedFeature):
         region, windows = covered_region(frame, in_image, margin=1)
         grey = to_grey(region)
         if not self.in_frame:
-            counts = window_direction_counts(grey, windows, self.threshold, signed=self.signed)
+            counts = window_direction_counts(grey, windows, self._limits, signed=self.signed)
             return counts[:, active], counts.sum(axis=1)
         gx, gy = (
             np.asarray(cv2.Sobel(grey, cv2.CV_16S, dx, 1 - dx, ksize=3), np.int16) for dx in (1, 0)
@@ -75,9 +79,12 @@ class GradientDirections(CountedFeature):
         strength = squared_strength(gx, gy)
         corner = in_image.left[0] - windows.left[0], in_image.top[0] - windows.top[0]
         middles = centres(keep_inside(frame, positions)) - corner
-        limits = squared_limits(_window_peaks(strength, middles, window), self.threshold)
+        limits = self._limits(_window_peaks(strength, middles, window))
         points = _edge_points(gx, gy, strength, limits, signed=self.signed)
         return _count_points(points, strength.shape, limits, windows, active)
+
+    def _limits(self, peaks: Strengths) -> Strengths:
+        return squared_limits(peaks, self.threshold, self.floor)
 
 
 class EdgePoints(NamedTuple):

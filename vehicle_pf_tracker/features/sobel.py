@@ -19,12 +19,24 @@ def squared_strength(gx: npt.NDArray[Any], gy: npt.NDArray[Any]) -> Strengths:
     return np.asarray(gx * gx + gy * gy)
 
 
-def squared_limits(peaks: Strengths, threshold: float) -> Strengths:
+def squared_limits(peaks: Strengths, threshold: float, floor: float = 0.0) -> Strengths:
     """Least squared strength of edge points where the strongest has `peaks`.
 
-    Where there is no gradient at all nothing is an edge point: the limit is infinite.
+    Parameters
+    ----------
+    peaks : array
+        Squared strengths.
+    threshold : float
+        Share of the strongest gradient that makes an edge point.
+    floor : float
+        Gradient that an edge point has at least, whatever the strongest is.
+
+    Returns
+    -------
+    array
+        Infinite where there is no gradient at all: nothing is an edge point there.
     """
-    limits = np.float32(threshold) ** 2 * peaks
+    limits = np.maximum(np.float32(threshold) ** 2 * peaks, np.float32(floor) ** 2)
     return np.asarray(np.where(peaks > 0, limits, np.inf), np.float32)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
 import numpy as np
@@ -10,21 +10,22 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.features.sobel import (
     DIRECTION_BINS,
+    Strengths,
     direction_bins,
-    squared_limits,
     squared_strength,
 )
 from vehicle_pf_tracker.features.window import Bounds
 from vehicle_pf_tracker.features.window_feature import Grey
 
 Indices: TypeAlias = npt.NDArray[np.intp]
+LimitsOf: TypeAlias = Callable[[Strengths], Strengths]
 
 _CHUNK = 1_000_000
 """Pixels of windows that are looked at together; bounds the memory."""
 
 
 def window_direction_counts(
-    grey: Grey, windows: Bounds, threshold: float, *, signed: bool
+    grey: Grey, windows: Bounds, limits_of: LimitsOf, *, signed: bool
 ) -> npt.NDArray[np.intp]:
     """Count edge points by direction, each window being an image of its own.
 
@@ -34,8 +35,8 @@ def window_direction_counts(
         Grey levels.
     windows : Bounds
         Rectangles in `grey`, arrays of shape (N,).
-    threshold : float
-        Share of the window's strongest gradient that makes an edge point.
+    limits_of : callable
+        Squared strength that makes an edge point, from the windows' largest ones.
     signed : bool
         As in `direction_bins`.
 
@@ -43,7 +44,7 @@ def window_direction_counts(
     -------
     (N, 64) array
     """
-    parts = [_counts(grey, part, threshold, signed=signed) for part in _chunks(windows)]
+    parts = [_counts(grey, part, limits_of, signed=signed) for part in _chunks(windows)]
     return np.concatenate(parts)
 
 
@@ -54,7 +55,9 @@ def _chunks(windows: Bounds) -> Iterator[Bounds]:
         yield Bounds(*(side[start : start + size] for side in windows))
 
 
-def _counts(grey: Grey, windows: Bounds, threshold: float, *, signed: bool) -> npt.NDArray[np.intp]:
+def _counts(
+    grey: Grey, windows: Bounds, limits_of: LimitsOf, *, signed: bool
+) -> npt.NDArray[np.intp]:
     rows, row_exists = _mirrored(windows.top, windows.bottom)
     columns, column_exists = _mirrored(windows.left, windows.right)
     pixels = grey[rows[:, :, np.newaxis], columns[:, np.newaxis, :]].astype(np.int32)
@@ -64,7 +67,7 @@ def _counts(grey: Grey, windows: Bounds, threshold: float, *, signed: bool) -> n
     gy = along_y[:, :, :-2] + 2 * along_y[:, :, 1:-1] + along_y[:, :, 2:]
     strength = squared_strength(gx, gy)
     strength *= row_exists[:, :, np.newaxis] & column_exists[:, np.newaxis, :]
-    limits = squared_limits(strength.max(axis=(1, 2)), threshold)
+    limits = limits_of(strength.max(axis=(1, 2)))
     edges = np.nonzero(strength >= limits[:, np.newaxis, np.newaxis])
     bins = direction_bins(gx[edges], gy[edges], signed=signed)
     count = len(windows.left)

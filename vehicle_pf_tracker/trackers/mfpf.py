@@ -121,7 +121,8 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             position,
             self._velocity.value,
             "prediction" if fusion.full_occlusion else "estimation",
-            float(fusion.factors @ similarities) or float(similarities.mean()),
+            # The majority counts: one feature that fails, or is fooled, does not decide.
+            float(np.median(similarities)),
             self._report(fusion),
             resampling_passes=int(resample),
             resampled_particles=len(particles) if resample else 0,
@@ -281,4 +282,6 @@ class MfpfTracker(FeatureFilter[MfpfParameters]):
 
 def edge_feature(parameters: EdgeParameters) -> GradientDirections:
     """Make the edge feature of these parameters."""
-    return GradientDirections(parameters.threshold, parameters.in_frame, parameters.signed)
+    return GradientDirections(
+        parameters.threshold, parameters.in_frame, parameters.signed, parameters.floor
+    )

@@ -97,6 +97,16 @@ class EdgeParameters:
         source="P2 section III-C, READINGS 14",
         effect="relearns",
     )
+    floor: float = parameter(
+        40.0,
+        "Higher: noise and faint edges count less; 0 counts them in windows with nothing else, as "
+        "printed. A step of one grey level makes a gradient of 4.",
+        minimum=0.0,
+        maximum=1500.0,
+        unit="grey levels",
+        source="P2 section III-C, READINGS 14",
+        effect="relearns",
+    )
     in_frame: bool = parameter(
         True,
         "Take the gradient in the frame; off takes it in each window by itself, as printed.",
@@ -225,7 +235,7 @@ class MfpfParameters(FeatureFilterParameters):
 
 FilterParametersT = TypeVar("FilterParametersT", bound=FeatureFilterParameters)
 
-_PRINTED_EDGES = EdgeParameters(threshold=0.8, in_frame=False, signed=False)
+_PRINTED_EDGES = EdgeParameters(threshold=0.8, floor=0.0, in_frame=False, signed=False)
 
 
 def _common_print(parameters: FilterParametersT) -> FilterParametersT:
