@@ -24,14 +24,27 @@ def test_the_first_similarity_is_clear_and_becomes_the_level():
 
 
 def test_level_and_deviation_by_hand():
-    # Second: 0.2 away, so the deviation goes half way from 0.05 to 0.2, and the level to the mean.
+    # Second: 0.2 away counts as twice the deviation of 0.05, and the rate takes half of that. The
+    # level goes to the mean.
     level = level_of(0.8, 0.6)
-    assert level.deviation == pytest.approx(0.125)
+    assert level.deviation == pytest.approx(0.075)
     assert level.value == pytest.approx(0.7)
-    # Third: 0.1 away. A third is below the rate of a half, so the rate decides.
+    # Third: 0.1 away counts whole. A third is below the rate of a half, so the rate decides.
     level.follow(0.8, SETTINGS)
-    assert level.deviation == pytest.approx(0.1125)
+    assert level.deviation == pytest.approx(0.0875)
     assert level.value == pytest.approx(0.75)
+
+
+def test_a_slow_fall_does_not_widen_its_own_bound():
+    settings, level = ClearLevelParameters(), level_of(*[0.85, 0.87] * 30)
+    similarity, frames = 0.85, 0
+    while level.clear and frames < 40:
+        similarity, frames = similarity - 0.02, frames + 1
+        level.judge(similarity, settings)
+        if level.clear:
+            level.follow(similarity, settings)
+    assert not level.clear
+    assert similarity > 0.6
 
 
 def test_it_is_left_and_entered_again_at_different_depths():

@@ -16,6 +16,9 @@ _FIRST_DEVIATION = 0.05
 _LEAST_DEVIATION = 0.005
 """Deviation below which noise would decide."""
 
+_LARGEST_AWAY = 2.0
+"""Deviations that one frame can count as, at most."""
+
 
 @dataclass(frozen=True, slots=True)
 class ClearLevelParameters:
@@ -66,6 +69,7 @@ class ClearLevel:
         # A plain mean at first, since the first value alone says little about the level.
         rate = max(parameters.rate, 1.0 / self._frames)
         if self._frames > 1:
-            away = abs(similarity - self.value)
+            # A fall that goes on would widen the very bound it is held against, were it counted whole.
+            away = min(abs(similarity - self.value), _LARGEST_AWAY * self.deviation)
             self.deviation += parameters.rate * (away - self.deviation)
         self.value += rate * (similarity - self.value)
