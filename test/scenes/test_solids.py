@@ -7,15 +7,19 @@ import pytest
 
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.scenes.compositing import PixelWindow
+from vehicle_pf_tracker.scenes.heavy_vehicles import coach, lorry, truck
 from vehicle_pf_tracker.scenes.solids import ELEVATION, draw, extent, mirrored, shadow, side_panel
 from vehicle_pf_tracker.scenes.solids import strips as sweep
-from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, van
+from vehicle_pf_tracker.scenes.vehicles import car, saloon, suv, van
 
 GREY = (100.0, 100.0, 100.0)
 VEHICLES = {
     "car": car(GREY),
     "saloon": saloon(GREY),
     "van": van(GREY),
+    "suv": suv(GREY),
+    "truck": truck(GREY, GREY),
+    "coach": coach(GREY, GREY),
     "lorry": lorry(GREY, GREY, GREY),
 }
 

@@ -26,6 +26,10 @@ class Camera:
     noise: float
     seed: int
 
+    def offset(self, index: int) -> tuple[float, float]:
+        """Give the image's top-left corner on the stage, px: it shows the whole stage."""
+        return 0.0, 0.0
+
     def capture(self, picture: Image, index: int) -> Frame:
         """Turn the composed `picture` of frame `index` into an 8-bit frame; alters `picture`."""
         if self.noise > 0:

@@ -151,7 +151,8 @@ def visible_fraction(
 ) -> float:
     """Share (0 to 1) of the target's silhouette that can be seen in a `width` x `height` px image.
 
-    Parts outside the image count as hidden. `covers` are what is painted after the target.
+    Parts outside the image count as hidden. `covers` are what is painted after the target, as far
+    as they `overlap` it.
     """
     sprite, box = target
     window = PixelWindow.of(box, width, height)
@@ -159,12 +160,12 @@ def visible_fraction(
         return 0.0
     seen = sprite.coverage(box, window)
     for cover, place in covers:
-        if _overlap(place, box):
-            seen = seen * (1 - cover.coverage(place, window))
+        seen = seen * (1 - cover.coverage(place, window))
     # Rounded because sums of floats must not make a free vehicle look 1e-16 hidden.
     return round(float(min(max(seen.sum() / sprite.area(box), 0.0), 1.0)), 9)
 
 
-def _overlap(one: Box, other: Box) -> bool:
+def overlap(one: Box, other: Box) -> bool:
+    """Tell whether the two boxes share more than an edge."""
     across = one.x < other.x + other.width and other.x < one.x + one.width
     return across and one.y < other.y + other.height and other.y < one.y + one.height

@@ -13,12 +13,13 @@ import numpy as np
 
 from vehicle_pf_tracker.scenes.bridges import bridge
 from vehicle_pf_tracker.scenes.camera import Camera
+from vehicle_pf_tracker.scenes.heavy_vehicles import lorry
 from vehicle_pf_tracker.scenes.paths import Driven, Straight, Wave
 from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.roads import FAR_LANES, NEAR_LANES, dual_carriageway
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
-from vehicle_pf_tracker.scenes.traffic import any_car, convoy, vehicle
-from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon
+from vehicle_pf_tracker.scenes.traffic import Vehicle, any_car, convoy
+from vehicle_pf_tracker.scenes.vehicles import car, saloon
 from vehicle_pf_tracker.trackers.parameters import parameter
 
 WIDTH, HEIGHT, FRAME_COUNT = 640, 480, 200
@@ -79,11 +80,11 @@ def highway(parameters: HighwayParameters, seed: int) -> Scene:
 def _slow_lane(rng: np.random.Generator) -> list[Actor]:
     """Make a saloon of a similar blue, a car well behind it, and between them, last, the target."""
     lane = FAR_LANES[0]
-    hatchback = vehicle(car((38, 92, 168)), lane)
+    hatchback = Vehicle(car((38, 92, 168)), lane)
     start = hatchback.box(START - hatchback.size[0] / 2 + rng.uniform(-2, 2), lane)
     course = Straight(start, (SPEED, 0.0))
     own = hatchback.on(Driven(course, _swing(2.0, 90, rng), _swing(0.7, 130, rng)))
-    ahead = vehicle(saloon((62, 84, 132)), lane)
+    ahead = Vehicle(saloon((62, 84, 132)), lane)
     leader = ahead.on(Straight(ahead.box(start.x + rng.uniform(105, 125), lane), (3.05, 0.0)))
     behind = any_car(lane, rng)
     follower = behind.on(Straight(behind.box(rng.uniform(-190, -150), lane), (2.75, 0.0)))
@@ -97,14 +98,14 @@ def _swing(amplitude: float, period: float, rng: np.random.Generator) -> Wave:
 def _middle_lane(rng: np.random.Generator) -> list[Actor]:
     """Make the lorry that overtakes the target, with a car well ahead and one well behind."""
     lane = FAR_LANES[1]
-    truck = vehicle(lorry((176, 120, 40), (204, 200, 190), (122, 40, 52)), lane)
+    truck = Vehicle(lorry((176, 120, 40), (204, 200, 190), (122, 40, 52)), lane)
     speed = SPEED + OVERTAKING * rng.uniform(0.95, 1.05)
     meeting = START + SPEED * HIDDEN_AT + rng.uniform(-6, 6)
     left = meeting - LOAD_MIDDLE * truck.size[0] - speed * HIDDEN_AT
     actors = list(truck.on(Straight(truck.box(left, lane), (speed, 0.0))))
     for model, place in (
-        (vehicle(saloon((216, 214, 208)), lane), left + truck.size[0] + rng.uniform(390, 480)),
-        (vehicle(car((150, 40, 38)), lane), left - rng.uniform(175, 265)),
+        (Vehicle(saloon((216, 214, 208)), lane), left + truck.size[0] + rng.uniform(390, 480)),
+        (Vehicle(car((150, 40, 38)), lane), left - rng.uniform(175, 265)),
     ):
         actors += model.on(Straight(model.box(place, lane), (speed, 0.0)))
     return actors

@@ -45,18 +45,18 @@ _NEAR_EDGES, _NEAR_DIVIDERS = (232, 326), (263, 294)
 def dual_carriageway(width: int, height: int, rng: np.random.Generator) -> Image:
     """Draw the empty road of `FAR_LANES` and `NEAR_LANES`, shape (height, width, 3)."""
     picture = grass((height, width), rng)
-    _hedge(picture, 0, 50, rng)
-    _hedge(picture, height - 42, height, rng)
+    hedge(picture, 0, 50, rng)
+    hedge(picture, height - 42, height, rng)
     for road in (_FAR_ROAD, _NEAR_ROAD):
         picture[road] = asphalt((road.stop - road.start, width), rng)
-        _kerb(picture, road, rng)
-    _mark(picture, _FAR_EDGES, _FAR_DIVIDERS, rng)
-    _mark(picture, _NEAR_EDGES, _NEAR_DIVIDERS, rng)
-    _guard_rail(picture, 204)
+        kerb(picture, road, rng)
+    mark(picture, _FAR_EDGES, _FAR_DIVIDERS, rng)
+    mark(picture, _NEAR_EDGES, _NEAR_DIVIDERS, rng)
+    guard_rail(picture, 204)
     return picture
 
 
-def _hedge(picture: Image, top: int, bottom: int, rng: np.random.Generator) -> None:
+def hedge(picture: Image, top: int, bottom: int, rng: np.random.Generator) -> None:
     """Grow a hedge with ragged edges and its shadow on the side of the viewer."""
     height, width = picture.shape[:2]
     ragged = 5 * value_noise((1, width), (1, 14), rng) + 2 * value_noise((1, width), (1, 4), rng)
@@ -67,13 +67,14 @@ def _hedge(picture: Image, top: int, bottom: int, rng: np.random.Generator) -> N
     picture[crowns] = foliage((height, width), rng)[crowns]
 
 
-def _kerb(picture: Image, road: slice, rng: np.random.Generator) -> None:
+def kerb(picture: Image, road: slice, rng: np.random.Generator) -> None:
+    """Lay kerbstones along both sides of the rows `road`."""
     for top in (road.start - 2, road.stop):
         picture[top : top + 2] = 0.8 * concrete((2, picture.shape[1]), rng)
 
 
-def _mark(
-    picture: Image, edges: tuple[int, int], dividers: tuple[int, int], rng: np.random.Generator
+def mark(
+    picture: Image, edges: tuple[int, int], dividers: tuple[int, ...], rng: np.random.Generator
 ) -> None:
     """Paint solid edge lines and the dashed lines between lanes."""
     width = picture.shape[1]
@@ -92,7 +93,7 @@ def _stripe(picture: Image, top: int, left: int, right: int, rng: np.random.Gene
     region += worn * (np.asarray(PAINT, np.float32) - region)
 
 
-def _guard_rail(picture: Image, top: int) -> None:
+def guard_rail(picture: Image, top: int) -> None:
     """Draw posts, a rail with its lit upper edge, and its shadow on the ground."""
     picture[top + 8 : top + 12] *= np.float32(0.72)
     for left in range(9, picture.shape[1], 50):

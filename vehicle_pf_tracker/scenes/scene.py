@@ -4,16 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Protocol, TypeAlias
 
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
-from vehicle_pf_tracker.scenes.camera import Camera
-from vehicle_pf_tracker.scenes.compositing import Image, Sprite, paint, visible_fraction
+from vehicle_pf_tracker.scenes.compositing import (
+    Image,
+    PixelWindow,
+    Sprite,
+    overlap,
+    paint,
+    visible_fraction,
+)
 from vehicle_pf_tracker.scenes.paths import Path
 
 FIRST_STAMP_NS = 1_000_000_000
 """Stamp of frame 0: a stamp of zero means "unknown" to many tools."""
+
+
+Look: TypeAlias = Callable[[float], Sprite]
+"""Gives the sprite a thing shows at a frame number, for what changes its looks (by turning)."""
+
+
+class Eye(Protocol):
+    """What takes the pictures; `camera.Camera` and `outdoor_camera.OutdoorCamera` are ones."""
+
+    def offset(self, index: int) -> tuple[float, float]:
+        """Where the image's top-left corner is on the stage in frame `index`, px."""
+        ...
+
+    def capture(self, picture: Image, index: int) -> Frame:
+        """Turn the composed stage of frame `index` into an 8-bit frame; may alter `picture`."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,22 +53,29 @@ class Actor:
 
     Attributes
     ----------
-    sprite : Sprite
-        What it looks like.
+    sprite : Sprite or Look
+        What it looks like, for good or by frame number.
     path : Path
-        The box it fills, by frame number.
+        The box it fills on the stage, by frame number.
     hides : bool
         False for what darkens or tints without hiding, such as shadows.
     """
 
-    sprite: Sprite
+    sprite: Sprite | Look
     path: Path
     hides: bool = True
+
+    def seen(self, frame: float) -> Sprite:
+        """Give the sprite it shows in `frame`."""
+        return self.sprite if isinstance(self.sprite, Sprite) else self.sprite(frame)
 
 
 @dataclass(frozen=True, slots=True)
 class Scene:
     """Synthetic traffic; the same scene, parameters and seed give bit-identical frames.
+
+    Things are placed on a stage, which the backdrop fills. The image is the part of it that the
+    camera shows, and moves with the camera; truth is in coordinates of the image.
 
     Attributes
     ----------
@@ -63,7 +93,7 @@ class Scene:
         All things in the order they are painted, far to near.
     target : int
         Index in `actors` of the vehicle the truth is about.
-    camera : Camera
+    camera : Eye
         Takes the picture.
     """
 
@@ -75,7 +105,7 @@ class Scene:
     backdrop: Callable[[], Image]
     actors: tuple[Actor, ...]
     target: int
-    camera: Camera
+    camera: Eye
 
     def frames(self) -> Iterator[SceneFrame]:
         """Render every frame in order, with its truth."""
@@ -83,7 +113,9 @@ class Scene:
         for index in range(self.frame_count):
             picture = backdrop.copy()
             for actor in self.actors:
-                paint(picture, actor.sprite, actor.path(index))
+                box = actor.path(index)
+                if not PixelWindow.of(box, picture.shape[1], picture.shape[0]).empty:
+                    paint(picture, actor.seen(index), box)
             yield SceneFrame(self.camera.capture(picture, index), self.truth(index))
 
     def truths(self) -> Iterator[Truth]:
@@ -92,7 +124,7 @@ class Scene:
 
     def truth(self, index: int) -> Truth:
         """Exact truth of frame `index`, counted from 0."""
-        box = self.actors[self.target].path(index)
+        box = self._in_image(self.actors[self.target].path(index), index)
         visible = self._visible_fraction(index, box)
         return Truth(self.stamp_ns(index), box, Occlusion.of(visible), visible)
 
@@ -102,9 +134,13 @@ class Scene:
 
     def _visible_fraction(self, index: int, box: Box) -> float:
         covers = (
-            (actor.sprite, actor.path(index))
+            (actor.seen(index), place)
             for actor in self.actors[self.target + 1 :]
-            if actor.hides
+            if actor.hides and overlap(place := self._in_image(actor.path(index), index), box)
         )
-        target = (self.actors[self.target].sprite, box)
+        target = (self.actors[self.target].seen(index), box)
         return visible_fraction(target, covers, self.width, self.height)
+
+    def _in_image(self, box: Box, index: int) -> Box:
+        left, top = self.camera.offset(index)
+        return Box(box.x - left, box.y - top, box.width, box.height)

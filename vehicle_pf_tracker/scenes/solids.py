@@ -23,8 +23,11 @@ SHADE: Colour = (12, 14, 20)
 """Colour that shadows are tinted with."""
 OVERSAMPLING = 6
 """Cells drawn per pixel and axis."""
+SAME_PLACE = 0.08
+"""A face no more than this behind another (m) is taken as painted on it, if drawn later."""
 
 _VIEW = np.array([0.0, -math.cos(ELEVATION), math.sin(ELEVATION)])
+_DOWN = np.array([0.0, -math.sin(ELEVATION), -math.cos(ELEVATION)])
 _SUN = np.array([0.35, 0.4, 0.85])
 
 Point = tuple[float, float, float]
@@ -88,7 +91,7 @@ def extent(faces: Iterable[Face]) -> Box:
 
 
 def draw(faces: Sequence[Face], width: float, height: float, opacity: float = 1.0) -> Sprite:
-    """Draw `faces` in the order given, far to near.
+    """Draw `faces`: the nearest is seen, and of two in one place the later.
 
     The silhouette is stretched to touch all four sides of the sprite, so that the box the sprite
     fills is the tight box of the vehicle. `width` and `height` (px) are the size it is meant for
@@ -98,13 +101,32 @@ def draw(faces: Sequence[Face], width: float, height: float, opacity: float = 1.
     columns, rows = math.ceil(width * OVERSAMPLING), math.ceil(height * OVERSAMPLING)
     cells_per_metre = columns / bounds.width, rows / bounds.height
     colour = np.zeros((rows, columns, 3), np.uint8)
-    mask = np.zeros((rows, columns), np.uint8)
+    nearness = np.full((rows, columns), -np.inf, np.float32)
     for face in faces:
         outline = (_project(face) - (bounds.x, bounds.y)) * cells_per_metre
         window, inside = cells_inside(outline, rows, columns)
-        colour[window.slices][inside] = _shaded(face)
-        mask[window.slices][inside] = 1
-    return Sprite(colour, mask * opacity)
+        if inside.any():
+            x = bounds.x + _middles(window.left, window.right) / cells_per_metre[0]
+            y = bounds.y + _middles(window.top, window.bottom) / cells_per_metre[1]
+            near, depth = _nearness(face, x, y[:, np.newaxis])
+            inside &= near > nearness[window.slices] - depth
+            nearness[window.slices][inside] = near[inside]
+            colour[window.slices][inside] = _shaded(face)
+    return Sprite(colour, np.isfinite(nearness) * opacity)
+
+
+def _middles(first: int, end: int) -> Array:
+    return np.arange(first, end, dtype=np.float64) + 0.5
+
+
+def _nearness(face: Face, x: Array, y: Array) -> tuple[Array, float]:
+    """How far towards the viewer a face is at points (x, y) of the view plane, m.
+
+    The second value is the depth along the view, in m, of a layer `SAME_PLACE` thick on it.
+    """
+    normal = normal_of(face)
+    level, slant = float(normal @ np.asarray(face.points[0])), float(normal @ _VIEW)
+    return (level - normal[0] * x - float(normal @ _DOWN) * y) / slant, SAME_PLACE / slant
 
 
 def _project(face: Face) -> Array:
@@ -115,13 +137,13 @@ def _project(face: Face) -> Array:
 def _shaded(face: Face) -> Colour:
     if face.glow:
         return face.colour
-    light = 0.68 + 0.42 * max(0.0, float(_normal(face) @ _SUN))
+    light = 0.68 + 0.42 * max(0.0, float(normal_of(face) @ _SUN))
     red, green, blue = (min(255.0, round(level * light)) for level in face.colour)
     return red, green, blue
 
 
-def _normal(face: Face) -> Array:
-    """Return the unit normal on the side of the viewer."""
+def normal_of(face: Face) -> Array:
+    """Return the unit normal of a face on the side of the viewer."""
     points = np.asarray(face.points)
     normal = np.cross(points[1] - points[0], points[2] - points[0])
     normal = normal / math.hypot(*normal)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 
@@ -30,25 +31,24 @@ PAINTS: tuple[Colour, ...] = (
 """Common colours of cars; none is near the target's."""
 
 
-@dataclass(frozen=True, slots=True)
 class Vehicle:
-    """A vehicle drawn for one lane, with its shadow.
+    """A vehicle as it looks in one lane, with its shadow; drawn when first seen.
 
-    Attributes
+    Parameters
     ----------
-    body, shade : Sprite
-        The vehicle, and its shadow.
-    size : tuple of float
-        Tight width and height of the body, px.
-    shade_offset, shade_size : tuple of float
-        The shadow's corner from the body's, and its size, px.
+    faces : sequence of Face
+        The solid, heading to the right.
+    lane : Lane
+        Where it will drive.
     """
 
-    body: Sprite
-    shade: Sprite
-    size: tuple[float, float]
-    shade_offset: tuple[float, float]
-    shade_size: tuple[float, float]
+    def __init__(self, faces: Sequence[Face], lane: Lane) -> None:
+        self._faces = faces if lane.rightward else mirrored(faces)
+        self._cast = shadow(self._faces)
+        body, shade, scale = extent(self._faces), extent(self._cast), lane.scale
+        self.size = body.width * scale, body.height * scale
+        self._shade_size = shade.width * scale, shade.height * scale
+        self._shade_offset = (shade.x - body.x) * scale, (shade.y - body.y) * scale
 
     def box(self, left: float, lane: Lane) -> Box:
         """Box with its left edge at `left` and its wheels on the lane's ground."""
@@ -56,41 +56,47 @@ class Vehicle:
 
     def on(self, path: Path) -> tuple[Actor, Actor]:
         """Send it along `path`; returns shadow and body, in the order to paint them."""
-        follow = Attached(path, self.shade_offset, self.shade_size)
-        return Actor(self.shade, follow, hides=False), Actor(self.body, path)
+        follow = Attached(path, self._shade_offset, self._shade_size)
+        return (
+            Actor(lambda _: self._shade, follow, hides=False),
+            Actor(lambda _: self._body, path),
+        )
+
+    @cached_property
+    def _body(self) -> Sprite:
+        return draw(self._faces, *self.size)
+
+    @cached_property
+    def _shade(self) -> Sprite:
+        return draw(self._cast, *self._shade_size, SHADOW_OPACITY)
 
 
-def vehicle(faces: Sequence[Face], lane: Lane) -> Vehicle:
-    """Draw a solid as it looks in `lane`."""
-    faces = faces if lane.rightward else mirrored(faces)
-    cast = shadow(faces)
-    body, shade = extent(faces), extent(cast)
-    size = body.width * lane.scale, body.height * lane.scale
-    shade_size = shade.width * lane.scale, shade.height * lane.scale
-    return Vehicle(
-        body=draw(faces, *size),
-        shade=draw(cast, *shade_size, SHADOW_OPACITY),
-        size=size,
-        shade_offset=((shade.x - body.x) * lane.scale, (shade.y - body.y) * lane.scale),
-        shade_size=shade_size,
-    )
+Kinds: TypeAlias = tuple[Callable[[Colour], list[Face]], ...]
+"""What vehicles to choose from; each makes the solid of one colour."""
 
 
-def any_car(lane: Lane, rng: np.random.Generator) -> Vehicle:
+def any_car(
+    lane: Lane, rng: np.random.Generator, kinds: Kinds = (car, saloon, saloon, van)
+) -> Vehicle:
     """Draw a vehicle of a kind and colour left to chance."""
-    kinds: tuple[Callable[[Colour], list[Face]], ...] = (car, saloon, saloon, van)
     paint = tinted(PAINTS[rng.integers(len(PAINTS))], rng.uniform(0.9, 1.08))
-    return vehicle(kinds[rng.integers(len(kinds))](paint), lane)
+    return Vehicle(kinds[rng.integers(len(kinds))](paint), lane)
 
 
 def convoy(
-    lane: Lane, speed: float, frame_count: int, width: int, rng: np.random.Generator
+    lane: Lane,
+    speed: float,
+    frame_count: int,
+    width: int,
+    rng: np.random.Generator,
+    gaps: tuple[float, float] = (90, 420),
+    kinds: Kinds = (car, saloon, saloon, van),
 ) -> list[Actor]:
     """Fill `lane` for the whole scene with vehicles that all drive at `speed` (px/frame, > 0).
 
-    Gaps are left to chance. The lane runs across an image of `width` px.
+    Gaps are left to chance between two limits (px). The lane runs across a stage of `width` px.
     """
-    models = [any_car(lane, rng) for _ in range(4)]
+    models = [any_car(lane, rng, kinds) for _ in range(4)]
     velocity = speed if lane.rightward else -speed
     actors: list[Actor] = []
     ahead = rng.uniform(0, 200)
@@ -99,5 +105,5 @@ def convoy(
         # `ahead` counts backwards from the end of the lane that vehicles leave by.
         left = width - ahead - model.size[0] if lane.rightward else ahead
         actors += model.on(Straight(model.box(left, lane), (velocity, 0.0)))
-        ahead += model.size[0] + rng.uniform(90, 420)
+        ahead += model.size[0] + rng.uniform(*gaps)
     return actors

@@ -33,8 +33,8 @@ def car(paint: Colour) -> list[Face]:
         *roof_window,
         *(_side_window(window) for window in windows),
         *_flank(body, paint, door=1.2),
-        *_lamps(body, front=3.7, rear=0.0),
-        *_wheels((0.68, 2.95), 0.31),
+        *lamps(body, front=3.7, rear=0.0),
+        *wheels((0.68, 2.95), 0.31),
     ]
 
 
@@ -50,8 +50,8 @@ def saloon(paint: Colour) -> list[Face]:
         *_cabin(cabin, 1.78, paint),
         *(_side_window(window) for window in windows),
         *_flank(body, paint, door=1.95),
-        *_lamps(body, front=4.6, rear=0.0),
-        *_wheels((0.85, 3.7), 0.32),
+        *lamps(body, front=4.6, rear=0.0),
+        *wheels((0.85, 3.7), 0.32),
     ]
 
 
@@ -67,33 +67,29 @@ def van(paint: Colour) -> list[Face]:
         screen,
         *_flank(body, paint, door=3.35),
         door_window,
-        *_lamps(body, front=5.4, rear=0.0),
-        *_wheels((1.0, 4.5), 0.36),
+        *lamps(body, front=5.4, rear=0.0),
+        *wheels((1.0, 4.5), 0.36),
     ]
 
 
-def lorry(cab: Colour, box: Colour, stripe: Colour) -> list[Face]:
-    """Build a box lorry, 10.6 m long: a closed box of 8.3 m behind a cab with a wind deflector."""
-    width, floor, top = 2.5, 1.1, 4.0
-    load = [(0.0, floor), (0.0, top), (8.3, top), (8.3, floor)]
-    tractor = [(8.4, 0.7), (8.4, 3.8), (9.1, 3.7), (10.2, 2.9), (10.55, 1.9), (10.6, 0.7)]
-    screen = Face(((10.15, 0.15, 2.85), (10.52, 0.15, 1.95), (10.52, 2.35, 1.95),
-                   (10.15, 2.35, 2.85)), SCREEN)  # fmt: skip
+def suv(paint: Colour) -> list[Face]:
+    """Build a sport utility vehicle, 4.5 m long, tall and square, with dark cladding."""
+    body = [(0.0, 0.45), (0.0, 1.0), (0.1, 1.12), (3.1, 1.12), (4.25, 1.02), (4.47, 0.85),
+            (4.5, 0.42)]  # fmt: skip
+    cabin = [(0.05, 1.12), (0.3, 1.82), (2.45, 1.82), (3.15, 1.12)]
+    windows = [[(0.4, 1.2), (0.5, 1.72), (1.0, 1.73), (1.0, 1.2)],
+               [(1.1, 1.2), (1.1, 1.73), (1.8, 1.73), (1.8, 1.2)],
+               [(1.9, 1.2), (1.9, 1.73), (2.35, 1.72), (2.8, 1.2)]]  # fmt: skip
     return [
-        side_panel([(0.1, 0.6), (0.1, 1.2), (10.4, 1.2), (10.4, 0.6)], 0.3, SILL),
-        *strips(tractor, 0, width, cab),
-        screen,
-        side_panel(tractor, 0, cab),
-        side_panel([(9.1, 1.9), (9.1, 2.75), (9.9, 2.75), (10.25, 1.9)], 0, SIDE_GLASS),
-        *strips(load[1:3], 0, width, box),
-        side_panel(load, 0, box),
-        side_panel([(0.0, 2.0), (0.0, 2.5), (8.3, 2.5), (8.3, 2.0)], 0, stripe),
-        *(side_panel([(x, 1.15), (x, 3.95), (x + 0.06, 3.95), (x + 0.06, 1.15)], 0, SILL)
-          for x in (0.02, 8.2)),
-        side_panel([(2.9, 0.5), (2.9, 1.05), (6.0, 1.05), (6.0, 0.5)], 0, (120, 122, 124)),
-        side_panel([(10.3, 0.8), (10.3, 1.1), (10.58, 1.1), (10.6, 0.8)], 0, HEAD_LAMP, glow=True),
-        side_panel([(0.0, 0.8), (0.0, 1.05), (0.3, 1.05), (0.3, 0.8)], 0, TAIL_LAMP, glow=True),
-        *_wheels((1.0, 2.2, 7.1, 9.4), 0.5),
+        *strips(body, 0, 1.88, paint),
+        *_cabin(cabin, 1.88, paint),
+        *(side_panel([(0.4, 1.82), (0.4, 1.88), (2.3, 1.88), (2.3, 1.82)], y, RIM)
+          for y in (1.6, 0.28)),
+        *(_side_window(window) for window in windows),
+        *_flank(body, paint, door=1.85),
+        side_panel([(0.05, 0.4), (0.05, 0.62), (4.45, 0.62), (4.45, 0.4)], 0, SILL),
+        *lamps(body, front=4.5, rear=0.0),
+        *wheels((0.9, 3.6), 0.38),
     ]  # fmt: skip
 
 
@@ -138,7 +134,7 @@ def _side_window(window: Contour) -> Face:
     return Face(tuple(points), SIDE_GLASS)
 
 
-def _lamps(body: Contour, front: float, rear: float) -> list[Face]:
+def lamps(body: Contour, front: float, rear: float) -> list[Face]:
     """Head lamp, amber side lamp and tail lamp, on the near side."""
     top = body[-2][1]
     return [
@@ -151,7 +147,8 @@ def _lamps(body: Contour, front: float, rear: float) -> list[Face]:
     ]  # fmt: skip
 
 
-def _wheels(axles: Sequence[float], radius: float) -> list[Face]:
+def wheels(axles: Sequence[float], radius: float) -> list[Face]:
+    """Wheels of `radius` (m) on the near side, in dark wheel arches."""
     return [
         face
         for x in axles

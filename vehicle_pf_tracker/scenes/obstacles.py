@@ -1,0 +1,130 @@
+"""Things that stand beside the road, in front of it: pillars, posts, signs, trees, houses."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
+from vehicle_pf_tracker.scenes.paths import Still
+from vehicle_pf_tracker.scenes.scene import Actor
+from vehicle_pf_tracker.scenes.textures import concrete, foliage, value_noise
+
+STEEL: Colour = (128, 132, 134)
+BARK: Colour = (74, 62, 50)
+SIGN_COLOURS: tuple[Colour, ...] = ((28, 92, 60), (30, 66, 130), (196, 160, 40))
+
+
+def pillar(middle: float, width: float, height: int, rng: np.random.Generator) -> list[Actor]:
+    """Make a dark concrete pillar as high as the stage, `height` px."""
+    columns = max(round(width), 1)
+    light = 0.34 - 0.12 * np.abs(np.linspace(-0.6, 1, columns))
+    colour = concrete((height, columns), rng) * light[np.newaxis, :, np.newaxis]
+    sprite = Sprite(colour, np.ones((height, columns)))
+    return [Actor(sprite, Still(Box(middle - width / 2, 0.0, width, height)))]
+
+
+def post(middle: float, width: float, top: float, bottom: float) -> list[Actor]:
+    """Make a lamp post or a pole, lit from the right."""
+    light = np.linspace(0.55, 1.05, max(round(4 * width), 4))
+    colour = np.asarray(STEEL) * light[np.newaxis, :, np.newaxis]
+    box = Box(middle - width / 2, top, width, bottom - top)
+    return [Actor(Sprite(colour, np.ones(colour.shape[:2])), Still(box))]
+
+
+def sign(
+    middle: float, board: tuple[float, float, float], foot: float, rng: np.random.Generator
+) -> list[Actor]:
+    """Make a large road sign on two posts.
+
+    Parameters
+    ----------
+    middle : float
+        Middle of the sign on the stage, px.
+    board : tuple of float
+        Width, top and bottom of its board, px.
+    foot : float
+        Row of the ground it stands on, px.
+    rng : numpy.random.Generator
+        Source of its colour and lettering.
+    """
+    width, top, bottom = board
+    posts = [
+        actor
+        for side in (-0.32, 0.32)
+        for actor in post(middle + side * width, 5.0, bottom - 4, foot)
+    ]
+    rows, columns = round(2 * (bottom - top)), round(2 * width)
+    colour = np.tile(np.asarray(SIGN_COLOURS[rng.integers(3)]), (rows, columns, 1))
+    colour[3:6, 3:-3] = colour[-6:-3, 3:-3] = 226
+    colour[3:-3, 3:6] = colour[3:-3, -6:-3] = 226
+    for line in range(14, rows - 18, 22):
+        _lettering(colour[line : line + 11, 14 : 14 + int(columns * rng.uniform(0.4, 0.8))], rng)
+    place = Still(Box(middle - width / 2, top, width, bottom - top))
+    return [*posts, Actor(Sprite(colour, np.ones((rows, columns))), place)]
+
+
+def house(box: Box, walls: Colour, rng: np.random.Generator) -> list[Actor]:
+    """Make the rear of a house with two rows of windows under a roof of tiles, filling `box`."""
+    rows, columns = round(box.height), round(box.width)
+    colour = concrete((rows, columns), rng) / 164 * np.asarray(walls)
+    eaves = round(rows * 0.3)
+    colour[:eaves] = concrete((eaves, columns), rng) / 164 * np.asarray((138.0, 76.0, 58.0))
+    colour[:eaves:4] *= 0.82
+    colour[eaves : eaves + 3] *= 0.6
+    for top in (round(rows * 0.4), round(rows * 0.7)):
+        for left in range(10, columns - 18, 26):
+            colour[top : top + round(rows * 0.17), left : left + 13] = (62, 72, 84)
+            colour[
+                top + round(rows * 0.17) : top + round(rows * 0.17) + 2, left - 1 : left + 14
+            ] = 205
+    return [Actor(Sprite(colour.clip(0, 255), np.ones((rows, columns))), Still(box))]
+
+
+def tree(
+    middle: float, crown: tuple[float, float, float], foot: float, density: float,
+    rng: np.random.Generator,
+) -> list[Actor]:  # fmt: skip
+    """Make a tree: a trunk and a ragged crown.
+
+    Parameters
+    ----------
+    middle : float
+        Middle of the tree on the stage, px.
+    crown : tuple of float
+        Width, top and bottom of the crown, px.
+    foot : float
+        Row of the ground it stands on, px.
+    density : float
+        From 0 (bare) to 1 (nothing can be seen through the middle of the crown).
+    rng : numpy.random.Generator
+        Source of its shape.
+    """
+    width, top, bottom = crown
+    rows, columns = round(2 * (bottom - top)), round(2 * width)
+    y, x = np.linspace(-1, 1, rows)[:, np.newaxis], np.linspace(-1, 1, columns)
+    rim = 1 - np.hypot(x, y) + 0.22 * value_noise((rows, columns), (14, 14), rng)
+    gaps = value_noise((rows, columns), (7, 8), rng) + 0.5 * value_noise(
+        (rows, columns), (3, 3), rng
+    )
+    leaves = (rim > 0.1) & (gaps < 2.4 * density - 0.9 + np.clip(rim - 0.35, 0, 1))
+    colour = foliage((rows, columns), rng) * (1.05 - 0.25 * y)[..., np.newaxis]
+    trunk = post(middle, max(0.07 * width, 3.0), (top + bottom) / 2, foot)
+    bark = Sprite.plain(BARK)
+    return [
+        *(Actor(bark, part.path) for part in trunk),
+        Actor(Sprite(colour.clip(0, 255), leaves.astype(float)),
+              Still(Box(middle - width / 2, top, width, bottom - top))),
+    ]  # fmt: skip
+
+
+def _lettering(
+    area: np.ndarray[tuple[int, ...], np.dtype[np.float64]], rng: np.random.Generator
+) -> None:
+    """Write a line of white blocks that look like letters from afar."""
+    left = 0
+    while left < area.shape[1] - 6:
+        width = int(rng.integers(3, 7))
+        area[:, left : left + width] = 230
+        area[4:7, left + 1 : left + width - 1] = area[0, 0] * 0.5 + 90
+        left += width + int(rng.choice((2, 2, 2, 7)))
