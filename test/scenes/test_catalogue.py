@@ -27,17 +27,21 @@ def test_same_seed_gives_the_same_bits(name):
 
 @pytest.mark.parametrize("name", ALL)
 def test_seeds_differ(name):
-    settings = {"noise": 0.0}
-    one, two = (some(name, seed=seed, settings=settings)[0].frame for seed in (1, 2))
-    assert (one != two).mean() > 0.2
+    one, two = (some(name, seed=seed)[0].frame.astype(int) for seed in (1, 2))
+    # More than the noise of the sensor alone would make.
+    assert np.abs(one - two).mean() > 2.5
 
 
 @pytest.mark.parametrize("name", ALL)
 def test_truths_are_those_of_the_frames(name):
     scene = make_scene(name, seed=3)
     truths = list(scene.truths())
-    assert [shot.truth for shot in scene.frames()] == truths
+    assert [shot.truth for shot in islice(scene.frames(), SHORT)] == truths[:SHORT]
     assert len(truths) == scene.frame_count
+
+
+def test_there_are_as_many_frames_as_truths():
+    assert len(list(make_scene("turn").frames())) == make_scene("turn").frame_count
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -66,8 +70,7 @@ def test_truth_is_complete_and_plain(name):
 def test_every_parameter_says_what_turning_it_does(name):
     for spec in specs(SCENES[name].parameters).values():
         assert spec.doc
-        assert spec.minimum is not None
-        assert spec.maximum is not None
+        assert spec.choices or None not in (spec.minimum, spec.maximum)
     assert SCENES[name].summary
 
 
@@ -92,6 +95,8 @@ def test_frame_rate_changes_the_stamps_only():
         ("motorbike", {}, ["'motorbike'", "bar", "highway"]),
         ("bar", {"settings": ["widht=3"]}, ["'widht'", "bar", "width", "vehicle_width"]),
         ("bar", {"settings": {"widht": 3}}, ["'widht'", "bar", "width", "vehicle_width"]),
+        ("video01", {"settings": {"speed": 3}}, ["'speed'", "video01", "none"]),
+        ("clear", {"settings": ["disturbance=wild"]}, ["disturbance", "clean, rough", "'wild'"]),
         ("highway", {"settings": ["width=3"]}, ["'width'", "highway", "noise"]),
         ("bar", {"settings": ["width"]}, ["name=value", "'width'"]),
         ("bar", {"settings": ["width=wide"]}, ["width", "number", "'wide'"]),

@@ -8,9 +8,35 @@ from typing import Any
 
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.scenes.bar import BarParameters, bar
+from vehicle_pf_tracker.scenes.drive import DriveParameters
 from vehicle_pf_tracker.scenes.highway import HighwayParameters, highway
+from vehicle_pf_tracker.scenes.light import (
+    IlluminationParameters,
+    ShadowParameters,
+    illumination,
+    shadows,
+)
+from vehicle_pf_tracker.scenes.manoeuvres import (
+    AccelerationParameters,
+    BrakingParameters,
+    acceleration,
+    braking,
+    clear,
+    turn,
+    turn_occluded,
+)
+from vehicle_pf_tracker.scenes.moving_obstacles import bus, cross, dense, twin
 from vehicle_pf_tracker.scenes.randomness import check_seed
+from vehicle_pf_tracker.scenes.scale import ScaleParameters, scale
 from vehicle_pf_tracker.scenes.scene import Scene
+from vehicle_pf_tracker.scenes.standing_obstacles import (
+    HidingParameters,
+    bars,
+    bridge,
+    signs,
+    trees,
+)
+from vehicle_pf_tracker.scenes.videos import VIDEOS, NoParameters
 from vehicle_pf_tracker.trackers.parameters import from_mapping, parse_assignments, specs
 
 
@@ -38,6 +64,23 @@ SCENES: dict[str, SceneKind] = {
     "highway": SceneKind(
         HighwayParameters, highway, "traffic; a bridge, then a lorry that overtakes hide the target"
     ),
+    "bars": SceneKind(DriveParameters, bars, "four pillars of rising width in front of the road"),
+    "bridge": SceneKind(HidingParameters, bridge, "a bridge hides the target"),
+    "signs": SceneKind(HidingParameters, signs, "lamp posts, and a large sign hides the target"),
+    "trees": SceneKind(DriveParameters, trees, "thin crowns of trees hide parts of the target"),
+    "bus": SceneKind(HidingParameters, bus, "a coach overtakes and hides the target"),
+    "cross": SceneKind(DriveParameters, cross, "a coach crosses the road in front of the target"),
+    "twin": SceneKind(DriveParameters, twin, "a vehicle of the same looks drives alongside"),
+    "dense": SceneKind(DriveParameters, dense, "full lanes; vehicles hide parts of the target"),
+    "shadows": SceneKind(ShadowParameters, shadows, "strong shadows of trees across the road"),
+    "illumination": SceneKind(IlluminationParameters, illumination, "a cloud passes"),
+    "clear": SceneKind(DriveParameters, clear, "nothing in the way of the target"),
+    "acceleration": SceneKind(AccelerationParameters, acceleration, "faster, and slower again"),
+    "braking": SceneKind(BrakingParameters, braking, "the speed changes under a bridge"),
+    "turn": SceneKind(DriveParameters, turn, "the target turns into a side road"),
+    "turn_occluded": SceneKind(DriveParameters, turn_occluded, "it turns behind a house"),
+    "scale": SceneKind(ScaleParameters, scale, "the target drives into depth and changes its size"),
+    **{name: SceneKind(NoParameters, video.scene, video.summary) for name, video in VIDEOS.items()},
 }
 
 
@@ -78,5 +121,5 @@ def _check_names(scene: str, names: Iterable[str]) -> None:
     if unknown:
         raise InputError(
             f"the scene {scene} has no setting {', '.join(map(repr, unknown))}; "
-            f"it has {', '.join(known)}"
+            f"it has {', '.join(known) or 'none'}"
         )

@@ -1,0 +1,230 @@
+"""A vehicle drives along a road from one side of the image to the other: what most scenes share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehicle_pf_tracker.scenes.compositing import Colour, Image
+from vehicle_pf_tracker.scenes.courses import Bend, Course, Pace, Pose, Swaying
+from vehicle_pf_tracker.scenes.heavy_vehicles import truck
+from vehicle_pf_tracker.scenes.landscapes import Carriageway, countryside, side_road, town
+from vehicle_pf_tracker.scenes.models import Model
+from vehicle_pf_tracker.scenes.outdoor_camera import (
+    DISTURBANCES,
+    MARGIN,
+    Light,
+    OutdoorCamera,
+    daylight,
+)
+from vehicle_pf_tracker.scenes.paths import Wave
+from vehicle_pf_tracker.scenes.randomness import stream
+from vehicle_pf_tracker.scenes.scene import Actor, Scene
+from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
+from vehicle_pf_tracker.scenes.traffic import convoy
+from vehicle_pf_tracker.scenes.vehicles import car, suv
+from vehicle_pf_tracker.trackers.parameters import parameter
+
+SIZES = {"640x480": (640, 480), "768x576": (768, 576)}
+FREE = 10
+"""Free pixels between the vehicle and the image's sides in the first and the last frame."""
+RADIUS = 60.0
+"""Radius of a turn on the ground, px."""
+SIDE_ROAD = 44.0
+"""Width of each of the two lanes of a side road, px."""
+LANE = 1
+"""The target's lane, counted from the far side; there is one farther and one nearer."""
+
+PAINTS: tuple[Colour, ...] = (
+    (176, 180, 184), (58, 62, 68), (214, 212, 204), (44, 78, 134), (148, 40, 40), (62, 96, 70),
+    (178, 162, 124), (104, 50, 58), (120, 136, 150), (196, 150, 52),
+)  # fmt: skip
+"""Colours of the target, by chance: most as muted as those of real traffic."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveParameters:
+    """What can be chosen about every drive."""
+
+    speed: float = parameter(
+        5.0, "faster vehicles need a wider search, and the video gets shorter",
+        minimum=2.0, maximum=20.0, unit="px/frame",
+    )  # fmt: skip
+    vehicle: str = parameter(
+        "car", "the kind of vehicle that is followed: larger ones fill more of the image",
+        choices=("car", "suv", "truck"), source="Scharcanski 2011, table I",
+    )  # fmt: skip
+    heading: str = parameter("right", "the side the vehicle drives to", choices=("right", "left"))
+    surroundings: str = parameter(
+        "country", "meadows and hedges, or pavements beside the road", choices=("country", "town")
+    )
+    resolution: str = parameter(
+        "640x480", "larger images show vehicles a little larger, for longer", choices=SIZES,
+        unit="px", source="Scharcanski 2011, table I",
+    )  # fmt: skip
+    disturbance: str = parameter(
+        "clean", "rough shakes the camera, flickers and adds noise", choices=DISTURBANCES
+    )
+    frame_rate: float = parameter(
+        15.0, "changes the stamps only: speed is per frame",
+        minimum=1.0, maximum=240.0, unit="frames/s", source="Scharcanski 2011, section IV",
+    )  # fmt: skip
+
+
+class Drive:
+    """A target on its way, and the means to put things around it.
+
+    Places along the way are given by `s`: px from the side of the stage the target comes from.
+
+    Parameters
+    ----------
+    parameters : DriveParameters
+        What was chosen.
+    seed : int
+        Seed of the scene.
+    pace : Pace or None
+        The target's speed over time, from frame 0; None keeps the speed chosen.
+    corner : float or None
+        The place where the target turns into a side road, away from the viewer; such a road has
+        no second carriageway.
+    """
+
+    def __init__(
+        self,
+        parameters: DriveParameters,
+        seed: int,
+        pace: Pace | None = None,
+        corner: float | None = None,
+    ) -> None:
+        self.parameters, self.seed = parameters, seed
+        self.image_size = SIZES[parameters.resolution]
+        self.width, self.height = (size + 2 * MARGIN for size in self.image_size)
+        self.rightward = parameters.heading == "right"
+        self.road, self.opposite = self._roads()
+        self.scale = self.road.scale
+        self.rng = stream(seed, "drive")
+        self.faces = target_faces(parameters.vehicle, self.rng)
+        self.target = Model(self.faces, self.scale)
+        self.start = MARGIN + FREE + self.target.size[0] / 2 + self.rng.uniform(2, 6)
+        self.pace = pace or Pace.steady(parameters.speed)
+        self.corner = corner
+
+    @property
+    def frame_count(self) -> int:
+        """Number of frames until the target gets near the edge of the image it leaves by."""
+        if self.corner is None:
+            end = self.width - MARGIN - FREE - self.target.size[0] / 2 - 2
+        else:
+            up = (self.row - MARGIN - FREE - self.target.size[0]) / math.sin(ELEVATION)
+            end = self.corner + RADIUS * math.pi / 2 + up - RADIUS
+        return int(self.frame_at(end)) + 1
+
+    @property
+    def row(self) -> float:
+        """Row of the ground under the target's middle."""
+        return self.road.middle(LANE)
+
+    def x(self, s: float) -> float:
+        """Column of the place `s`."""
+        return s if self.rightward else self.width - s
+
+    def along(self, share: float) -> float:
+        """Place at a share of the image's width: 0 where the target enters, 1 where it leaves."""
+        return MARGIN + share * self.image_size[0]
+
+    def frame_at(self, s: float) -> float:
+        """Frame in which the target's middle is at `s`, but for the driver's swaying."""
+        return self.pace.arrival(s - self.start)
+
+    def course(self, s: float, pace: Pace, lane: int = LANE) -> Course:
+        """Make the course along `lane` of a vehicle whose middle is at `s` when `pace` starts."""
+        heading, left = (0.0, 1) if self.rightward else (math.pi, -1)
+        start = Pose(self.x(s), self.road.middle(lane), heading, self.scale)
+        if self.corner is None:
+            return Bend(start, pace)
+        return Bend(start, pace, self.corner - s, RADIUS, left * math.pi / 2)
+
+    def sways(self, course: Course, name: str = "sway") -> Course:
+        """Add a human hand to a course: at most 1.5 px along the road and 0.5 across."""
+        phases = stream(self.seed, name).uniform(0, 2 * math.pi, 2).tolist()
+        return Swaying(course, Wave(1.5, 90, phases[0]), Wave(0.5, 130, phases[1]))
+
+    def meeting(
+        self, faces: Sequence[Face], s: float, speed: float, lane: int = LANE + 1
+    ) -> list[Actor]:
+        """Make a vehicle level with the target when that is at `s`; `speed` in px/frame."""
+        pace = Pace(((self.frame_at(s), speed),))
+        return list(Model(faces, self.scale).on(self.course(s, pace, lane)))
+
+    def far_traffic(self) -> list[Actor]:
+        """Make the traffic of the far lane, behind the target."""
+        speed = self.parameters.speed * self.rng.uniform(0.75, 0.85)
+        return convoy(self.road.lane(0), speed, self.frame_count, self.width, self.rng)
+
+    def opposite_traffic(self) -> list[Actor]:
+        """Make the traffic of the other carriageway, which never hides the target."""
+        speeds = self.rng.uniform(4.5, 8.5, self.opposite.lanes).tolist()
+        return [
+            actor
+            for number, speed in enumerate(speeds)
+            for actor in convoy(
+                self.opposite.lane(number), speed, self.frame_count, self.width, self.rng
+            )
+        ]
+
+    def backdrop(self) -> Image:
+        """Draw the empty road in its surroundings."""
+        draw = town if self.parameters.surroundings == "town" else countryside
+        rng = stream(self.seed, "backdrop")
+        if self.corner is None:
+            return draw((self.height, self.width), (self.road, self.opposite), rng)
+        picture = draw((self.height, self.width), (self.road,), rng)
+        middle = self.x(self.corner + RADIUS + 0.5 * SIDE_ROAD)
+        side_road(picture, (middle, -1.0), (middle, self.road.top + 4.0), 2 * SIDE_ROAD, rng)
+        return picture
+
+    def scene(
+        self,
+        name: str,
+        front: Iterable[Actor] = (),
+        *,
+        behind: Iterable[Actor] | None = None,
+        light: Light = daylight,
+    ) -> Scene:
+        """Make the scene: the target between what is `behind` it and what is in `front` of it.
+
+        The traffic of the far lane is behind if nothing is said, and that of the other carriageway
+        in front, but under what `front` has.
+        """
+        if behind is None:
+            behind, front = self.far_traffic(), (*self.opposite_traffic(), *front)
+        behind = list(behind)
+        own = self.target.on(self.sways(self.course(self.start, self.pace)))
+        return Scene(
+            name=name,
+            width=self.image_size[0],
+            height=self.image_size[1],
+            frame_rate=self.parameters.frame_rate,
+            frame_count=self.frame_count,
+            backdrop=self.backdrop,
+            actors=(*behind, *own, *front),
+            target=len(behind) + 1,
+            camera=OutdoorCamera(DISTURBANCES[self.parameters.disturbance], self.seed, light),
+        )
+
+    def _roads(self) -> tuple[Carriageway, Carriageway]:
+        scale = 11.5 if self.image_size[0] == 640 else 12.5
+        road = Carriageway(round(0.34 * self.height), 3, scale, self.rightward)
+        other = Carriageway(road.rows.stop + 30, 2, scale, not self.rightward)
+        return road, other
+
+
+def target_faces(kind: str, rng: np.random.Generator) -> list[Face]:
+    """Make a vehicle of a `kind` of `DriveParameters.vehicle`, its colour left to chance."""
+    paint = PAINTS[rng.integers(len(PAINTS))]
+    if kind == "truck":
+        return truck(paint, (216, 214, 206))
+    return suv(paint) if kind == "suv" else car(paint)

@@ -1,0 +1,141 @@
+"""Scenes with other vehicles close to the target: overtaking, crossing, alongside, all around."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from vehicle_pf_tracker.scenes.compositing import Image, overlap
+from vehicle_pf_tracker.scenes.courses import Bend, Pace, Pose
+from vehicle_pf_tracker.scenes.drive import LANE, PAINTS, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.heavy_vehicles import coach
+from vehicle_pf_tracker.scenes.landscapes import side_road
+from vehicle_pf_tracker.scenes.models import Model
+from vehicle_pf_tracker.scenes.randomness import stream
+from vehicle_pf_tracker.scenes.scene import Actor, Scene
+from vehicle_pf_tracker.scenes.solids import ELEVATION
+from vehicle_pf_tracker.scenes.standing_obstacles import HidingParameters
+from vehicle_pf_tracker.scenes.traffic import convoy
+from vehicle_pf_tracker.scenes.vehicles import car, saloon, suv, van
+
+COACH_LENGTH = 12.0
+"""Metres."""
+CLEAR_FRAMES = 10
+"""So long nothing may hide the target at the start."""
+
+
+def coach_at(drive: Drive, share: float, frames: float) -> list[Actor]:
+    """Let a coach overtake in the nearer lane and hide the target for about `frames` frames."""
+    spare = COACH_LENGTH * drive.scale - drive.target.size[0]
+    speed = drive.parameters.speed + spare / frames
+    return drive.meeting(coach((206, 204, 196), (34, 82, 128)), drive.along(share), speed)
+
+
+def van_at(drive: Drive, share: float, frames: float) -> list[Actor]:
+    """Let the target overtake a van in the nearer lane, half hidden by it for about `frames`."""
+    faces = van((196, 196, 190))
+    length = Model(faces, drive.scale).size[0]
+    speed = drive.parameters.speed - (length + drive.target.size[0]) / frames
+    return drive.meeting(faces, drive.along(share), speed)
+
+
+def near_traffic(drive: Drive) -> list[Actor]:
+    """Fill the nearer lane with faster vehicles, each of which hides a part of the target."""
+    rng = stream(drive.seed, "near lane")
+    speed = drive.parameters.speed * rng.uniform(1.5, 1.7)
+    lane = drive.road.lane(LANE + 1)
+    others = convoy(lane, speed, drive.frame_count, drive.width, rng, (40, 130), (van,))
+    return _clear_at_first(drive, others)
+
+
+def _clear_at_first(drive: Drive, others: list[Actor]) -> list[Actor]:
+    """Leave out the vehicles that would hide the target before it has been seen for a while."""
+    own = drive.target.on(drive.course(drive.start, drive.pace))[1]
+    return [
+        actor
+        for pair in zip(others[::2], others[1::2], strict=True)
+        if not any(overlap(pair[1].path(frame), own.path(frame)) for frame in range(CLEAR_FRAMES))
+        for actor in pair
+    ]
+
+
+def bus(parameters: HidingParameters, seed: int) -> Scene:
+    """Make the scene: a coach overtakes and hides the target."""
+    drive = Drive(parameters, seed)
+    return drive.scene("bus", coach_at(drive, 0.45, parameters.hidden))
+
+
+def twin(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: a vehicle of the same make and colour overtakes slowly in the far lane."""
+    drive = Drive(parameters, seed)
+    other = drive.meeting(drive.faces, drive.along(0.5), 1.1 * parameters.speed, lane=LANE - 1)
+    return drive.scene("twin", drive.opposite_traffic(), behind=other)
+
+
+def dense(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: full lanes, of which the nearer one hides parts of the target."""
+    drive = Drive(parameters, seed)
+    rng = stream(seed, "dense")
+    slow, fast = parameters.speed * rng.uniform(0.7, 0.8), parameters.speed * rng.uniform(1.3, 1.5)
+    stage, gaps = (drive.frame_count, drive.width), (14, 60)
+    far = convoy(drive.road.lane(LANE - 1), slow, *stage, rng, gaps)
+    near = convoy(drive.road.lane(LANE + 1), fast, *stage, rng, gaps, (van, suv))
+    ahead = _own_lane(drive, rng)
+    return drive.scene(
+        "dense", [*_clear_at_first(drive, near), *drive.opposite_traffic()], behind=[*far, *ahead]
+    )
+
+
+def _own_lane(drive: Drive, rng: np.random.Generator) -> list[Actor]:
+    """Make the vehicles before and behind the target in its own lane, as fast as it is."""
+    actors: list[Actor] = []
+    for distance in (-200.0, -100.0, 100.0, 200.0):
+        faces = (car, saloon)[rng.integers(2)](PAINTS[rng.integers(len(PAINTS))])
+        place = drive.start + distance + rng.uniform(-15, 15)
+        actors += Model(faces, drive.scale).on(drive.course(place, drive.pace))
+    return actors
+
+
+CROSSING = math.radians(28)
+"""Angle between the road and the one that crosses it."""
+
+
+def cross(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: the target slows down for a coach that crosses the road before it."""
+    base = Drive(parameters, seed)
+    speed, slow = parameters.speed, 0.5 * parameters.speed
+    brake = base.frame_at(base.along(0.33))
+    pace = Pace(((0.0, speed), (brake, speed), (brake + 12, slow), (brake + 26, slow),
+                 (brake + 38, speed)))  # fmt: skip
+    drive = Drive(parameters, seed, pace)
+    scene = drive.scene("cross", _crossing_coach(drive, brake + 22), behind=())
+    return replace(scene, backdrop=lambda: _crossroads(drive, brake + 22))
+
+
+def _crossing_coach(drive: Drive, frame: float) -> list[Actor]:
+    """Make the coach whose middle is right in front of the target in `frame`."""
+    x, y = _crossing(drive, frame)
+    heading = CROSSING - math.pi if drive.rightward else -CROSSING
+    pace = Pace(((frame, 0.9 * drive.parameters.speed),))
+    model = Model(coach((190, 60, 48), (230, 226, 216)), drive.scale)
+    return list(model.on(Bend(Pose(x, y, heading, drive.scale), pace)))
+
+
+def _crossing(drive: Drive, frame: float) -> tuple[float, float]:
+    """Place of the coach's middle in `frame`: a little nearer to the viewer than the target's."""
+    target = drive.course(drive.start, drive.pace)(frame)
+    return target.x, target.y + 18
+
+
+def _crossroads(drive: Drive, frame: float) -> Image:
+    picture = drive.backdrop()
+    x, y = _crossing(drive, frame)
+    slope = math.tan(CROSSING) * math.sin(ELEVATION) * (-1 if drive.rightward else 1)
+    top, bottom = -1.0, drive.height + 1.0
+    ends = (x + (top - y) / slope, top), (x + (bottom - y) / slope, bottom)
+    side_road(
+        picture, *ends, 7.5 * drive.scale / math.sin(CROSSING), stream(drive.seed, "crossing")
+    )
+    return picture
