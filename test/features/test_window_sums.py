@@ -42,13 +42,22 @@ def test_counts_are_those_of_each_window_alone(seed, shape, bins):
     assert np.array_equal(bin_counts(indices, active, bins, windows), expected)
 
 
-def test_counts_stay_exact_where_lanes_are_widest():
-    # 2048 x 2048 px are counted in two lanes of 23 bits; each lane is filled to its last count.
-    indices = np.zeros((2048, 2048), np.uint8)
-    indices[:, :1024] = 1
-    whole = rectangles((0, 0, 2048, 2048))
-    half = 2048 * 1024
-    assert bin_counts(indices, np.array([0, 1]), 2, whole).tolist() == [[half, half]]
+@pytest.mark.parametrize("level", [0, 1])
+def test_a_bin_that_fills_the_region_does_not_carry_into_the_next(level):
+    # 1400 x 1400 px are two lanes of 21 bits in one plane; one lane takes all pixels.
+    indices = np.full((1400, 1400), level, np.uint8)
+    windows = rectangles((0, 0, 1400, 1400), (1, 2, 4, 6))
+    expected = [[0, 0], [0, 0]]
+    expected[0][level], expected[1][level] = 1400 * 1400, 12
+    assert bin_counts(indices, np.array([0, 1]), 2, windows).tolist() == expected
+
+
+def test_a_region_too_large_for_two_bins_at_once():
+    indices = np.zeros((2100, 2100), np.uint8)
+    indices[:, :5] = 1
+    windows = rectangles((0, 0, 2100, 2100), (0, 0, 10, 10))
+    counts = bin_counts(indices, np.array([0, 1]), 2, windows)
+    assert counts.tolist() == [[2100 * 2095, 2100 * 5], [50, 50]]
 
 
 @pytest.mark.parametrize(("margin", "shape"), [(0, (3, 5)), (1, (5, 6)), (50, (10, 20))])

@@ -20,7 +20,10 @@ Bins: TypeAlias = npt.NDArray[np.intp]
 Counts: TypeAlias = npt.NDArray[np.int64]
 
 _MOST_PLANES = 48
-"""Planes integrated at once: OpenCV 5 takes 128 channels at most, and small blocks stay cached."""
+"""Bins integrated at once: OpenCV 5 takes 128 channels at most, and small blocks stay cached."""
+
+_MOST_VALUES = 1 << 22
+"""Bins times pixels integrated at once, which bounds the memory where windows are huge."""
 
 _EXACT_BITS = 53
 """Bits of a whole number that a float64 holds exactly."""
@@ -80,8 +83,9 @@ def bin_counts(indices: npt.NDArray[Any], active: Bins, bins: int, windows: Boun
     counts = np.zeros((len(windows.left), len(active)), dtype=np.int64)
     if indices.size == 0:
         return counts
-    for start in range(0, len(active), _MOST_PLANES):
-        part = active[start : start + _MOST_PLANES]
+    size = max(min(_MOST_PLANES, _MOST_VALUES // indices.size), 1)
+    for start in range(0, len(active), size):
+        part = active[start : start + size]
         counts[:, start : start + len(part)] = _count(indices, part, bins, windows)
     return counts
 
