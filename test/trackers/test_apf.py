@@ -19,6 +19,7 @@ def make(**values):
 
 
 PRINTED_RULE = {"occlusion.rule": "fixed"}
+REAL_VIDEO = {"occlusion.rule": "relative"}
 
 
 def test_likelihood_by_hand_squared_and_as_printed():
@@ -192,14 +193,14 @@ class Repainted(Street):
 def test_a_lasting_change_of_look_is_an_occlusion_by_the_fixed_rule_alone():
     street = Repainted(speed=2.0)
     fixed = follow(make(**PRINTED_RULE), street, range(30))
-    relative = follow(make(), street, range(30))
+    relative = follow(make(**REAL_VIDEO), street, range(30))
     assert {e.regime for e in fixed[2:]} == {"occlusion"}
     assert {e.regime for e in relative[1:]} == {"regular"}
     assert max(e.similarities["pi"] for e in relative[1:]) < ApfParameters().occlusion.tau
 
 
 def test_the_relative_rule_sees_an_occlusion_and_its_end():
-    estimates = follow(make(), Street(hidden=(25, 33)), range(45))
+    estimates = follow(make(**REAL_VIDEO), Street(hidden=(25, 33)), range(45))
     regimes = [e.regime for e in estimates]
     # The regime is that of the similarities of the frame before.
     assert set(regimes[26:33]) == {"occlusion"}
@@ -208,7 +209,7 @@ def test_the_relative_rule_sees_an_occlusion_and_its_end():
 
 def test_with_the_relative_rule_the_reference_follows_good_frames_only():
     street = Street(speed=0.0, hidden=(15, 30))
-    tracker = make(**{"reference.steady_alpha": 0.5})
+    tracker = make(**REAL_VIDEO, **{"reference.steady_alpha": 0.5})
     follow(tracker, street, range(15))
     followed = tracker._reference
     assert not np.array_equal(followed, tracker._first)

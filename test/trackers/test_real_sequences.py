@@ -28,6 +28,9 @@ def load(name):
     return [cv2.imread(str(path))[..., ::-1] for path in paths], boxes
 
 
+SETTINGS = {"apf": {"occlusion.rule": "relative"}}
+
+
 @pytest.mark.parametrize("variant", ["apf", "pf", "sapf", "hpfms", "pfcl", "ms"])
 @pytest.mark.parametrize(
     "name", ["cdnet_highway/car_a", "cdnet_highway/car_e", "m6_dual_carriageway/red_car"]
@@ -35,7 +38,7 @@ def load(name):
 def test_stays_on_a_vehicle_in_plain_sight(variant, name):
     frames, boxes = load(name)
     found = find_variant(variant)
-    tracker = found.tracker(from_mapping(found.parameters, {}))
+    tracker = found.tracker(from_mapping(found.parameters, SETTINGS.get(variant, {})))
     tracker.start(frames[0], boxes[0])
     on_target = []
     for frame, box in zip(frames[1:], boxes[1:], strict=True):

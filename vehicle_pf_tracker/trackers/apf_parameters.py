@@ -85,9 +85,9 @@ class ApfOcclusionParameters:
     """When the occlusion regime is entered and left."""
 
     rule: str = parameter(
-        "relative",
-        "relative holds the similarities against their own clear level; fixed against tau, as "
-        "printed, which takes most of a real video for an occlusion.",
+        "fixed",
+        "fixed holds the similarities against tau, as printed; relative against their own clear "
+        "level, for real video, most of which the fixed rule takes for an occlusion.",
         choices=("fixed", "relative"),
         source="P1 Algorithm 1 step 4",
     )

@@ -69,7 +69,7 @@ class ClearLevel:
         # A plain mean at first, since the first value alone says little about the level.
         rate = max(parameters.rate, 1.0 / self._frames)
         if self._frames > 1:
-            # A fall that goes on would widen the very bound it is held against, were it counted whole.
+            # Counted whole, a fall that goes on would widen the very bound it is held against.
             away = min(abs(similarity - self.value), _LARGEST_AWAY * self.deviation)
             self.deviation += parameters.rate * (away - self.deviation)
         self.value += rate * (similarity - self.value)
