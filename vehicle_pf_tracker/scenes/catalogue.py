@@ -8,7 +8,9 @@ from typing import Any
 
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.scenes.bar import BarParameters, bar
+from vehicle_pf_tracker.scenes.cases import CASES
 from vehicle_pf_tracker.scenes.drive import DriveParameters
+from vehicle_pf_tracker.scenes.fixed_scenes import NoParameters
 from vehicle_pf_tracker.scenes.highway import HighwayParameters, highway
 from vehicle_pf_tracker.scenes.light import (
     IlluminationParameters,
@@ -36,7 +38,7 @@ from vehicle_pf_tracker.scenes.standing_obstacles import (
     signs,
     trees,
 )
-from vehicle_pf_tracker.scenes.videos import VIDEOS, NoParameters
+from vehicle_pf_tracker.scenes.videos import VIDEOS
 from vehicle_pf_tracker.trackers.parameters import from_mapping, parse_assignments, specs
 
 
@@ -80,7 +82,10 @@ SCENES: dict[str, SceneKind] = {
     "turn": SceneKind(DriveParameters, turn, "the target turns into a side road"),
     "turn_occluded": SceneKind(DriveParameters, turn_occluded, "it turns behind a house"),
     "scale": SceneKind(ScaleParameters, scale, "the target drives into depth and changes its size"),
-    **{name: SceneKind(NoParameters, video.scene, video.summary) for name, video in VIDEOS.items()},
+    **{
+        name: SceneKind(NoParameters, row.scene, row.summary)
+        for name, row in (VIDEOS | CASES).items()
+    },
 }
 
 

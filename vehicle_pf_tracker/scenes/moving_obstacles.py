@@ -26,11 +26,17 @@ CLEAR_FRAMES = 10
 """So long nothing may hide the target at the start."""
 
 
-def coach_at(drive: Drive, share: float, frames: float) -> list[Actor]:
-    """Let a coach overtake in the nearer lane and hide the target for about `frames` frames."""
-    spare = COACH_LENGTH * drive.scale - drive.target.size[0]
+def coach_at(
+    drive: Drive, share: float, frames: float, length: float = COACH_LENGTH
+) -> list[Actor]:
+    """Let a coach overtake in the nearer lane and hide the target for about `frames` frames.
+
+    `length` is the coach's, in metres.
+    """
+    spare = length * drive.scale - drive.target.size[0]
     speed = drive.parameters.speed + spare / frames
-    return drive.meeting(coach((206, 204, 196), (34, 82, 128)), drive.along(share), speed)
+    faces = coach((206, 204, 196), (34, 82, 128), length)
+    return drive.meeting(faces, drive.along(share), speed)
 
 
 def van_at(drive: Drive, share: float, frames: float) -> list[Actor]:

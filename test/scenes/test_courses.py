@@ -1,0 +1,82 @@
+"""Speeds, bends and headings, by hand numbers."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vehicle_pf_tracker.scenes.courses import Bend, Pace, Pose, Swaying
+from vehicle_pf_tracker.scenes.models import Model
+from vehicle_pf_tracker.scenes.paths import Wave
+from vehicle_pf_tracker.scenes.solids import ELEVATION
+from vehicle_pf_tracker.scenes.vehicles import car
+
+START = Pose(100.0, 200.0, 0.0, 10.0)
+SLANT = math.sin(ELEVATION)
+
+
+def test_distance_is_the_area_under_the_speed():
+    pace = Pace(((0, 4), (10, 4), (20, 2)))
+    assert [pace(frame) for frame in (5, 10, 15, 20, 30)] == pytest.approx([20, 40, 57.5, 70, 90])
+    assert Pace(((8, 3),))(6) == pytest.approx(-6)
+
+
+@given(st.lists(st.floats(0.5, 9), min_size=1, max_size=5), st.floats(0, 300))
+def test_arrival_is_when_the_distance_is_covered(speeds, distance):
+    pace = Pace(tuple((10.0 * number, speed) for number, speed in enumerate(speeds)))
+    assert pace(pace.arrival(distance)) == pytest.approx(distance, abs=1e-6)
+
+
+def test_a_left_turn_goes_round_a_flattened_circle_and_away():
+    bend = Bend(START, Pace.steady(1.0), straight=50, radius=40, angle=math.pi / 2)
+    quarter = 40 * math.pi / 2
+    assert bend(20) == Pose(120, 200, 0, 10)
+    middle = bend(50 + quarter / 2)
+    assert middle.heading == pytest.approx(math.pi / 4)
+    assert middle.x == pytest.approx(150 + 40 * math.sin(math.pi / 4))
+    assert middle.y == pytest.approx(200 - SLANT * 40 * (1 - math.cos(math.pi / 4)))
+    end = bend(50 + quarter + 30)
+    assert (end.x, end.y) == pytest.approx((190, 200 - SLANT * 70))
+    assert end.heading == pytest.approx(math.pi / 2)
+
+
+def test_a_right_turn_of_one_who_drives_left_goes_away_too():
+    start = Pose(100.0, 200.0, math.pi, 10.0)
+    end = Bend(start, Pace.steady(1.0), 50, 40, -math.pi / 2)(50 + 20 * math.pi + 30)
+    assert (end.x, end.y) == pytest.approx((10, 200 - SLANT * 70))
+
+
+def test_before_its_start_a_course_goes_straight_on_backwards():
+    assert Bend(START, Pace.steady(2.0))(-10).x == pytest.approx(80)
+
+
+def test_swaying_adds_its_swings():
+    pose = Swaying(Bend(START, Pace.steady(1.0)), Wave(2, 40, 0), Wave(0.5, 20, math.pi / 2))(10)
+    assert (pose.x, pose.y) == pytest.approx((112, 199.5))
+
+
+@pytest.mark.parametrize("degrees", [0, 37, 90, 180, 270])
+def test_the_box_of_a_model_is_tight_at_any_heading(degrees):
+    model = Model(car((100.0, 100.0, 100.0)), 10.0)
+    body = model.on(lambda _: Pose(50.3, 60.7, math.radians(degrees), 10.0))[1]
+    box = body.path(0)
+    sprite = body.seen(0)
+    # A car of 3.74 m by 1.68 m (lamps included) round its middle.
+    across = 37.4 * abs(math.cos(math.radians(degrees)))
+    across += 16.8 * abs(math.sin(math.radians(degrees)))
+    assert box.width == pytest.approx(across, abs=1.2)
+    assert box.x + box.width / 2 == pytest.approx(50.3, abs=0.8)
+    assert 0.55 < sprite.area(box) / box.area <= 1
+
+
+def test_a_model_shows_its_other_side_when_it_turns_round():
+    model = Model(car((200.0, 60.0, 60.0)), 10.0)
+    right, left = (
+        model.on(lambda _, heading=heading: Pose(50, 60, heading, 10.0))[1]
+        for heading in (0.0, math.pi)
+    )
+    areas = [actor.seen(0).area(actor.path(0)) for actor in (right, left)]
+    assert areas[0] == pytest.approx(areas[1], rel=0.03)
+    assert np.subtract(right.path(0).centre, left.path(0).centre) == pytest.approx((0, 0), abs=0.3)
