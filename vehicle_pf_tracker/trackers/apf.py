@@ -43,7 +43,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
 
     def reconfigure(self, parameters: ApfParameters) -> None:
         """Take new parameters; a new velocity window looks at the same history."""
-        self._velocity = self._velocity.resized(parameters.effective().velocity.window)
+        wanted = parameters.effective()
+        self._velocity = self._velocity.resized(wanted.velocity.window, wanted.drift_delay)
         super().reconfigure(parameters)
 
     def _learn(self) -> None:
@@ -54,7 +55,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         settings = self.parameters.effective()
         self._pi = self._pi_up = 1.0  # step 2
         self._levels = ClearLevel(), ClearLevel()
-        self._velocity = MeanVelocity(settings.velocity.window)
+        self._velocity = MeanVelocity(settings.velocity.window, settings.drift_delay)
         self._position = (0.0, 0.0) if settings.velocity.from_origin else centre
         moves = sample_normal(self._rng, settings.num_particles, settings.motion.sigma_w)
         return np.asarray(centre) + moves  # step 1
@@ -104,7 +105,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         return self._cloud.positions[ancestors]
 
     def _drift(self, settings: ApfParameters, count: int, elapsed: float) -> Array:
-        motion, velocity = settings.motion, self._velocity.value
+        motion, velocity = settings.motion, self._velocity.settled
         if motion.drift_from_velocity:
             sigma_r = float(np.hypot(*velocity)) / RAYLEIGH_MEAN
         else:

@@ -85,9 +85,9 @@ class ApfOcclusionParameters:
     """When the occlusion regime is entered and left."""
 
     rule: str = parameter(
-        "fixed",
-        "fixed holds the similarities against tau, as printed; relative against their own clear "
-        "level, for real video, most of which the fixed rule takes for an occlusion.",
+        "relative",
+        "relative holds the similarities against their own clear level; fixed against tau, as "
+        "printed, which takes most of a real video for an occlusion.",
         choices=("fixed", "relative"),
         source="P1 Algorithm 1 step 4",
     )
@@ -118,6 +118,15 @@ class ApfVelocityParameters:
         maximum=10_000,
         unit="frames",
         source="P1 section III-B, READINGS 5",
+    )
+    delay: int = parameter(
+        12,
+        "Longer: more of the estimates that an occlusion drags along before it is noticed are kept "
+        "out of the drift. Counts with the relative rule, which notices later.",
+        minimum=0,
+        maximum=1000,
+        unit="frames",
+        source="READINGS 5",
     )
     from_origin: bool = parameter(
         False,
@@ -161,6 +170,11 @@ class ApfParameters(ParticleParameters):
     occlusion: ApfOcclusionParameters = group(ApfOcclusionParameters)
     velocity: ApfVelocityParameters = group(ApfVelocityParameters)
 
+    @property
+    def drift_delay(self) -> int:
+        """Newest displacements that do not count for the drift yet, in frames."""
+        return self.velocity.delay if self.occlusion.rule == "relative" else 0
+
     def effective(self) -> ApfParameters:
         """Return the parameters in force: those of the print where `as_printed` is set."""
         if not self.as_printed:
@@ -171,5 +185,7 @@ class ApfParameters(ParticleParameters):
             motion=replace(self.motion, sigma_n=0.0, sigma_r=0.0, drift_from_velocity=False),
             reference=replace(self.reference, frozen_while_occluded=False),
             occlusion=replace(self.occlusion, rule="fixed", raw_histogram=False),
-            velocity=ApfVelocityParameters(window=0, from_origin=True, frozen_while_occluded=False),
+            velocity=ApfVelocityParameters(
+                window=0, delay=0, from_origin=True, frozen_while_occluded=False
+            ),
         )

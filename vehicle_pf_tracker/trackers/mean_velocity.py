@@ -3,6 +3,12 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterable
+from itertools import islice
+from typing import TypeAlias
+
+Vector: TypeAlias = tuple[float, float]
+_Move: TypeAlias = tuple[float, float, float]
 
 
 class MeanVelocity:
@@ -12,41 +18,59 @@ class MeanVelocity:
     ----------
     window : int
         Number of displacements that count; 0 counts all.
+    delay : int
+        Number of newest displacements that do not count for `settled` yet.
     """
 
-    def __init__(self, window: int) -> None:
-        self._moves: deque[tuple[float, float, float]] = deque(maxlen=window or None)
-        self._sum_x = self._sum_y = self._sum_elapsed = 0.0
+    def __init__(self, window: int, delay: int = 0) -> None:
+        self._window = window
+        self._delay = delay
+        self._moves: deque[_Move] = deque()
+        self._older: _Move = (0.0, 0.0, 0.0)
 
     @property
-    def value(self) -> tuple[float, float]:
+    def value(self) -> Vector:
         """Velocity in px per nominal frame; (0, 0) while nothing has moved in time."""
-        if self._sum_elapsed <= 0:
-            return 0.0, 0.0
-        return self._sum_x / self._sum_elapsed, self._sum_y / self._sum_elapsed
+        return self._mean_until(len(self._moves))
 
-    def add(self, before: tuple[float, float], after: tuple[float, float], elapsed: float) -> None:
+    @property
+    def settled(self) -> Vector:
+        """The same without the newest displacements, though with half of all there are at least.
+
+        An occlusion drags the estimates along before it is noticed, and its drift must not follow
+        that.
+        """
+        count = len(self._moves)
+        return self._mean_until(max(count - self._delay, (count + 1) // 2))
+
+    def _mean_until(self, end: int) -> Vector:
+        if self._window:
+            return _mean(islice(self._moves, max(end - self._window, 0), end))
+        return _mean([self._older, *islice(self._moves, end)])
+
+    def add(self, before: Vector, after: Vector, elapsed: float) -> None:
         """Count the move from `before` to `after` in `elapsed` nominal frame periods."""
-        move = after[0] - before[0], after[1] - before[1], elapsed
-        if self._moves.maxlen is None:
-            self._accumulate(move)
-            return
-        self._moves.append(move)
-        # Summed afresh, since a running sum would gather rounding over months.
-        self._sum_x = self._sum_y = self._sum_elapsed = 0.0
-        for kept in self._moves:
-            self._accumulate(kept)
+        self._moves.append((after[0] - before[0], after[1] - before[1], elapsed))
+        while len(self._moves) > self._window + self._delay:
+            oldest = self._moves.popleft()
+            if not self._window:
+                self._older = _sum([self._older, oldest])
 
-    def resized(self, window: int) -> MeanVelocity:
+    def resized(self, window: int, delay: int = 0) -> MeanVelocity:
         """Return the same history seen through another window."""
-        other = MeanVelocity(window)
-        other._moves.extend(self._moves)
-        totals = list(self._moves) or [(self._sum_x, self._sum_y, self._sum_elapsed)]
-        for move in totals[-window:] if window else totals:
-            other._accumulate(move)
+        other = MeanVelocity(window, delay)
+        other._older, other._moves = self._older, self._moves.copy()
         return other
 
-    def _accumulate(self, move: tuple[float, float, float]) -> None:
-        self._sum_x += move[0]
-        self._sum_y += move[1]
-        self._sum_elapsed += move[2]
+
+def _sum(moves: Iterable[_Move]) -> _Move:
+    # Summed afresh each time, since a running sum would gather rounding over months.
+    x = y = elapsed = 0.0
+    for move in moves:
+        x, y, elapsed = x + move[0], y + move[1], elapsed + move[2]
+    return x, y, elapsed
+
+
+def _mean(moves: Iterable[_Move]) -> Vector:
+    x, y, elapsed = _sum(moves)
+    return (x / elapsed, y / elapsed) if elapsed > 0 else (0.0, 0.0)
