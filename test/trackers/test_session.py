@@ -5,6 +5,8 @@ from street import Street, error
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
+from vehicle_pf_tracker.trackers.clock import StampEvent
+from vehicle_pf_tracker.trackers.continuity import PATIENCE, StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.parameters import from_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS
@@ -56,18 +58,140 @@ def test_a_recording_that_loops_gives_the_same_again():
     # Uneven times at first, which count as one period each until the period is known.
     times = [0, 2, 3, 6, *range(7, 30)]
     first = feed(looped, street, times)
-    again = feed(looped, street, times)
-    assert positions(again) == positions(first)
+    with pytest.raises(StrayImageError, match=r"stamp goes back by 1\.160 s"):
+        feed(looped, street, times[:1])
+    assert positions(feed(looped, street, times[1:])) == positions(first[1:])
 
 
 def test_the_jump_back_is_told_and_can_be_ridden_over():
     street = Street()
     steady = session(street.box(0), reset_on_time_jump=False)
     feed(steady, street, range(5), offset=100)
-    estimate = feed(steady, street, range(5, 6), offset=0)[0]
+    with pytest.raises(StrayImageError):
+        feed(steady, street, [5])
+    estimate = feed(steady, street, [6])[0]
     assert steady.events == ["time jumped back"]
     assert estimate.regime != "start"
-    assert error(estimate, street, 5) < 10
+    assert error(estimate, street, 6) < 10
+
+
+# Strays: the same estimates as if they had never been there.
+
+DAY_NS = 86_400_000_000_000
+
+
+def believes(of, street, time, stamp_ns):
+    """Feed a frame; tells whether it was believed."""
+    try:
+        of.feed(street.frame(time), stamp_ns)
+    except StrayImageError:
+        return False
+    return True
+
+
+def feed_with_strays(of, street, strays):
+    """Feed thirty frames; before the frame `i`, the images of `strays[i]`, which are rejected."""
+    estimates = []
+    for t in range(30):
+        for frame, stamp in strays.get(t, []):
+            with pytest.raises(StrayImageError):
+                of.feed(frame, stamp)
+        estimates += feed(of, street, [t])
+    return estimates
+
+
+def other(size=20):
+    return np.zeros((size, size, 3), np.uint8)
+
+
+@pytest.mark.parametrize("stamp", [0, -5, 2 * PERIOD_NS, DAY_NS, 10**18])
+@pytest.mark.parametrize("times", [[8], [8, 9, 15], [*range(5, 30)]])
+def test_a_stray_stamp_costs_the_track_nothing(stamp, times):
+    street = Street()
+    strays = {t: [(street.frame(t), stamp)] for t in times}
+    plain = feed(session(street.box(0)), street, range(30))
+    assert positions(feed_with_strays(session(street.box(0)), street, strays)) == positions(plain)
+
+
+def test_stray_sizes_cost_the_track_nothing():
+    street = Street()
+    strays = {
+        t: [(other(20 + 7 * i + t), (t + 1) * PERIOD_NS) for i in range(3)] for t in (4, 5, 6, 20)
+    }
+    plain = feed(session(street.box(0)), street, range(30))
+    assert positions(feed_with_strays(session(street.box(0)), street, strays)) == positions(plain)
+
+
+def test_a_target_waits_for_an_image_of_the_stream():
+    street, at_work = Street(), session()
+    feed(at_work, street, range(3))
+    at_work.set_target(street.box(3))
+    with pytest.raises(StrayImageError, match="20x20 px among images of 200x120 px"):
+        at_work.feed(other(), 4 * PERIOD_NS)
+    assert feed(at_work, street, [3])[0].regime == "start"
+
+
+def test_what_comes_back_from_a_gap_is_believed_at_the_second_image():
+    street = Street(speed=0.0)
+    at_work = Session(
+        APF, from_mapping(ApfParameters, {"frame_rate": 25.0}), configured(street.box(0))
+    )
+    feed(at_work, street, range(5))
+    with pytest.raises(StrayImageError, match=r"leaps ahead by 40\.0"):
+        feed(at_work, street, [5], offset=1000)
+    assert feed(at_work, street, [6], offset=1000)[0].regime != "start"
+    assert at_work.events == ["gap in time"]
+    feed(at_work, street, [7], offset=1000)
+    assert at_work.events == []
+
+
+def test_a_slow_camera_is_believed_after_its_second_image():
+    street = Street(speed=0.0)
+    at_work = session(street.box(0))
+    answers = [believes(at_work, street, t, (t + 1) * PERIOD_NS) for t in range(0, 4000, 400)]
+    assert answers == [True, False] + [True] * 8  # 16 s apart
+
+
+def test_a_camera_without_a_clock_is_followed():
+    street, at_work = Street(), session(Street().box(0))
+    estimates = [at_work.feed(street.frame(t), 0) for t in range(20)]
+    assert error(estimates[-1], street, 19) < 12
+
+
+def test_a_clock_that_is_lost_starts_again_once():
+    street, at_work = Street(speed=0.0), session(Street().box(0))
+    feed(at_work, street, range(10))
+    with pytest.raises(StrayImageError):
+        at_work.feed(street.frame(10), 0)
+    regimes = [at_work.feed(street.frame(t), 0).regime for t in range(11, 20)]
+    assert regimes.count("start") == 0  # the image put aside was the one started on
+    assert "repeated stamp" in at_work.events
+
+
+def test_stamps_that_never_agree_are_counted_by_images():
+    street, at_work = Street(speed=1.0), session(Street().box(0))
+    feed(at_work, street, range(3))
+    # A recording played backwards.
+    answers = [believes(at_work, street, t, -t * DAY_NS) for t in range(3, 40)]
+    assert answers == [False] * PATIENCE + [True] * (37 - PATIENCE)
+    assert at_work.events == [StampEvent.SENSELESS.value]
+    # A stamp that continues the old ones is believed at once.
+    estimate = feed(at_work, street, [40])[0]
+    assert at_work.events == []
+    assert estimate.regime != "start"
+    assert error(estimate, street, 40) < 12
+
+
+def test_a_reset_forgets_size_time_and_doubts():
+    street, at_work = Street(), session(Street().box(0))
+    feed(at_work, street, range(5), offset=1000)
+    with pytest.raises(StrayImageError):
+        feed(at_work, street, [0])
+    at_work.set_target(Box(0, 0, 5, 5))
+    at_work.reset()
+    larger = np.pad(street.frame(0), ((0, 10), (0, 0), (0, 0)))
+    estimate = at_work.feed(larger, 0)
+    assert (estimate.regime, estimate.box) == ("start", street.box(0))
 
 
 def test_reset_goes_back_to_the_configured_target():
@@ -113,10 +237,17 @@ def test_a_new_image_size_starts_again_and_says_so():
     street = Street()
     at_work = session(street.box(0))
     feed(at_work, street, range(3))
-    larger = np.pad(street.frame(3), ((0, 10), (0, 0), (0, 0)))
-    estimate = at_work.feed(larger, 4 * PERIOD_NS)
-    assert estimate.regime == "start"
+    larger = [np.pad(street.frame(t), ((0, 10), (0, 0), (0, 0))) for t in range(3)]
+    with pytest.raises(StrayImageError, match="200x130 px among images of 200x120 px"):
+        at_work.feed(larger[0], 4 * PERIOD_NS)
+    after = [at_work.feed(larger[1], 5 * PERIOD_NS)]
+    assert at_work.size == (200, 130)
     assert "200x120 to 200x130" in at_work.events[0]
+    after.append(at_work.feed(larger[2], 6 * PERIOD_NS))
+    # The image put aside was the one started on, so nothing of its target is missed.
+    fresh = session(street.box(0))
+    alone = [fresh.feed(frame, (t + 4) * PERIOD_NS) for t, frame in enumerate(larger)]
+    assert positions(after) == positions(alone[1:])
 
 
 def test_the_stamps_tell_the_tracker_how_long_a_second_is():

@@ -13,6 +13,7 @@ from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.recordings.truth import Truth
+from vehicle_pf_tracker.trackers.continuity import StrayImageError
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, SessionParameters, TargetParameters
 
@@ -102,7 +103,7 @@ class OfflineTracker:
         try:
             estimate = self.session.feed(frame, stamp_ns)
         except InputError as error:
-            if self.start_frame is None:
+            if self.start_frame is None and not isinstance(error, StrayImageError):
                 raise
             self.notices.append(f"frame {number} was rejected: {error}")
             return EstimateRow.without(number, stamp_ns, REJECTED)

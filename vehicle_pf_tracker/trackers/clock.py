@@ -21,6 +21,7 @@ class StampEvent(str, Enum):
     REPEATED = "repeated stamp"
     GAP = "gap in time"
     JUMP_BACK = "time jumped back"
+    SENSELESS = "stamps without sense, so each image counts as one period"
 
 
 @dataclass(frozen=True, slots=True)

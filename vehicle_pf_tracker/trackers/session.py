@@ -12,7 +12,8 @@ from vehicle_pf_tracker.features.box import Box, check_target
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.trackers.base import DEFAULT_PERIOD
-from vehicle_pf_tracker.trackers.clock import StampClock, StampEvent
+from vehicle_pf_tracker.trackers.clock import StampClock, StampEvent, Tick
+from vehicle_pf_tracker.trackers.continuity import Continuity, StrayImageError, Verdict
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.parameters import group, parameter
 from vehicle_pf_tracker.trackers.registry import Variant
@@ -62,7 +63,9 @@ class SessionParameters:
 
     target: TargetParameters = group(TargetParameters)
     reset_on_time_jump: bool = parameter(
-        True, "Start again on the configured target when stamps go back (a recording that loops)."
+        True,
+        "Start again on the configured target when stamps go back and stay back (a recording that "
+        "loops).",
     )
 
     def validate(self) -> None:
@@ -77,6 +80,10 @@ class SessionParameters:
 
 class Session:
     """Starts, steps and restarts the tracker of one variant.
+
+    One odd image, of another size or out of its time, is rejected and kept aside. If the next one
+    agrees with it, the stream has changed: then the tracker is shown both, and nothing but the
+    first one's estimate is missing.
 
     Parameters
     ----------
@@ -101,6 +108,8 @@ class Session:
         self.events: list[str] = []
         self.tracker = variant.tracker(parameters)
         self._clock = StampClock(parameters.frame_rate)
+        self._continuity = Continuity()
+        self._aside: tuple[Frame, int] | None = None
         self._pending: Box | None = self.settings.target.box
         self._size: tuple[int, int] | None = None
 
@@ -109,14 +118,20 @@ class Session:
         """Whether there is no target to follow."""
         return self._size is None and self._pending is None
 
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Width and height in px that images are expected to have; None where any will do."""
+        return self._continuity.size
+
     def set_target(self, box: Box) -> None:
-        """Start, or start again, on `box` in the next frame."""
+        """Start, or start again, on `box` in the next frame that is believed."""
         self._pending = box
 
     def reset(self) -> None:
-        """Go back to the configured target, or to waiting for one, and forget the stream's time."""
+        """Go back to the configured target, or to waiting for one, and forget the stream."""
         self._clock = StampClock(self.tracker.parameters.frame_rate)
-        self._forget()
+        self._continuity, self._aside = Continuity(), None
+        self._size, self._pending = None, self.settings.target.box
 
     def reconfigure(self, parameters: Any, settings: SessionParameters) -> None:
         """Take new parameters between two frames; a changed target starts on it."""
@@ -132,24 +147,32 @@ class Session:
         Parameters
         ----------
         frame : (H, W, 3) array
-            RGB; not kept and not written to.
+            RGB; not written to, and copied where it has to be kept.
         stamp_ns : int
             The image's stamp in ns.
 
         Raises
         ------
+        StrayImageError
+            If the image does not continue the stream; the track is kept.
         InputError
             If the frame is not usable, or the target to start on is none in it. Where there is a
             track, such a target is told in `events` instead, and the track goes on.
         """
         self.events = []
+        aside, self._aside = self._aside, None
         size = frame_size(check_frame(frame))
-        tick = self._clock.tick(stamp_ns)
-        if tick.event is not None:
-            self.events.append(tick.event.value)
-        if tick.event is StampEvent.JUMP_BACK and self.settings.reset_on_time_jump:
-            self.reset()
-            tick = self._clock.tick(stamp_ns)
+        try:
+            verdict = self._continuity.judge(size, stamp_ns, timed=self._size is not None)
+        except StrayImageError:
+            self._aside = frame.copy(), stamp_ns
+            raise
+        if verdict is Verdict.CONFIRMS and aside is not None:
+            self._take(*aside)
+        return self._take(frame, None if verdict is Verdict.UNTIMED else stamp_ns)
+
+    def _take(self, frame: Frame, stamp_ns: int | None) -> Estimate | None:
+        size, tick = frame_size(frame), self._tick(stamp_ns)
         if self._size is not None and size != self._size:
             self.events.append(
                 f"image size changed from {self._size[0]}x{self._size[1]} to {size[0]}x{size[1]}; "
@@ -161,6 +184,19 @@ class Session:
         if box is not None and self._is_usable(box, size):
             return self._start(frame, box, size)
         return None if self._size is None else self.tracker.step(frame, tick.elapsed)
+
+    def _tick(self, stamp_ns: int | None) -> Tick:
+        if stamp_ns is None:
+            self.events.append(StampEvent.SENSELESS.value)
+            return Tick(1.0, StampEvent.SENSELESS)
+        tick = self._clock.tick(stamp_ns)
+        if tick.event is not None:
+            self.events.append(tick.event.value)
+        if tick.event is StampEvent.JUMP_BACK and self.settings.reset_on_time_jump:
+            self._clock = StampClock(self.tracker.parameters.frame_rate)
+            self._forget()
+            tick = self._clock.tick(stamp_ns)
+        return tick
 
     def _is_usable(self, box: Box, size: tuple[int, int]) -> bool:
         try:

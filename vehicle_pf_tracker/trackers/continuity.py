@@ -1,0 +1,119 @@
+"""Whether an image continues its stream, or is a stray in it.
+
+Cameras, drivers and networks now and then deliver one image that does not belong: of another size,
+without a stamp, with a stamp of yesterday or of tomorrow. A track must not pay for it. Real changes
+look the same at first, but they last. So an odd image is doubted, and only a second one that agrees
+with it makes both believed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from vehicle_pf_tracker.features.errors import InputError
+
+Size = tuple[int, int]
+
+LONGEST_GAP_NS = 5_000_000_000
+"""Stamps may always be this far apart."""
+
+_SLOWER = 3
+"""How many times the interval before a longer gap may be: slow cameras have long intervals too."""
+
+PATIENCE = 10
+"""Odd stamps in a row after which a camera is taken to have no usable clock."""
+
+_AGREED = "; rejected unless the next image agrees with it"
+
+
+class StrayImageError(InputError):
+    """An image that does not continue the stream it came in."""
+
+
+class Verdict(Enum):
+    """How an image goes with those before it."""
+
+    CONTINUES = "continues the stream"
+    CONFIRMS = "agrees with the doubted image before it; both are believed"
+    UNTIMED = "has a stamp that says nothing, as all those before it"
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    size: Size
+    stamp_ns: int
+
+
+class Continuity:
+    """Judges the images of one stream in their order."""
+
+    def __init__(self) -> None:
+        self._last: _Seen | None = None
+        self._doubted: _Seen | None = None
+        self._interval_ns = 0
+        self._odd = 0
+
+    @property
+    def size(self) -> Size | None:
+        """Width and height in px of the believed images; None before the first."""
+        return self._last.size if self._last else None
+
+    def judge(self, size: Size, stamp_ns: int, *, timed: bool) -> Verdict:
+        """Judge the next image.
+
+        Parameters
+        ----------
+        size : (int, int)
+            Width and height in px.
+        stamp_ns : int
+            Its stamp in ns.
+        timed : bool
+            Whether its stamp matters: not while nothing is tracked.
+
+        Raises
+        ------
+        StrayImageError
+            With the reason, if it is to be left out.
+        """
+        seen = _Seen(size, stamp_ns)
+        reason = self._oddity(seen, timed)
+        if reason is None:
+            self._believe(seen, stamp_ns - self._last.stamp_ns if self._last else 0)
+            return Verdict.CONTINUES
+        if self._doubted is not None and self._agrees(seen, self._doubted):
+            self._believe(seen, stamp_ns - self._doubted.stamp_ns)
+            return Verdict.CONFIRMS
+        self._doubted = seen
+        self._odd += 1
+        if self._odd > PATIENCE and size == self.size:
+            return Verdict.UNTIMED
+        raise StrayImageError(reason + _AGREED)
+
+    def _oddity(self, seen: _Seen, timed: bool) -> str | None:
+        if self._last is None:
+            return None
+        if seen.size != self._last.size:
+            usual = _words(self._last.size)
+            return f"the image is of {_words(seen.size)} px among images of {usual} px"
+        interval = seen.stamp_ns - self._last.stamp_ns
+        if timed and interval < 0:
+            return f"the image's stamp goes back by {-interval * 1e-9:.3f} s"
+        if timed and interval > max(LONGEST_GAP_NS, _SLOWER * self._interval_ns):
+            return f"the image's stamp leaps ahead by {interval * 1e-9:.3f} s"
+        return None
+
+    def _agrees(self, seen: _Seen, doubted: _Seen) -> bool:
+        assert self._last is not None
+        interval = seen.stamp_ns - doubted.stamp_ns
+        leap = doubted.stamp_ns - self._last.stamp_ns  # of a camera that has become this slow
+        longest = max(LONGEST_GAP_NS, leap + leap // 2)
+        return seen.size == doubted.size and 0 <= interval <= longest
+
+    def _believe(self, seen: _Seen, interval_ns: int) -> None:
+        self._last, self._doubted, self._odd = seen, None, 0
+        self._interval_ns = interval_ns
+
+
+def _words(size: Size) -> str:
+    return f"{size[0]}x{size[1]}"
