@@ -41,7 +41,8 @@ class MeanVelocity:
         that.
         """
         count = len(self._moves)
-        return self._mean_until(max(count - self._delay, (count + 1) // 2))
+        fewest = 0 if self._older[2] > 0 else (count + 1) // 2
+        return self._mean_until(max(count - self._delay, fewest))
 
     def _mean_until(self, end: int) -> Vector:
         if self._window:
