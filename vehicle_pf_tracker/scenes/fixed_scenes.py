@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from vehicle_pf_tracker.scenes.drive import Drive, DriveParameters
+from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.trackers.parameters import from_mapping
 
@@ -51,8 +52,9 @@ class FixedScene:
         return f"{self.what}: {chosen.vehicle}, {chosen.resolution}, occlusion {self.occlusion}"
 
     def scene(self, parameters: NoParameters, seed: int) -> Scene:
-        """Make the scene."""
-        return replace(self.build(self.parameters, seed), name=self.name)
+        """Make the scene; rows of one seed differ in vehicle, traffic and ground."""
+        own = int(stream(seed, self.name).integers(2**32))
+        return replace(self.build(self.parameters, own), name=self.name)
 
 
 def past(*obstacles: Callable[[Drive], list[Actor]]) -> Build:
