@@ -17,7 +17,6 @@ from tracker_rig import (
     TARGET,
     Rig,
     header,
-    header_at,
     on_target,
     overrides,
     road,
@@ -158,31 +157,6 @@ def test_a_configured_target_outside_the_image_is_said_once(bench):
     answer = rig.show_frame(frames[0], 0)
     assert "outside the image of 160x120" in values_of(answer)["reason"]
     assert rig.show_frame(frames[1], 1).status[0].message == "WAITING"
-
-
-def test_time_that_jumps_back_starts_again(bench):
-    rig = Rig(bench, on_target())
-    frames = road(12)
-    first = [without_times(rig.show_frame(frame, i)) for i, frame in enumerate(frames)]
-    again = [without_times(rig.show_frame(frame, i)) for i, frame in enumerate(frames)]
-    assert again[0].pop("event") == "time jumped back"
-    assert again == first
-
-
-def test_a_new_image_size_starts_again(bench):
-    rig = Rig(bench, on_target())
-    rig.play(road(3))
-    answer = rig.show_frame(road(1, width=200)[0], 3)
-    assert values_of(answer)["regime"] == "start"
-    assert "160x120 to 200x120" in values_of(answer)["event"]
-
-
-def test_stamps_may_be_zero(bench):
-    rig = Rig(bench, on_target())
-    for frame in road(4):
-        answer = rig.show(image_message(header_at(0), frame))
-        assert answer.status[0].message == "TRACKING"
-    assert values_of(answer)["event"] == "repeated stamp"
 
 
 def test_an_unexpected_error_is_an_answer_too(bench, monkeypatch):

@@ -76,7 +76,7 @@ def test_a_signal_while_libraries_load_leaves_no_traceback(start_process):
     ("arguments", "sentence"),
     [
         (["-p", "num_particles:=0"], "apf_tracker: num_particles must be from 1 to 100000, got 0"),
-        (["-p", "target.x:=20"], "smaller than one pixel"),
+        (["-p", "target.width:=0.5", "-p", "target.height:=20"], "smaller than one pixel"),
         (["-p", "image_transport:=theora"], "must be one of raw, compressed"),
         (["--params-file", "/nowhere.yaml"], "apf_tracker: Couldn't parse params file"),
         (["--nonsense"], "apf_tracker: unknown ROS arguments: ['--nonsense']"),

@@ -156,7 +156,7 @@ def test_nothing_is_warned_about_without_need(make, tmp_path, log):
         ({"resampling": "best"}, "resampling must be one of"),
         ({"queue_depth": 0}, "queue_depth must be from 1 to"),
         ({"image_transport": "theora"}, "image_transport must be one of raw, compressed"),
-        ({"target__x": 5.0}, "smaller than one pixel"),
+        ({"target__width": 0.5, "target__height": 9.0}, "smaller than one pixel"),
         ({"evidence__occluded_below": 0.9}, "must not be above"),
     ],
 )

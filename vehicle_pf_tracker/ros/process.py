@@ -17,7 +17,11 @@ from rclpy.utilities import remove_ros_args
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.ros.allocator import keep_image_memory
 from vehicle_pf_tracker.ros.node import TrackerNode
+from vehicle_pf_tracker.ros.transport import image_transport
 from vehicle_pf_tracker.trackers.registry import Variant
+
+_OVERLAY_BYTES = 1280 * 720 * 3
+"""Of the largest overlay that four of fit the segment; a larger one still fits once."""
 
 _BROKEN = "a request could not be answered:"
 
@@ -72,7 +76,9 @@ def _serve(variant: Variant) -> int:
     executor = SingleThreadedExecutor()
     node = None
     try:
-        node = TrackerNode(variant)
+        # For ~/overlay; whether the frames come through is decided by the camera's segment.
+        with image_transport(_OVERLAY_BYTES, rclpy.get_rmw_implementation_identifier()):
+            node = TrackerNode(variant)
         executor.add_node(node)
         _spin(executor, node)
     except Exception:

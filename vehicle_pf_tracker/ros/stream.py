@@ -44,7 +44,7 @@ class Stream:
     Attributes
     ----------
     frame_id : str or None
-        Of the last image; None before the first.
+        Of the last image that was used; None before the first.
     estimate : Estimate or None
         The last one; None while there is no target.
     """
@@ -85,7 +85,6 @@ class Stream:
 
     def take(self, message: Image | CompressedImage) -> None:
         """Answer an image with exactly one `~/mode`, and with an estimate where there is one."""
-        self.frame_id = message.header.frame_id
         try:
             frame = read_image(message)
             self._adopt_target(frame)
@@ -96,6 +95,7 @@ class Stream:
             self._log.error(traceback.format_exc(), throttle_duration_sec=_THROTTLE)
             self._reject(message.header, f"unexpected {type(error).__name__}: {error}")
         else:
+            self.frame_id = message.header.frame_id
             self._answer(message.header, frame, self.estimate)
 
     def set_target(self, box: Box) -> None:
@@ -127,12 +127,14 @@ class Stream:
             self._tell_drawn_seed()
 
     def _adopt_target(self, frame: Frame) -> None:
-        # Checked here and not by the session, which would give up this image's estimate for it.
-        box, self._asked = self._asked, None
-        if box is None:
+        # Checked here and not by the session, which would give up this image's estimate for it;
+        # and not in an image of another size, which may be a stray.
+        size = frame_size(frame)
+        if self._asked is None or self._session.size not in (None, size):
             return
+        box, self._asked = self._asked, None
         try:
-            self._session.set_target(check_target(box, *frame_size(frame)))
+            self._session.set_target(check_target(box, *size))
         except InputError as error:
             self.refuse_target(str(error))
 
