@@ -13,7 +13,6 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import Parameter, ParameterValue
 from rcl_interfaces.srv import SetParameters
-from rclpy.qos import QoSProfile
 from sensor_msgs.msg import Image
 from tracker_rig import header, road
 
@@ -147,17 +146,6 @@ def test_two_nodes_live_under_their_namespaces(bench, start_node):
         bench.publish_until(lambda: heard[index], camera, image)  # noqa: B023 - called at once
     assert [modes[0].header for modes in heard] == [header(0), header(1)]
     assert all(message.header == header(0) for message in heard[0])
-
-
-def test_a_killed_node_can_be_started_again(bench, start_node):
-    first = start_node("apf")
-    first.wait_for_output("ready")
-    first.send(signal.SIGKILL)
-    first.wait()
-    start_node("apf").wait_for_output("ready")
-    camera = bench.publisher(Image, "image", QoSProfile(depth=10))
-    modes = bench.collect(DiagnosticArray, "/apf_tracker/mode")
-    bench.publish_until(lambda: modes, camera, image_message(header(0), road(1)[0]))
 
 
 def test_the_node_loads_neither_recordings_nor_evaluation():
