@@ -22,6 +22,7 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "params": ("params", "print the commented default parameters of a variant"),
         "run": ("run", "track a recording offline, without ROS, and score it"),
         "replay": ("replay", "feed a recording to ROS nodes"),
+        "reproduce": ("reproduce", "make the papers' figures and tables again, with verdicts"),
     }
 )
 """Module in this package and one line of help, by verb."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import Normal, Stroke
@@ -18,7 +19,9 @@ from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.recordings.truth import Occlusion
 
 
-class _Style(NamedTuple):
+class Style(NamedTuple):
+    """How one series is drawn."""
+
     colour: str
     line: str | tuple[int, tuple[int, ...]]
     marker: str
@@ -26,13 +29,13 @@ class _Style(NamedTuple):
 
 # The colours are Okabe and Ito's. Lines tell series apart over time; in the path, where a dashed
 # line means hidden, markers do.
-_STYLES = (
-    _Style("#0072B2", "-", "o"),
-    _Style("#D55E00", "--", "s"),
-    _Style("#009E73", "-.", "^"),
-    _Style("#CC79A7", ":", "D"),
-    _Style("#E69F00", (0, (5, 1, 1, 1, 1, 1)), "v"),
-    _Style("#56B4E9", (0, (8, 2)), "P"),
+STYLES = (
+    Style("#0072B2", "-", "o"),
+    Style("#D55E00", "--", "s"),
+    Style("#009E73", "-.", "^"),
+    Style("#CC79A7", ":", "D"),
+    Style("#E69F00", (0, (5, 1, 1, 1, 1, 1)), "v"),
+    Style("#56B4E9", (0, (8, 2)), "P"),
 )
 _SHADES = {Occlusion.PARTIAL: ("0.93", "partly hidden"), Occlusion.TOTAL: ("0.78", "hidden")}
 _LEAST_ERROR = 0.5
@@ -40,7 +43,7 @@ _LEAST_ERROR = 0.5
 _MARKER_EVERY = 20
 _DPI = 150
 _DASHED = (0, (2, 1.4))
-_OUTLINE = (Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal())
+OUTLINE = (Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal())
 """Keeps lines visible on any scenery."""
 
 
@@ -91,19 +94,22 @@ def overview_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -
 def save(figure: Figure, path: Path) -> None:
     """Write `figure` to the file `path`, whose suffix names the format.
 
+    The same figure gives the same file: no date is written, and names within it are not random.
+
     Raises
     ------
     InputError
         If it cannot be written.
     """
-    with replacing(path) as partial:
-        figure.savefig(partial, dpi=_DPI)
+    metadata = {"Date": None} if path.suffix == ".svg" else {}
+    with replacing(path) as partial, rc_context({"svg.hashsalt": "vehicle_pf_tracker"}):
+        figure.savefig(partial, dpi=_DPI, metadata=metadata)
 
 
 def _draw_errors(axes: Axes, runs: Mapping[str, Scores], title: str) -> None:
     for scores in itertools.islice(runs.values(), 1):
-        _shade_occlusions(axes, scores)
-    for (name, scores), style in zip(runs.items(), itertools.cycle(_STYLES), strict=False):
+        shade_occlusions(axes, scores)
+    for (name, scores), style in zip(runs.items(), itertools.cycle(STYLES), strict=False):
         drawn = [(f.row.frame, f.error) for f in scores.counted]
         errors = [float("nan") if e is None else max(e, _LEAST_ERROR) for _, e in drawn]
         frames = [number for number, _ in drawn]
@@ -124,7 +130,7 @@ def _draw_paths(axes: Axes, frame: Frame, runs: Mapping[str, Scores], title: str
         true = [(f.truth.box.centre if f.truth else None, f.hidden) for f in scores.frames]
         _draw_path(axes, true, "truth", "black", "")
         _draw_first_box(axes, scores)
-    for (name, scores), style in zip(runs.items(), itertools.cycle(_STYLES), strict=False):
+    for (name, scores), style in zip(runs.items(), itertools.cycle(STYLES), strict=False):
         estimated = [(f.row.position, f.hidden) for f in scores.frames]
         _draw_path(axes, estimated, name, style.colour, style.marker)
     axes.plot([], [], color="0.4", lw=1.7, ls=_DASHED, label="while hidden")
@@ -139,7 +145,8 @@ def _add_legend(axes: Axes) -> None:
     )
 
 
-def _shade_occlusions(axes: Axes, scores: Scores) -> None:
+def shade_occlusions(axes: Axes, scores: Scores) -> None:
+    """Shade the frames in which the vehicle is partly or totally hidden."""
     for occlusion, (shade, label) in _SHADES.items():
         for index, (first, last) in enumerate(_stretches(scores.frames, occlusion)):
             shown = None if index else label
@@ -168,7 +175,7 @@ def _draw_path(
     for hidden, line in _lines(points):
         xs, ys = zip(*line, strict=True)
         style = _DASHED if hidden else "-"
-        axes.plot(xs, ys, color=colour, lw=1.7, ls=style, path_effects=_OUTLINE)
+        axes.plot(xs, ys, color=colour, lw=1.7, ls=style, path_effects=OUTLINE)
     marks = [point for point, _ in points[::_MARKER_EVERY] if point is not None]
     xs, ys = zip(*marks, strict=True) if marks and marker else ((), ())
     axes.plot(xs, ys, ls="", color=colour, marker=marker, ms=6, mec="white", mew=0.8)
@@ -194,4 +201,4 @@ def _draw_first_box(axes: Axes, scores: Scores) -> None:
     if box is not None:
         corners = [*box.corners, box.corners[0]]
         xs, ys = zip(*corners, strict=True)
-        axes.plot(xs, ys, color="black", lw=1.2, path_effects=_OUTLINE)
+        axes.plot(xs, ys, color="black", lw=1.2, path_effects=OUTLINE)

@@ -1,0 +1,82 @@
+"""Progress of an experiment: what is done, what runs, and how long it may still take."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TextIO
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+from rich.progress import Progress as Bar
+
+from vehicle_pf_tracker.evaluation.experiments.running import OnProgress, Progress
+
+_LINE_SECONDS = 5.0
+
+
+@contextmanager
+def telling(
+    name: str, stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
+) -> Iterator[OnProgress]:
+    """Give a function that tells how far the experiment `name` is.
+
+    Parameters
+    ----------
+    name : str
+        What is run.
+    stream : text stream or None
+        Where to show it; None is standard error.
+    clock : callable
+        The monotonic clock in s.
+    """
+    stream = stream or sys.stderr
+    began = clock()
+    if not stream.isatty():
+        yield _Lines(name, stream, clock)
+        return
+    columns = (
+        TextColumn(name),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[more]}"),
+    )
+    with Bar(*columns, console=Console(file=stream), transient=True) as bar:
+        task = bar.add_task(name, total=None, more="")
+
+        def show(progress: Progress) -> None:
+            more = f"{_left(progress, clock() - began)}  {', '.join(progress.running)}"
+            bar.update(task, completed=progress.done, total=progress.total, more=more)
+
+        yield show
+
+
+class _Lines:
+    """A line about every five seconds, so that quick work says nothing."""
+
+    def __init__(self, name: str, stream: TextIO, clock: Callable[[], float]) -> None:
+        self._name = name
+        self._stream = stream
+        self._clock = clock
+        self._began = self._said = clock()
+
+    def __call__(self, progress: Progress) -> None:
+        now = self._clock()
+        if now - self._said < _LINE_SECONDS:
+            return
+        self._said = now
+        running = f"; running {', '.join(progress.running)}" if progress.running else ""
+        left = _left(progress, now - self._began)
+        print(
+            f"{self._name}: {progress.done} of {progress.total} runs done, {left}{running}",
+            file=self._stream, flush=True,
+        )  # fmt: skip
+
+
+def _left(progress: Progress, seconds: float) -> str:
+    if progress.done == 0:
+        return "time left unknown"
+    left = seconds * (progress.total - progress.done) / progress.done
+    return f"about {left:.0f} s left" if left < 100 else f"about {left / 60:.0f} min left"

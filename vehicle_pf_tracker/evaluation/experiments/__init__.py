@@ -1,0 +1,1 @@
+"""The papers' experiments: runs, data, figure and verdict of each, by name (`catalogue`)."""

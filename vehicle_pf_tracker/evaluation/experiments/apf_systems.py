@@ -1,0 +1,43 @@
+"""The six trackers of the first paper, the readings of its own, and their one sigma rule."""
+
+from __future__ import annotations
+
+from vehicle_pf_tracker.evaluation.experiments.cells import RunCell, SceneChoice, System
+
+APF = System.of("APF", "apf")
+RIVALS = (
+    System.of("PF", "pf"),
+    System.of("SAPF", "sapf"),
+    System.of("HPFMS", "hpfms"),
+    System.of("PFCL", "pfcl"),
+    System.of("MS", "ms"),
+)
+"""In the order of the paper's tables."""
+FIXED = System.of("APF, fixed tau", "apf", {"occlusion.rule": "fixed"})
+PRINTED = System.of("APF as printed", "apf", {"as_printed": True})
+READINGS = {"our reading": APF, "fixed tau": FIXED, "as printed": PRINTED}
+"""What the paper's algorithm is taken to be: the variant's defaults; the same with the printed
+occlusion rule, similarities against tau = 0.8; and the print to the letter."""
+SIX = (APF, *RIVALS)
+
+SPEEDS_PER_SIGMA = 1.5
+LEAST_SIGMA, LARGEST_SIGMA = 5.0, 10.0
+"""The paper's interval for sigma, px/frame."""
+SIGMA_RULE = (
+    f"One rule sets sigma for every tracker that has one: {SPEEDS_PER_SIGMA:g} times the vehicle's "
+    "nominal speed (the paper relates sigma to the speed), kept within the paper's interval from "
+    f"{LEAST_SIGMA:g} to {LARGEST_SIGMA:g} px/frame. Everything else is each variant's default."
+)
+_SIGMA = {"apf": "motion.sigma_w", "ms": None}
+
+
+def with_sigma(system: System, sigma: float) -> System:
+    """Set the spread of `system`; mean shift has none."""
+    name = _SIGMA.get(system.variant, "sigma")
+    return system if name is None else system.but({name: sigma})
+
+
+def ruled(scene: SceneChoice, system: System, seed: int, record: tuple[str, ...] = ()) -> RunCell:
+    """Make the cell of `system` on `scene` with the sigma that the rule gives."""
+    sigma = min(max(SPEEDS_PER_SIGMA * scene.speed, LEAST_SIGMA), LARGEST_SIGMA)
+    return RunCell(scene, with_sigma(system, sigma), seed, record)

@@ -1,0 +1,47 @@
+"""All experiments by name, in the order of the papers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from vehicle_pf_tracker.evaluation.experiments import (
+    apf_fig1,
+    apf_fig2,
+    apf_fig3,
+    apf_fig4,
+    apf_fig5,
+    apf_fig6,
+    apf_fig7,
+    apf_table2,
+    apf_timing,
+)
+from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment
+from vehicle_pf_tracker.features.errors import InputError
+
+_MODULES = (
+    apf_fig1, apf_fig2, apf_fig3, apf_fig4, apf_fig5, apf_fig6, apf_fig7, apf_table2, apf_timing,
+)  # fmt: skip
+
+EXPERIMENTS: Mapping[str, Experiment] = MappingProxyType(
+    {module.EXPERIMENT.name: module.EXPERIMENT for module in _MODULES}
+)
+"""By name."""
+ALL = "all"
+
+
+def find_experiments(names: Sequence[str]) -> list[Experiment]:
+    """Look up experiments, each once and in the catalogue's order; `ALL` stands for all.
+
+    Raises
+    ------
+    InputError
+        If there is none of a name.
+    """
+    unknown = [name for name in names if name not in EXPERIMENTS and name != ALL]
+    if unknown:
+        raise InputError(
+            f"there is no experiment {', '.join(map(repr, unknown))}; "
+            f"choose {ALL} or some of {', '.join(EXPERIMENTS)}"
+        )
+    return [e for e in EXPERIMENTS.values() if ALL in names or e.name in names]

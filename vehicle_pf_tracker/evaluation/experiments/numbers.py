@@ -1,0 +1,53 @@
+"""Numbers as verdicts tell them, and the few statistics they need."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+def median_and_range(values: Sequence[float], decimals: int = 1) -> str:
+    """Tell the median, and the least and the largest in brackets."""
+    middle = statistics.median(values)
+    least, largest = min(values), max(values)
+    return f"{middle:.{decimals}f} ({least:.{decimals}f} to {largest:.{decimals}f})"
+
+
+def mean_and_spread(values: Sequence[float], decimals: int = 1) -> str:
+    """Tell the mean and the standard deviation."""
+    return f"{statistics.fmean(values):.{decimals}f} ± {spread(values):.{decimals}f}"
+
+
+def spread(values: Sequence[float]) -> float:
+    """Return the sample's standard deviation; 0 for a single value."""
+    return statistics.stdev(values) if len(values) > 1 else 0.0
+
+
+def counted(hits: Sequence[bool]) -> str:
+    """Tell how many of how many."""
+    return f"{sum(hits)} of {len(hits)}"
+
+
+def share(hits: Sequence[bool]) -> float:
+    """Return the share that is true; 0 of nothing."""
+    return sum(hits) / len(hits) if hits else 0.0
+
+
+def rank_correlation(xs: Sequence[float], ys: Sequence[float]) -> float:
+    """Return Spearman's coefficient, equal values sharing their mean rank; 0 for a constant."""
+    ranks = [_ranks(np.asarray(values, float)) for values in (xs, ys)]
+    if any(np.ptp(rank) == 0 for rank in ranks):
+        return 0.0
+    return float(np.corrcoef(ranks[0], ranks[1])[0, 1])
+
+
+def _ranks(values: Array) -> Array:
+    _, place, counts = np.unique(values, return_inverse=True, return_counts=True)
+    ends = np.cumsum(counts)
+    means: Array = (ends - (counts - 1) / 2)[place]
+    return means

@@ -1,0 +1,70 @@
+"""Results on disk, added one by one, so that an interrupted experiment continues."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+from vehicle_pf_tracker.evaluation.experiments.cells import Result
+from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors
+
+
+class ResultStore:
+    """A file with one line of JSON for each result.
+
+    A line that a killed run left unfinished is dropped. Lines under keys that nobody asks for any
+    more stay; deleting the file only costs their time.
+
+    Parameters
+    ----------
+    path : Path
+        The file; made, with its folder, where it is missing.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read or written; also from `add`.
+    """
+
+    def __init__(self, path: Path) -> None:
+        make_folder(path.parent)
+        self._path = path
+        with output_errors(path):
+            self._results = dict(_read(path))
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._results
+
+    def __getitem__(self, key: str) -> Result:
+        return self._results[key]
+
+    def add(self, key: str, label: str, result: Result) -> None:
+        """Keep `result` under `key`; `label` is for those who look into the file."""
+        line = json.dumps({"key": key, "label": label, "result": result}, allow_nan=False)
+        with output_errors(self._path), self._path.open("a", encoding="utf-8") as file:
+            file.write(line + "\n")
+        # As read back, so that a result is the same whether it was made now or before.
+        self._results[key] = json.loads(line)["result"]
+
+
+def _read(path: Path) -> Iterator[tuple[str, Result]]:
+    if not path.exists():
+        return
+    text = path.read_bytes()
+    whole = text[: text.rfind(b"\n") + 1]
+    if len(whole) < len(text):
+        with path.open("r+b") as file:
+            file.truncate(len(whole))
+    for line in whole.splitlines():
+        entry = _parsed(line)
+        if entry is not None:
+            yield entry
+
+
+def _parsed(line: bytes) -> tuple[str, Result] | None:
+    try:
+        entry = json.loads(line)
+        return entry["key"], entry["result"]
+    except (ValueError, KeyError, TypeError):
+        return None
