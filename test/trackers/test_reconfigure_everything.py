@@ -1,0 +1,129 @@
+"""Every parameter of every variant, changed while tracking, changes what is estimated.
+
+The tables are walked, so a parameter that nothing reads cannot be added unnoticed.
+"""
+
+from __future__ import annotations
+
+import functools
+
+import pytest
+from street import Street
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.trackers.parameters import ParameterSpec, from_mapping, specs, to_mapping
+from vehicle_pf_tracker.trackers.registry import VARIANTS
+from vehicle_pf_tracker.trackers.session import Session, SessionParameters, TargetParameters
+
+PERIOD_NS = 40_000_000
+CHANGE = 6
+FRAMES = 40
+HALT = 13
+SINKING = {time: abs(index - 9) / 9 for index, time in enumerate(range(HALT, HALT + 19))}
+"""How much of the vehicle is seen, by time; all at others."""
+
+WITHOUT_EFFECT = {
+    ("ms", "seed"): "mean shift draws no random numbers",
+    ("apf", "velocity.from_origin"): "says how a track begins, so it is obeyed by the next one",
+}
+
+
+@functools.cache
+def images():
+    """A vehicle that drives, halts, sinks and comes back; one image missing; with stamps."""
+    street, empty = Street(speed=3.0), Street(speed=3.0, hidden=(0, FRAMES))
+    made = []
+    for t in (*range(10), *range(11, FRAMES)):
+        share, place = SINKING.get(t, 1.0), min(t, HALT)
+        frame, box = empty.frame(place).copy(), street.box(place)
+        rows = slice(0, int(box.y + share * box.height))
+        frame[rows] = street.frame(place)[rows]
+        made.append((frame, (t + 1) * PERIOD_NS))
+    return made
+
+
+def estimates(variant, parameters, changed):
+    """What is estimated after the change."""
+    box = Street().box(0)
+    settings = SessionParameters(TargetParameters(box.x, box.y, box.width, box.height))
+    session = Session(variant, parameters, settings)
+    for index, (frame, stamp) in enumerate(images()):
+        if index == CHANGE:
+            session.reconfigure(changed, settings)
+        estimate = session.feed(frame, stamp)
+        if index >= CHANGE:
+            told = estimate.scalars()
+            yield {name: value for name, value in told.items() if name != "step_ms"}
+
+
+@functools.cache
+def unchanged(name, parameters):
+    return list(estimates(VARIANTS[name], parameters, parameters))
+
+
+def others(spec: ParameterSpec, value):
+    """Values of this parameter, far from `value` and from each other."""
+    if spec.kind is bool:
+        return [not value]
+    if spec.choices:
+        return [word for word in spec.choices if word != value]
+    wanted = [
+        value * 0.9,
+        value * 1.1,
+        value * 2,
+        value / 3,
+        value / 30,
+        value * 30,
+        0.5,
+        0.05,
+        1,
+        3,
+        30,
+    ]
+    fitting = [spec.kind(one) for one in wanted if _fits(spec, spec.kind(one))]
+    return [one for one in dict.fromkeys(fitting) if one != value]
+
+
+def _fits(spec, value):
+    try:
+        spec.check(value)
+    except InputError:
+        return False
+    return True
+
+
+def bases(cls):
+    """The defaults, and the defaults with one switch turned: some are read only then."""
+    yield cls()
+    usual = to_mapping(cls())
+    switches = [spec for spec in specs(cls).values() if spec.kind is bool or spec.choices]
+    for spec in switches:
+        for other in others(spec, usual[spec.name]):
+            yield from _made(cls, {spec.name: other}, cls())
+
+
+def _made(cls, values, base):
+    """One, or none where the values do not fit together."""
+    try:
+        yield from_mapping(cls, values, base)
+    except InputError:
+        return
+
+
+def is_obeyed(variant, spec) -> bool:
+    for base in bases(variant.parameters):
+        for value in others(spec, to_mapping(base)[spec.name]):
+            for changed in _made(variant.parameters, {spec.name: value}, base):
+                plain = unchanged(variant.name, base)
+                told = estimates(variant, base, changed)
+                if any(one != other for one, other in zip(plain, told, strict=True)):
+                    return True
+    return False
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_every_parameter_is_obeyed_by_the_next_estimates(name):
+    variant = VARIANTS[name]
+    table = specs(variant.parameters)
+    ignored = {(name, one) for one, spec in table.items() if not is_obeyed(variant, spec)}
+    assert ignored == {one for one in WITHOUT_EFFECT if one[0] == name}
