@@ -10,6 +10,7 @@ from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError, show, tell_notices
 from vehicle_pf_tracker.cli.progress import OnProgress, counting
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
+from vehicle_pf_tracker.evaluation.interpolation import interpolated_columns
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
 from vehicle_pf_tracker.evaluation.results import ResultFolder
@@ -36,6 +37,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-diff", type=float, default=MAX_DIFF, metavar="S",
         help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
     )  # fmt: skip
+    add(
+        "--interpolate-occlusions", action="store_true",
+        help="add columns to estimates.csv with the path drawn straight through the frames that "
+        "are not TRACKING; they are not scored",
+    )  # fmt: skip
     parameter_options.add_arguments(parser)
 
 
@@ -56,7 +62,8 @@ def run(args: argparse.Namespace) -> int:
     info = RunInfo(
         args.command, str(args.recording), recording.image_topic, tracker.start_frame, notices
     )
-    folder.write_run(rows, describe_run(info, tracker.session))
+    extra = interpolated_columns(rows) if args.interpolate_occlusions else {}
+    folder.write_run(rows, describe_run(info, tracker.session), extra)
     metrics = measure(score_frames(rows, recording.truth(), args.max_diff))
     folder.write_metrics(metrics)
     show(comparison({variant.name: metrics}))

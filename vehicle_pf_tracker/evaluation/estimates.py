@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
+from types import MappingProxyType
 
 from vehicle_pf_tracker.evaluation.output_files import write_text
 from vehicle_pf_tracker.features.errors import InputError
@@ -85,8 +86,12 @@ COLUMNS = tuple(field.name for field in fields(EstimateRow))
 _NUMBERS = ("x", "y", "width", "height", "confidence", "n_eff", "step_ms")
 
 
-def write_estimates(path: Path, rows: Iterable[EstimateRow]) -> None:
-    """Write `rows` to the file `path`.
+def write_estimates(
+    path: Path,
+    rows: Iterable[EstimateRow],
+    extra: Mapping[str, Sequence[float | None]] = MappingProxyType({}),
+) -> None:
+    """Write `rows` to the file `path`, with the columns `extra` after their own.
 
     Raises
     ------
@@ -95,13 +100,14 @@ def write_estimates(path: Path, rows: Iterable[EstimateRow]) -> None:
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows([_text(value) for value in astuple(row)] for row in rows)
+    writer.writerow([*COLUMNS, *extra])
+    for row, *more in zip(rows, *extra.values(), strict=True):
+        writer.writerow([_text(value) for value in (*astuple(row), *more)])
     write_text(path, text.getvalue())
 
 
 def read_estimates(path: Path) -> list[EstimateRow]:
-    """Read the rows of the file `path`.
+    """Read the rows of the file `path`; columns after those of `EstimateRow` are passed over.
 
     Raises
     ------
@@ -114,14 +120,15 @@ def read_estimates(path: Path) -> list[EstimateRow]:
         reason = getattr(error, "strerror", None) or "it is no text"
         raise InputError(f"cannot read the estimates {path}: {reason}") from error
     header, *lines = list(csv.reader(io.StringIO(text))) or [[]]
-    if tuple(header) != COLUMNS:
+    if tuple(header[: len(COLUMNS)]) != COLUMNS:
         raise InputError(f"the estimates {path} must begin with the line {','.join(COLUMNS)}")
-    return [_read_row(path, number, line) for number, line in enumerate(lines, start=2)]
+    return [_read_row(path, number, header, line) for number, line in enumerate(lines, start=2)]
 
 
-def _read_row(path: Path, number: int, line: list[str]) -> EstimateRow:
+def _read_row(path: Path, number: int, header: list[str], line: list[str]) -> EstimateRow:
     try:
-        named = dict(zip(COLUMNS, line, strict=True))
+        named = dict(zip(header, line, strict=True))
+        named = {name: named[name] for name in COLUMNS}
         return EstimateRow.from_scalars(int(named["frame"]), int(named["stamp_ns"]), named)
     except ValueError as error:
         raise InputError(f"line {number} of the estimates {path} is broken: {error}") from error

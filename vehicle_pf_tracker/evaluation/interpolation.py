@@ -17,9 +17,6 @@ from vehicle_pf_tracker.trackers.estimate import Mode
 
 Point: TypeAlias = tuple[float, float]
 
-COLUMNS = ("x_interpolated", "y_interpolated")
-"""Names of the two columns."""
-
 
 def interpolate_occlusions(rows: Sequence[EstimateRow]) -> list[Point | None]:
     """Replace the positions of every stretch without TRACKING by a straight line.
@@ -44,6 +41,15 @@ def interpolate_occlusions(rows: Sequence[EstimateRow]) -> list[Point | None]:
         for index in range(begin + 1, end):
             points[index] = _between(rows[begin], rows[end], rows[index].stamp_ns)
     return points
+
+
+def interpolated_columns(rows: Sequence[EstimateRow]) -> dict[str, list[float | None]]:
+    """Give the path of `interpolate_occlusions` as columns for `estimates.csv`, by name."""
+    points = interpolate_occlusions(rows)
+    return {
+        "x_interpolated": [None if point is None else point[0] for point in points],
+        "y_interpolated": [None if point is None else point[1] for point in points],
+    }
 
 
 def _between(first: EstimateRow, last: EstimateRow, stamp_ns: int) -> Point | None:

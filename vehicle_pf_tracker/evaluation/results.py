@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow, write_estimates
@@ -30,12 +31,17 @@ class ResultFolder:
     def __init__(self, path: Path) -> None:
         self.path = make_folder(path)
 
-    def write_run(self, rows: Sequence[EstimateRow], description: Mapping[str, Any]) -> None:
-        """Write `estimates.csv`, and the description to `run.json`."""
+    def write_run(
+        self,
+        rows: Sequence[EstimateRow],
+        description: Mapping[str, Any],
+        extra: Mapping[str, Sequence[float | None]] = MappingProxyType({}),
+    ) -> None:
+        """Write `estimates.csv` with the columns `extra`, and the description to `run.json`."""
         for name in (ESTIMATES, METRICS, RUN):
             with output_errors(self.path / name):
                 (self.path / name).unlink(missing_ok=True)
-        write_estimates(self.path / ESTIMATES, rows)
+        write_estimates(self.path / ESTIMATES, rows, extra)
         write_json(self.path / RUN, description)
 
     def write_metrics(self, metrics: Metrics) -> None:

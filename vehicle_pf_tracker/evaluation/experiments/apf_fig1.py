@@ -115,7 +115,7 @@ def _verdict(grids: Mapping[str, Grid], size: Size) -> Verdict:
             ),
         ),
         f"{SETTING} No bar; speeds from {speeds[0]} to {speeds[-1]} and sigma from {sigmas[0]} to "
-        f"{sigmas[-1]} px/frame, {len(size.seeds)} seeds; the grey levels are means over the seeds.",
+        f"{sigmas[-1]} px/frame, {len(size.seeds)} seeds; grey levels are means over the seeds.",
     )
 
 

@@ -55,7 +55,8 @@ def report(results: Results, size: Size) -> Report:
                             "our reading",
                             Holds.of(hidden > 0),
                             f"less than a tenth of the {VEHICLE_WIDTH:g} px vehicle is seen in "
-                            f"{hidden} frames, a part of it in {stretch[1] - stretch[0] + 1}",
+                            f"{hidden} of {len(truths)} frames, and the bar covers a part of it or "
+                            f"all in {stretch[1] - stretch[0] + 1}",
                         ),
                     ),
                 ),
@@ -67,7 +68,7 @@ def report(results: Results, size: Size) -> Report:
 
 def _figure(shown: SceneFrame) -> Figure:
     height, width = shown.frame.shape[:2]
-    figure = Figure(figsize=(6, 6 * height / width + 0.4), layout="constrained")
+    figure = Figure(figsize=(5, 5 * height / width + 0.2), layout="constrained")
     axes = figure.add_subplot()
     axes.imshow(shown.frame, extent=(0, width, height, 0))
     x, y = width / 2, height * 0.25

@@ -15,6 +15,7 @@ from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Rep
 from vehicle_pf_tracker.evaluation.experiments.numbers import counted, median_and_range, share
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.evaluation.interpolation import interpolate_occlusions
+from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.plots import OUTLINE
 from vehicle_pf_tracker.evaluation.scores import Scores
 from vehicle_pf_tracker.features.frame import Frame
@@ -24,7 +25,7 @@ _Judge: TypeAlias = Callable[[str, Sequence[Result], Sequence[Scores]], Finding]
 
 _PLACE = "section IV, figure 5"
 _EARLY = 3
-_ROWS_AROUND = 75
+_ROWS_AROUND = 60
 """Rows of the image shown above and below the vehicle's path."""
 
 
@@ -45,22 +46,28 @@ def report(results: Results, size: Size) -> Report:
 
 
 def _figure(scored: Scores) -> Figure:
-    first, _ = video3.total_span(scored)
-    middle = next(f.row.frame for f in scored.frames if f.row.frame > first and not f.hidden)
+    sign, coach = _hidden_stretches(scored)
     shown = {
-        f"(a) frame {_EARLY}": _EARLY,
-        f"(b) frame {(first + middle) // 2}, hidden by the sign": (first + middle) // 2,
-        f"(c) frame {len(scored.frames)}, after the coach": len(scored.frames),
+        _EARLY: "in the clear",
+        sum(sign) // 2: "hidden by the sign",
+        sum(coach) // 2: "hidden by the coach",
+        len(scored.frames): "in the clear again",
     }
-    frames = _frames(set(shown.values()))
-    figure = Figure(figsize=(9, 9.6), layout="constrained")
-    for ax, (title, number) in zip(figure.subplots(3, 1, sharex=True), shown.items(), strict=True):
+    frames = _frames(set(shown))
+    figure = Figure(figsize=(7, 8), layout="constrained")
+    for ax, (number, what) in zip(figure.subplots(4, 1, sharex=True), shown.items(), strict=True):
         _draw(ax, frames[number], scored, number)
-        ax.set(title=title, ylabel="y, px")
+        ax.set_title(f"frame {number}, {what}", fontsize="medium")
+        ax.set(ylabel="y, px")
     ax.set(xlabel="x, px")
     handles, labels = ax.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
     return figure
+
+
+def _hidden_stretches(scored: Scores) -> list[tuple[int, int]]:
+    """Return the first and the last frame of each total occlusion."""
+    return [(o.first_frame, o.last_frame) for o in measure(scored).occlusions]
 
 
 def _frames(numbers: set[int]) -> dict[int, Frame]:
@@ -72,7 +79,8 @@ def _frames(numbers: set[int]) -> dict[int, Frame]:
 def _draw(axes: Axes, frame: Frame, scored: Scores, until: int) -> None:
     """Draw the path up to a frame: the estimates dotted, with the interpolated path solid."""
     height, width = frame.shape[:2]
-    axes.imshow(frame, extent=(0, width, height, 0))
+    # In grey, so that the paths stand out.
+    axes.imshow(frame.mean(axis=2), cmap="gray", vmin=0, vmax=255, extent=(0, width, height, 0))
     rows = [f.row for f in scored.frames[:until]]
     path = [row.position for row in rows if row.position is not None]
     line = [point for point in interpolate_occlusions(rows) if point is not None]
