@@ -1,0 +1,174 @@
+"""Images and targets as cameras, networks and people should not send them, made from a seed."""
+
+from __future__ import annotations
+
+import array
+import random
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+from geometry_msgs.msg import Point32, PointStamped, PolygonStamped
+from sensor_msgs.msg import Image, RegionOfInterest
+from std_msgs.msg import Header
+
+from vehicle_pf_tracker.features.encodings import ENCODINGS
+from vehicle_pf_tracker.ros.messages import image_message
+
+Frame = npt.NDArray[np.uint8]
+
+WIDTH, HEIGHT = 64, 48
+TARGET = (4.0, 18.0, 12.0, 10.0)
+PERIOD_NS = 33_000_000
+FIRST_NS = 1_700_000_000_000_000_000
+DAY_NS = 86_400_000_000_000
+_TURN = 36
+_LARGEST = 2**32 - 1
+_NUMBERS = (0.0, -1.0, 31.5, 1e30, -1e30, float("nan"), float("inf"), float("-inf"))
+
+
+def header_at(nanoseconds: int, frame_id: str = "camera") -> Header:
+    """Make a header with this stamp."""
+    made = Header(frame_id=frame_id)
+    made.stamp.sec, made.stamp.nanosec = divmod(nanoseconds, 1_000_000_000)
+    return made
+
+
+class Drive:
+    """Good images for ever: a vehicle that drives to and fro over noise."""
+
+    def __init__(self) -> None:
+        noise = np.random.default_rng(7).integers(90, 130, (HEIGHT, WIDTH, 3), np.uint8)
+        self._frames = [self._frame(noise, offset) for offset in range(_TURN)]
+
+    def frame(self, number: int) -> Frame:
+        """Frame of the image `number`."""
+        place = number % (2 * _TURN - 2)
+        return self._frames[min(place, 2 * _TURN - 2 - place)]
+
+    def image(self, number: int) -> Image:
+        """Make the image `number`."""
+        return image_message(header_at(FIRST_NS + number * PERIOD_NS), self.frame(number))
+
+    @staticmethod
+    def _frame(noise: Frame, offset: int) -> Frame:
+        frame = noise.copy()
+        x, y, width, height = (int(value) for value in TARGET)
+        frame[y : y + height, x + offset : x + offset + width] = (200, 40, 30)
+        frame[y : y + height // 2, x + offset : x + offset + width] = (30, 60, 210)
+        return frame
+
+
+class Faults:
+    """Draws faulty images and targets.
+
+    What looks like a real change of the stream, another size or another time, is never drawn twice
+    in a row: two that agree are believed, as they have to be.
+    """
+
+    def __init__(self, drive: Drive, seed: int) -> None:
+        self._drive = drive
+        self._random = random.Random(seed)
+        self._kinds: list[Callable[[Image], None]] = [
+            self._encoding, self._cut, self._no_size, self._huge, self._step, self._pixels,
+            self._flat, self._mixed, self._other_size, self._other_time,
+        ]  # fmt: skip
+        self._looks_real = False
+
+    def image(self, number: int) -> Image:
+        """Draw a faulty image that comes between the good ones `number` - 1 and `number`."""
+        image = self._drive.image(number)
+        image.header = header_at(FIRST_NS + number * PERIOD_NS - PERIOD_NS // 2)
+        last = len(self._kinds) - (2 if self._looks_real else 0)
+        kind = self._random.randrange(last)
+        self._looks_real = kind >= len(self._kinds) - 2
+        self._kinds[kind](image)
+        return image
+
+    def good(self) -> None:
+        """Say that a good image was sent, after which anything may look real."""
+        self._looks_real = False
+
+    def target(self) -> RegionOfInterest | PolygonStamped | PointStamped:
+        """Draw a target that may be anything, a usable one at times."""
+        return self._random.choice([self._region, self._polygon, self._point])()
+
+    def _bytes(self, count: int) -> array.array[int]:
+        return array.array("B", self._random.randbytes(count))
+
+    def _encoding(self, image: Image) -> None:
+        junk = (
+            "",
+            "rgb",
+            "RGB8",
+            "32FC1",
+            "rgb8; DROP",
+            "x" * 1000,
+            "\u00fc8",
+            "bayer_rggb",
+            "8UC3",
+        )
+        image.encoding = self._random.choice(junk)
+
+    def _cut(self, image: Image) -> None:
+        image.data = self._bytes(self._random.randrange(len(image.data)))
+
+    def _no_size(self, image: Image) -> None:
+        image.height = self._random.choice((0, image.height))
+        image.width = 0 if image.height else self._random.choice((0, image.width))
+
+    def _huge(self, image: Image) -> None:
+        image.height = self._random.choice((image.height, 32_767, _LARGEST))
+        image.width = self._random.choice((32_767, 65_535, 2**31, _LARGEST))
+        image.step = self._random.choice((image.step, _LARGEST, 3 * image.width % 2**32))
+
+    def _step(self, image: Image) -> None:
+        wrong = (0, 1, image.step - 1, image.step + 1, 2**31, _LARGEST)
+        image.step = self._random.choice(wrong)
+
+    def _pixels(self, image: Image) -> None:
+        image.data = self._bytes(len(image.data))
+
+    def _flat(self, image: Image) -> None:
+        image.data = array.array("B", bytes([self._random.choice((0, 128, 255))]) * len(image.data))
+
+    def _mixed(self, image: Image) -> None:
+        draw = self._random
+        image.encoding = draw.choice([*ENCODINGS, "", "mono32"])
+        image.height, image.width = draw.randrange(48), draw.randrange(64)
+        image.step = draw.choice((0, image.width, 3 * image.width, 4 * image.width + 5))
+        image.is_bigendian = draw.choice((0, 1, 255))
+        image.data = self._bytes(draw.choice((0, image.step * image.height, 5, 20_000)))
+
+    def _other_size(self, image: Image) -> None:
+        image.height, image.width = self._random.randrange(1, 48), self._random.randrange(1, 64)
+        image.step = 3 * image.width
+        image.data = self._bytes(image.step * image.height)
+
+    def _other_time(self, image: Image) -> None:
+        now = FIRST_NS
+        early, late = -(2**31) * 10**9, (2**31 - 1) * 10**9
+        choices = (0, early, late, now - DAY_NS, now - 1, self._random.randrange(early, now))
+        image.header = header_at(self._random.choice(choices))
+
+    def _region(self) -> RegionOfInterest:
+        numbers = [self._random.choice((0, 1, 5, 20, 63, 64, 2**31, _LARGEST)) for _ in range(4)]
+        return RegionOfInterest(
+            x_offset=numbers[0], y_offset=numbers[1], width=numbers[2], height=numbers[3],
+            do_rectify=bool(numbers[0] % 2),
+        )  # fmt: skip
+
+    def _number(self) -> float:
+        draw = self._random
+        return draw.choice(_NUMBERS) if draw.random() < 0.3 else draw.uniform(-20, 80)
+
+    def _polygon(self) -> PolygonStamped:
+        made = PolygonStamped(header=header_at(0, self._random.choice(("", "camera", "map"))))
+        count = self._random.choice((0, 1, 2, 3, 4, 100))
+        made.polygon.points = [Point32(x=self._number(), y=self._number()) for _ in range(count)]
+        return made
+
+    def _point(self) -> PointStamped:
+        made = PointStamped(header=header_at(0, self._random.choice(("", "camera", "map"))))
+        made.point.x, made.point.y, made.point.z = (self._number() for _ in range(3))
+        return made

@@ -1,0 +1,159 @@
+"""A tracker node in a process of its own, and somebody who talks to it in lock-step."""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from faulty_messages import HEIGHT, TARGET, WIDTH
+from geometry_msgs.msg import PointStamped, PolygonStamped
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import Image, RegionOfInterest
+
+TIMEOUT = 20.0
+TRACKED = {"TRACKING", "OCCLUDED", "LOST"}
+_TOPICS = {RegionOfInterest: "set_target", PolygonStamped: "set_box", PointStamped: "clicked_point"}
+
+
+class NodeProcess:
+    """Starts the node of `variant`, and ends it.
+
+    Parameters
+    ----------
+    variant : str
+        Name of the variant.
+    *assignments : str
+        Parameters, ``name:=value``.
+    """
+
+    def __init__(self, variant: str, *assignments: str) -> None:
+        os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+        box = zip(("x", "y", "width", "height"), TARGET, strict=True)
+        words = [*(f"target.{name}:={value}" for name, value in box), *assignments]
+        self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - open as long as the node
+        code = (
+            f"from vehicle_pf_tracker.ros.executables import {variant}_tracker as main;"
+            "raise SystemExit(main())"
+        )
+        arguments = [word for one in words for word in ("-p", one)]
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", code, "--ros-args", *arguments],
+            stdout=self._log,
+            stderr=subprocess.STDOUT,
+        )
+        rclpy.init()
+        self._node = rclpy.create_node("tester")
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self._node)
+        self.modes: list[DiagnosticArray] = []
+        own = f"/{variant}_tracker"
+        self._node.create_subscription(
+            DiagnosticArray, f"{own}/mode", self.modes.append, QoSProfile(depth=100)
+        )
+        self._camera = self._node.create_publisher(Image, "image", QoSProfile(depth=100))
+        self._targets = {
+            kind: self._node.create_publisher(kind, f"{own}/{name}", 10)
+            for kind, name in _TOPICS.items()
+        }
+        self._own = own
+
+    def begin(self, image: Image) -> None:
+        """Wait until the node answers `image`, which is sent again and again."""
+        deadline = time.monotonic() + TIMEOUT
+        while not self.modes:
+            if time.monotonic() > deadline:
+                raise SystemExit(f"the node does not answer:\n{self.log}")
+            self.publish(image)
+            self.spin(0.2)
+        self.spin(0.5)
+        self.modes.clear()
+
+    def publish(self, message: object) -> None:
+        """Send an image or a target."""
+        publisher = self._targets.get(type(message), self._camera)
+        publisher.publish(message)
+
+    def spin(self, seconds: float) -> None:
+        """Listen for this long."""
+        deadline = time.monotonic() + seconds
+        while (left := deadline - time.monotonic()) > 0:
+            self._executor.spin_once(timeout_sec=left)
+
+    def take(self, image: Image) -> DiagnosticArray:
+        """Send an image and return its one answer."""
+        self.modes.clear()
+        self.publish(image)
+        deadline = time.monotonic() + TIMEOUT
+        while not self.modes:
+            self._executor.spin_once(timeout_sec=0.5)
+            if time.monotonic() > deadline or self._process.poll() is not None:
+                raise SystemExit(f"no answer to the image {_brief(image)}\n{self.log}")
+        return self.modes[0]
+
+    @property
+    def resident(self) -> int:
+        """Resident memory of the node in bytes."""
+        pages = int(Path("/proc", str(self._process.pid), "statm").read_text().split()[1])
+        return pages * os.sysconf("SC_PAGE_SIZE")
+
+    @property
+    def log(self) -> str:
+        """The last of what the node said."""
+        self._log.seek(0)
+        return self._log.read()[-4000:]
+
+    def end(self) -> None:
+        """End the node with a signal.
+
+        Raises
+        ------
+        SystemExit
+            If it says something of a traceback, or does not end well.
+        """
+        self._process.send_signal(signal.SIGINT)
+        status = self._process.wait(TIMEOUT)
+        self._executor.shutdown()
+        rclpy.try_shutdown()
+        self._log.seek(0)
+        text = self._log.read()
+        if status or "Traceback" in text:
+            raise SystemExit(f"the node ended with {status}:\n{text[-4000:]}")
+
+
+def check(answer: DiagnosticArray, image: Image, *, is_good: bool) -> str:
+    """Return the mode of an answer that is right.
+
+    Raises
+    ------
+    SystemExit
+        If a good image has no estimate, or an answer is wrong in itself.
+    """
+    status = answer.status[0]
+    values = {item.key: item.value for item in status.values}
+    mode: str = status.message
+    if mode in TRACKED:
+        x, y, confidence = (float(values[name]) for name in ("x", "y", "confidence"))
+        sound = all(map(math.isfinite, (x, y, confidence))) and 0 <= confidence <= 1
+        sound = sound and 0 <= x <= WIDTH and 0 <= y <= HEIGHT
+    else:
+        sound = mode == "REJECTED" and not is_good and bool(values.get("reason"))
+        sound = sound and not values["reason"].startswith("unexpected")
+    if not sound or answer.header != image.header:
+        raise SystemExit(f"wrong: {mode} {values}\nfor the image {_brief(image)}")
+    return mode
+
+
+def _brief(image: Image) -> str:
+    return (
+        f"{image.width}x{image.height} {image.encoding!r} step {image.step} "
+        f"{len(image.data)} bytes at {image.header.stamp.sec}.{image.header.stamp.nanosec:09d}"
+    )
