@@ -35,10 +35,16 @@ def header_at(nanoseconds: int, frame_id: str = "camera") -> Header:
 
 
 class Drive:
-    """Good images for ever: a vehicle that drives to and fro over noise."""
+    """Good images for ever: a vehicle that drives to and fro over noise.
 
-    def __init__(self) -> None:
-        noise = np.random.default_rng(7).integers(90, 130, (HEIGHT, WIDTH, 3), np.uint8)
+    Parameters
+    ----------
+    width, height : int
+        Size in px; the vehicle stays in the top left part of `WIDTH` x `HEIGHT`.
+    """
+
+    def __init__(self, width: int = WIDTH, height: int = HEIGHT) -> None:
+        noise = np.random.default_rng(7).integers(90, 130, (height, width, 3), np.uint8)
         self._frames = [self._frame(noise, offset) for offset in range(_TURN)]
 
     def frame(self, number: int) -> Frame:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from faulty_messages import HEIGHT, TARGET, WIDTH
+from faulty_messages import TARGET
 from geometry_msgs.msg import PointStamped, PolygonStamped
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile
@@ -143,7 +143,7 @@ def check(answer: DiagnosticArray, image: Image, *, is_good: bool) -> str:
     if mode in TRACKED:
         x, y, confidence = (float(values[name]) for name in ("x", "y", "confidence"))
         sound = all(map(math.isfinite, (x, y, confidence))) and 0 <= confidence <= 1
-        sound = sound and 0 <= x <= WIDTH and 0 <= y <= HEIGHT
+        sound = sound and 0 <= x <= image.width and 0 <= y <= image.height
     else:
         sound = mode == "REJECTED" and not is_good and bool(values.get("reason"))
         sound = sound and not values["reason"].startswith("unexpected")

@@ -1,0 +1,135 @@
+"""Run a node at a camera's rate with faults mixed in, and see whether it stays as it was.
+
+    python benchmarks/soak.py --minutes 10
+
+prints images in and out, the time from sending a good image to its answer, and how the resident
+memory went. Exit status 1 if a good image stayed unanswered or had no estimate.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import time
+from collections import Counter
+
+import numpy as np
+from faulty_messages import Drive, Faults
+from node_process import NodeProcess, check
+from sensor_msgs.msg import Image
+
+from vehicle_pf_tracker.ros.messages import stamp_ns
+
+MB = 1e6
+
+
+class Soak:
+    """Images at a rate, answers as they come.
+
+    Parameters
+    ----------
+    node : NodeProcess
+        The node.
+    rate : float
+        Good images per second.
+    share : float
+        Of faulty images and targets, in addition to the good ones.
+    size : (int, int)
+        Width and height of the good images in px.
+    seed : int
+        Of the faults.
+    """
+
+    def __init__(
+        self, node: NodeProcess, rate: float, share: float, size: tuple[int, int], seed: int
+    ) -> None:
+        self._node, self._rate, self._share = node, rate, share
+        self._drive = Drive(*size)
+        self._faults = Faults(self._drive, seed)
+        self._random = random.Random(seed)
+        self.sent: dict[int, tuple[Image, float]] = {}
+        self.faulty: dict[int, Image] = {}
+        self.latencies: list[float] = []
+        self.sizes: list[tuple[float, int]] = []
+        self.answers: Counter[str] = Counter()
+
+    def run(self, seconds: float) -> None:
+        """Send for this long, and wait for the last answers."""
+        began = time.monotonic()
+        for number in range(1, int(seconds * self._rate)):
+            self._disturb(number)
+            image = self._drive.image(number)
+            self.sent[stamp_ns(image.header)] = image, time.monotonic()
+            self._node.publish(image)
+            self._faults.good()
+            while (left := began + number / self._rate - time.monotonic()) > 0:
+                self._node.spin(min(left, 0.002))
+                self._hear()
+            if number % round(self._rate) == 0:
+                self.sizes.append((time.monotonic() - began, self._node.resident))
+        for _ in range(50):
+            self._node.spin(0.02)
+            self._hear()
+
+    def _disturb(self, number: int) -> None:
+        if self._random.random() >= self._share:
+            return
+        if self._random.random() < 0.2:
+            self._node.publish(self._faults.target())
+            self.answers["targets"] += 1
+            return
+        image = self._faults.image(number)
+        self.faulty[stamp_ns(image.header)] = image
+        self._node.publish(image)
+
+    def _hear(self) -> None:
+        now = time.monotonic()
+        while self._node.modes:
+            answer = self._node.modes.pop(0)
+            stamp = stamp_ns(answer.header)
+            kind = "good" if stamp in self.sent else "faulty"
+            if kind == "good":
+                image, when = self.sent.pop(stamp)
+                self.latencies.append(now - when)
+            else:
+                image = self.faulty[stamp]
+            self.answers[f"{kind}: {check(answer, image, is_good=kind == 'good')}"] += 1
+
+
+def report(soak: Soak) -> None:
+    """Print what came of it."""
+    print(f"good images without an answer: {len(soak.sent)}")
+    for answer, count in sorted(soak.answers.items()):
+        print(f"  {answer:18} {count}")
+    middle, high, most = np.percentile(np.array(soak.latencies) * 1e3, [50, 95, 99])
+    print(f"answers to good images after {middle:.1f} ms (p50), {high:.1f} (p95), {most:.1f} (p99)")
+    times, sizes = np.array(soak.sizes).T
+    settled = times >= min(60.0, times[-1] / 2)
+    slope = np.polyfit(times[settled] / 60, sizes[settled] / MB, 1)[0]
+    print(
+        f"resident memory {sizes[settled][0] / MB:.1f} MB when settled, {sizes[-1] / MB:.1f} MB at "
+        f"the end ({100 * (sizes[-1] / sizes[settled][0] - 1):+.1f} %), {slope:+.3f} MB a minute"
+    )
+
+
+def main() -> None:
+    """Run as asked."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--variant", default="apf")
+    parser.add_argument("--minutes", type=float, default=10.0)
+    parser.add_argument("--rate", type=float, default=30.0, help="good images per second")
+    parser.add_argument("--faults", type=float, default=0.3, help="share of faulty messages")
+    parser.add_argument("--size", type=int, nargs=2, default=(320, 240), metavar=("W", "H"))
+    parser.add_argument("--seed", type=int, default=0)
+    args = parser.parse_args()
+    node = NodeProcess(args.variant, "queue_depth:=10")
+    soak = Soak(node, args.rate, args.faults, tuple(args.size), args.seed)
+    node.begin(Drive(*args.size).image(0))
+    soak.run(args.minutes * 60)
+    report(soak)
+    node.end()
+    raise SystemExit(1 if soak.sent else 0)
+
+
+if __name__ == "__main__":
+    main()
