@@ -107,3 +107,14 @@ def test_the_target_of_the_command_line_goes_before_that_of_the_file(run, bag):
     words = [f"--set=target.{name}=10" for name in ("x", "y", "width", "height")]
     assert run(bag, *words)[2]["target"] == [10.0] * 4
     assert run(bag, *words, "--target", TARGET)[2]["target"] == [8.0, 24.0, 16.0, 12.0]
+
+
+def test_the_path_through_occlusions_is_written_on_request_and_not_scored(run, bag, tmp_path):
+    plain = run(bag)[1]
+    header = (tmp_path / "out" / "estimates.csv").read_text().splitlines()[0]
+    assert header.endswith("step_ms")
+    rows, metrics, _ = run(bag, "--interpolate-occlusions")
+    header, first, *_ = (tmp_path / "out" / "estimates.csv").read_text().splitlines()
+    assert header.endswith("step_ms,x_interpolated,y_interpolated")
+    assert first.endswith(f",{rows[0].x},{rows[0].y}")
+    assert metrics["rmse_px"] == plain["rmse_px"]

@@ -1,0 +1,114 @@
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.cli.reproduce_progress import telling
+from vehicle_pf_tracker.evaluation.experiments.running import Progress
+
+WORDS = ["--quick", "--seeds", "1", "--first-seed", "100", "--workers", "1"]
+
+
+def reproduce(out, *words):
+    return main(["reproduce", *words, *WORDS, "-o", str(out)])
+
+
+def test_the_experiments_are_listed(capsys):
+    assert main(["reproduce", "--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.partition(":")[0] for line in lines][:3] == ["apf-fig1", "apf-fig2", "apf-fig3"]
+
+
+def test_one_experiment_writes_its_folder_and_the_page(tmp_path, capsys):
+    out, docs = tmp_path / "out", tmp_path / "docs"
+    assert reproduce(out, "apf-fig4", "--docs", str(docs)) == 0
+    assert {path.name for path in (out / "apf-fig4").iterdir()} == {
+        "data.csv", "figure.svg", "figure.png", "verdict.json", "verdict.md",
+    }  # fmt: skip
+    page = (docs / "reproduction.md").read_text()
+    (picture,) = (docs / "images" / "reproduction").iterdir()
+    assert f"(images/reproduction/{picture.name})" in page
+    sizes = [(out / "apf-fig4" / f"figure.{kind}").stat().st_size for kind in ("svg", "png")]
+    assert picture.stat().st_size == min(sizes)
+    word = json.loads((out / "apf-fig4" / "verdict.json").read_text())["holds"]
+    assert f"and 30 px | {word} |" in page
+    assert f"apf-fig4: {word}  (" in capsys.readouterr().out
+
+
+def test_the_page_has_what_was_made_before_too_and_a_second_time_nothing_changes(tmp_path):
+    out, docs = tmp_path / "out", tmp_path / "docs"
+    reproduce(out, "apf-fig4")
+    reproduce(out, "apf-fig2", "--docs", str(docs))
+    page = (docs / "reproduction.md").read_text()
+    assert page.index("## apf-fig2") < page.index("## apf-fig4")
+    files = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    reproduce(out, "apf-fig2", "apf-fig4", "--docs", str(docs))
+    assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == files
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "said"),
+    [
+        ([], 2, "--list"),
+        (["apf-fig99"], 1, "'apf-fig99'"),
+        (["apf-fig2", "--workers", "0"], 2, "'0' is no whole number from 1 on"),
+        (["apf-fig2", "--seeds", "two"], 2, "'two' is no whole number from 1 on"),
+        (["apf-fig2", "--first-seed", "-1"], 2, "first-seed"),
+    ],
+)
+def test_mistakes_are_told(words, status, said, capsys, tmp_path):
+    assert main(["reproduce", *words, "-o", str(tmp_path)]) == status
+    assert said in capsys.readouterr().err
+
+
+def test_an_output_that_is_a_file_is_told(tmp_path, capsys):
+    (tmp_path / "out").write_text("")
+    assert reproduce(tmp_path / "out", "apf-fig2") == 1
+    assert "is a file" in capsys.readouterr().err
+
+
+def told(*progresses):
+    now = iter(range(0, 1000, 10))
+    stream = io.StringIO()
+    with telling("apf-fig1", stream, lambda: next(now)) as on_progress:
+        for progress in progresses:
+            on_progress(progress)
+    return stream.getvalue().splitlines()
+
+
+def test_progress_tells_done_running_and_time_left():
+    lines = told(
+        Progress(0, 8, ("bar PF",)), Progress(4, 8, ("bar PF", "bar MS")), Progress(8, 8, ())
+    )
+    assert lines == [
+        "apf-fig1: 0 of 8 runs done, time left unknown; running bar PF",
+        "apf-fig1: 4 of 8 runs done, about 20 s left; running bar PF, bar MS",
+        "apf-fig1: 8 of 8 runs done, about 0 s left",
+    ]
+
+
+@pytest.mark.slow
+def test_what_was_killed_continues_and_comes_out_the_same(tmp_path):
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    assert reproduce(whole, "apf-fig3") == 0
+    code = "import sys; from vehicle_pf_tracker.cli.main import main; sys.exit(main())"
+    command = [sys.executable, "-c", code, "reproduce", "apf-fig3", "-o", str(killed)]
+    words = [*WORDS[:-1], "2"]
+    process = subprocess.Popen([*command, *words], start_new_session=True)
+    cells = killed / "cells.jsonl"
+    deadline = time.monotonic() + 60
+    while not (cells.exists() and cells.stat().st_size) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    assert cells.stat().st_size > 0
+    assert not (killed / "apf-fig3").exists()
+    assert reproduce(killed, "apf-fig3") == 0
+    for file in ("data.csv", "figure.svg", "verdict.json"):
+        assert (killed / "apf-fig3" / file).read_bytes() == (whole / "apf-fig3" / file).read_bytes()
