@@ -68,8 +68,8 @@ class Drive:
 class Faults:
     """Draws faulty images and targets.
 
-    What looks like a real change of the stream, another size or another time, is never drawn twice
-    in a row: two that agree are believed, as they have to be.
+    What looks like a real change of the stream, another size or another time, is not drawn twice
+    between good images: two that agree are believed, as they have to be.
     """
 
     def __init__(self, drive: Drive, seed: int) -> None:
@@ -87,7 +87,7 @@ class Faults:
         image.header = header_at(FIRST_NS + number * PERIOD_NS - PERIOD_NS // 2)
         last = len(self._kinds) - (2 if self._looks_real else 0)
         kind = self._random.randrange(last)
-        self._looks_real = kind >= len(self._kinds) - 2
+        self._looks_real = self._looks_real or kind >= len(self._kinds) - 2
         self._kinds[kind](image)
         return image
 

@@ -17,7 +17,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from faulty_messages import Drive, Faults
-from node_process import NodeProcess, check
+from node_process import NodeProcess
 
 MINUTE = 60.0
 MB = 1e6
@@ -57,7 +57,7 @@ class Fuzzing:
         (self.good if draw < 0.5 else self.target if draw < 0.6 else self.faulty)()
 
     def _take(self, image: object, number: int, *, is_good: bool) -> None:
-        mode = check(self.node.take(image), image, is_good=is_good)
+        mode = self.node.check(self.node.take(image), image, is_good=is_good)
         self.answers[f"{'good' if is_good else 'faulty'}: {mode}"] += 1
 
 

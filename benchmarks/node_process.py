@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import math
+import atexit
 import os
 import signal
 import subprocess
 import sys
 import tempfile
 import time
+from collections import deque
+from collections.abc import Mapping
 from pathlib import Path
 
 import rclpy
@@ -50,6 +52,7 @@ class NodeProcess:
             stdout=self._log,
             stderr=subprocess.STDOUT,
         )
+        atexit.register(self._process.kill)
         rclpy.init()
         self._node = rclpy.create_node("tester")
         self._executor = SingleThreadedExecutor()
@@ -64,7 +67,7 @@ class NodeProcess:
             kind: self._node.create_publisher(kind, f"{own}/{name}", 10)
             for kind, name in _TOPICS.items()
         }
-        self._own = own
+        self._sent: deque[object] = deque(maxlen=8)
 
     def begin(self, image: Image) -> None:
         """Wait until the node answers `image`, which is sent again and again."""
@@ -79,6 +82,7 @@ class NodeProcess:
 
     def publish(self, message: object) -> None:
         """Send an image or a target."""
+        self._sent.append(message)
         publisher = self._targets.get(type(message), self._camera)
         publisher.publish(message)
 
@@ -98,6 +102,21 @@ class NodeProcess:
             if time.monotonic() > deadline or self._process.poll() is not None:
                 raise SystemExit(f"no answer to the image {_brief(image)}\n{self.log}")
         return self.modes[0]
+
+    def check(self, answer: DiagnosticArray, image: Image, *, is_good: bool) -> str:
+        """Return the mode of an answer that is right.
+
+        Raises
+        ------
+        SystemExit
+            If a good image has no estimate, or an answer is wrong in itself.
+        """
+        status = answer.status[0]
+        values = {item.key: item.value for item in status.values}
+        if not _is_right(status.message, values, image, is_good) or answer.header != image.header:
+            history = "\n".join(map(_brief, self._sent))
+            raise SystemExit(f"wrong: {values}\nfor {_brief(image)}, the last of\n{history}")
+        return str(status.message)
 
     @property
     def resident(self) -> int:
@@ -129,31 +148,19 @@ class NodeProcess:
             raise SystemExit(f"the node ended with {status}:\n{text[-4000:]}")
 
 
-def check(answer: DiagnosticArray, image: Image, *, is_good: bool) -> str:
-    """Return the mode of an answer that is right.
-
-    Raises
-    ------
-    SystemExit
-        If a good image has no estimate, or an answer is wrong in itself.
-    """
-    status = answer.status[0]
-    values = {item.key: item.value for item in status.values}
-    mode: str = status.message
-    if mode in TRACKED:
-        x, y, confidence = (float(values[name]) for name in ("x", "y", "confidence"))
-        sound = all(map(math.isfinite, (x, y, confidence))) and 0 <= confidence <= 1
-        sound = sound and 0 <= x <= image.width and 0 <= y <= image.height
-    else:
-        sound = mode == "REJECTED" and not is_good and bool(values.get("reason"))
-        sound = sound and not values["reason"].startswith("unexpected")
-    if not sound or answer.header != image.header:
-        raise SystemExit(f"wrong: {mode} {values}\nfor the image {_brief(image)}")
-    return mode
+def _is_right(mode: str, values: Mapping[str, str], image: Image, is_good: bool) -> bool:
+    if mode not in TRACKED:
+        reason = values.get("reason", "unexpected")
+        return mode == "REJECTED" and not is_good and not reason.startswith("unexpected")
+    x, y, confidence = (float(values[name]) for name in ("x", "y", "confidence"))
+    return 0 <= x <= image.width and 0 <= y <= image.height and 0 <= confidence <= 1
 
 
-def _brief(image: Image) -> str:
+def _brief(message: object) -> str:
+    if not isinstance(message, Image):
+        return str(message)
+    stamp = message.header.stamp
     return (
-        f"{image.width}x{image.height} {image.encoding!r} step {image.step} "
-        f"{len(image.data)} bytes at {image.header.stamp.sec}.{image.header.stamp.nanosec:09d}"
+        f"{message.width}x{message.height} {message.encoding!r} step {message.step} "
+        f"{len(message.data)} bytes at {stamp.sec}.{stamp.nanosec:09d}"
     )

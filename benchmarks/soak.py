@@ -15,7 +15,7 @@ from collections import Counter
 
 import numpy as np
 from faulty_messages import Drive, Faults
-from node_process import NodeProcess, check
+from node_process import NodeProcess
 from sensor_msgs.msg import Image
 
 from vehicle_pf_tracker.ros.messages import stamp_ns
@@ -93,7 +93,8 @@ class Soak:
                 self.latencies.append(now - when)
             else:
                 image = self.faulty[stamp]
-            self.answers[f"{kind}: {check(answer, image, is_good=kind == 'good')}"] += 1
+            mode = self._node.check(answer, image, is_good=kind == "good")
+            self.answers[f"{kind}: {mode}"] += 1
 
 
 def report(soak: Soak) -> None:

@@ -25,6 +25,9 @@ def test_diagonal_area_corners():
         Box(0, 0, math.inf, 5),
         Box(0, 0, 0, 5),
         Box(0, 0, 5, -1),
+        Box(-1e30, -1e30, 2e30, 2e30),
+        Box(-100, 0, 257, 5),
+        Box(0, -80, 5, 193),
         Box(100, 0, 10, 10),
         Box(-20, 0, 10, 10),
         Box(0, 60, 10, 10),
@@ -35,7 +38,7 @@ def test_boxes_no_tracker_can_start_on(box):
         check_target(box, 64, 48)
 
 
-@pytest.mark.parametrize("box", [Box(0, 0, 1, 1), Box(-5, -5, 10, 10), Box(59, 43, 10, 10)])
+@pytest.mark.parametrize("box", [Box(0, 0, 1, 1), Box(-5, -5, 10, 10), Box(59, 43, 10, 10), Box(-96, -72, 256, 192)])
 def test_boxes_at_the_border_are_targets(box):
     assert check_target(box, 64, 48) is box
 

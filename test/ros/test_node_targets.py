@@ -111,6 +111,7 @@ def test_a_click_takes_the_present_size(tracking):
         (region(20, 50, 0, 0), "smaller than one pixel"),
         (region(2**32 - 1, 50, 20, 20), "outside the image"),
         (region(150, 115, 40, 40), "outside the image of 160x120"),
+        (polygon((-1e30, 0), (1e30, 20)), "larger than the image"),
         (polygon((math.nan, 1), (5, 5)), "not finite"),
         (polygon((1, 1), (math.inf, 5)), "not finite"),
         (polygon(), "0 corners"),

@@ -11,6 +11,9 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.features.errors import InputError
 
+_LARGEST_SHARE = 4
+"""Sides of the image that a target may be long: vehicles close to the camera overlap it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Box:
@@ -57,13 +60,19 @@ def check_target(box: Box, width: int, height: int) -> Box:
     Raises
     ------
     InputError
-        If a number is not finite, the box has no area, or its centre is outside the image.
+        If a number is not finite, the box has no area or is far larger than the image, or its
+        centre is outside the image.
     """
     values = (box.x, box.y, box.width, box.height)
     if not all(map(math.isfinite, values)):
         raise InputError(f"the target {box} has a number that is not finite; give x,y,w,h in px")
     if box.width < 1 or box.height < 1:
         raise InputError(f"the target {box} is smaller than one pixel; give x,y,w,h in px")
+    if box.width > _LARGEST_SHARE * width or box.height > _LARGEST_SHARE * height:
+        raise InputError(
+            f"the target {box} is far larger than the image of {width}x{height} px; "
+            "give the top-left corner and the size of the vehicle in this image"
+        )
     cx, cy = box.centre
     if not (0 <= cx <= width and 0 <= cy <= height):
         raise InputError(
