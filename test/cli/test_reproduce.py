@@ -1,6 +1,5 @@
 import io
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -94,21 +93,26 @@ def test_progress_tells_done_running_and_time_left():
 
 
 @pytest.mark.slow
-def test_what_was_killed_continues_and_comes_out_the_same(tmp_path):
-    whole, killed = tmp_path / "whole", tmp_path / "killed"
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
+def test_what_was_ended_continues_and_comes_out_the_same(tmp_path, number):
+    whole, ended = tmp_path / "whole", tmp_path / "ended"
     assert reproduce(whole, "apf-fig3") == 0
     code = "import sys; from vehicle_pf_tracker.cli.main import main; sys.exit(main())"
-    command = [sys.executable, "-c", code, "reproduce", "apf-fig3", "-o", str(killed)]
-    words = [*WORDS[:-1], "2"]
-    process = subprocess.Popen([*command, *words], start_new_session=True)
-    cells = killed / "cells.jsonl"
+    words = ["reproduce", "apf-fig3", *WORDS[:-1], "2", "-o", str(ended)]
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, *words], stderr=subprocess.PIPE, text=True
+    )
+    cells = ended / "cells.jsonl"
     deadline = time.monotonic() + 60
     while not (cells.exists() and cells.stat().st_size) and time.monotonic() < deadline:
         time.sleep(0.02)
-    os.kill(process.pid, signal.SIGKILL)
-    process.wait()
+    process.send_signal(number)
+    _, told = process.communicate(timeout=10)
+    if number == signal.SIGINT:
+        assert process.returncode == 130
+        assert "Traceback" not in told
     assert cells.stat().st_size > 0
-    assert not (killed / "apf-fig3").exists()
-    assert reproduce(killed, "apf-fig3") == 0
+    assert not (ended / "apf-fig3").exists()
+    assert reproduce(ended, "apf-fig3") == 0
     for file in ("data.csv", "figure.svg", "verdict.json"):
-        assert (killed / "apf-fig3" / file).read_bytes() == (whole / "apf-fig3" / file).read_bytes()
+        assert (ended / "apf-fig3" / file).read_bytes() == (whole / "apf-fig3" / file).read_bytes()

@@ -91,6 +91,7 @@ def _figure(grids: Mapping[str, Grid], size: Size) -> Figure:
         ax.contour(speeds, sigmas, means.T, [CLOSE_PX], colors="black", linewidths=1.2)
         ax.set(title=reading, xlabel="speed, px/frame", xticks=speeds)
     axes[0].set(ylabel="sigma, px/frame")
+    axes[0].set_yticks(range(0, sigmas[-1] + 1, 2))
     axes[0].set_ylim(sigmas[0] - 0.5, sigmas[-1] + 0.5)
     bar = figure.colorbar(image, ax=axes, label="RMSE, px (line: 15 px)", format="{x:g}")
     bar.set_ticks([1, 3, 10, 30, 100, 300])
@@ -137,7 +138,8 @@ def _least(reading: str, grid: Grid, size: Size) -> Finding:
         Holds.of(low <= slope <= high, low <= boundary <= high),
         f"best sigma = {slope:.2f} speed (fitted; at each speed: "
         f"{', '.join(f'{v:g}: {s:g}' for v, s in zip(speeds, best, strict=True))}); "
-        f"the least sigma that keeps all seeds below 15 px is {boundary:.2f} speed",
+        "losing the vehicle ends (least sigma that keeps all seeds below 15 px) at "
+        f"{boundary:.2f} speed",
     )
 
 

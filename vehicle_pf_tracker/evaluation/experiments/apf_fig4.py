@@ -143,7 +143,11 @@ def _detected(reading: str, runs: Sequence[Result]) -> Finding:
     span = _span(_WIDTHS[-1])
     entered = [any(_occluded(run)[span]) for run in runs]
     before = [sum(_occluded(run)[: span.start]) for run in runs]
-    hits = [a and b for a, b in zip(fell, entered, strict=True)]
+    # Whoever is in occlusion mode all the time detects nothing.
+    hits = [
+        fall and enter and frames < span.start / 2
+        for fall, enter, frames in zip(fell, entered, before, strict=True)
+    ]
     return Finding(
         reading,
         Holds.share(share(hits)),

@@ -37,7 +37,7 @@ def cells(size: Size) -> list[RunCell]:
 def report(results: Results, size: Size) -> Report:
     """Show the first seed's path over three frames, and judge all seeds."""
     runs = {
-        system.label: [video3.scores(results[video3.cell(system, seed)]) for seed in size.seeds]
+        system.label: [video3.run_scores(results, system, seed) for seed in size.seeds]
         for system in READINGS.values()
     }
     return Report(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from statistics import median
 
 from vehicle_pf_tracker.evaluation.experiments import apf_video3 as video3
 from vehicle_pf_tracker.evaluation.experiments.apf_systems import READINGS, RIVALS, SIX
@@ -72,17 +73,13 @@ def _finding(reading: str, own: Sequence[Scores], runs: dict[str, list[Scores]])
     rivals = {rival.label: _mean_errors(runs[rival.label]) for rival in RIVALS}
     smaller, words = [], []
     for index, when in enumerate(("before", "after")):
-        best = min(rivals, key=lambda label: _median(rivals[label][index]))
-        smaller.append(_median(ours[index]) <= _median(rivals[best][index]))
+        best = min(rivals, key=lambda label: median(rivals[label][index]))
+        smaller.append(median(ours[index]) <= median(rivals[best][index]))
         words.append(
             f"{when}: {median_and_range(ours[index])} px against {best}'s "
             f"{median_and_range(rivals[best][index])} px"
         )
     return Finding(reading, Holds.of(all(smaller), any(smaller)), "; ".join(words))
-
-
-def _median(values: Sequence[float]) -> float:
-    return sorted(values)[len(values) // 2]
 
 
 EXPERIMENT = Experiment(

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from matplotlib.axes import Axes
 
-from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.experiments.apf_systems import (
     FIXED,
     PRINTED,
@@ -14,11 +13,12 @@ from vehicle_pf_tracker.evaluation.experiments.apf_systems import (
     SIX,
     ruled,
 )
-from vehicle_pf_tracker.evaluation.experiments.cells import Result, RunCell, SceneChoice, System
+from vehicle_pf_tracker.evaluation.experiments.cells import RunCell, SceneChoice, System
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable
 from vehicle_pf_tracker.evaluation.experiments.experiment import Results, Size
+from vehicle_pf_tracker.evaluation.experiments.traces import PATH, scores
 from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
+from vehicle_pf_tracker.evaluation.scores import Scores
 
 SCENE = SceneChoice.of("video03")
 SYSTEMS = (*SIX, FIXED, PRINTED)
@@ -27,7 +27,7 @@ SETTING = (
     "a lamp post, is hidden by a sign and then by a coach that overtakes; 15 frames per second. "
     + SIGMA_RULE
 )
-_RECORD = ("x", "y", "width", "height", "mode", "regime")
+_RECORD = (*PATH, "regime")
 
 
 def cell(system: System, seed: int) -> RunCell:
@@ -40,27 +40,15 @@ def cells(size: Size) -> list[RunCell]:
     return [cell(system, seed) for system in SYSTEMS for seed in size.seeds]
 
 
-def scores(result: Result) -> Scores:
-    """Hold a run against the truth again, from its trace."""
-    truths = SCENE.truths()
-    rows = [
-        EstimateRow(n, t.stamp_ns, x, y, w, h, mode, None, None, None)
-        for n, (t, x, y, w, h, mode) in enumerate(
-            zip(
-                truths,
-                *(result["trace"][name] for name in ("x", "y", "width", "height", "mode")),
-                strict=True,
-            ),
-            start=1,
-        )
-    ]
-    return score_frames(rows, truths)
+def run_scores(results: Results, system: System, seed: int) -> Scores:
+    """Hold one run against the truth again."""
+    return scores(cell(system, seed), results[cell(system, seed)])
 
 
 def all_scores(results: Results, size: Size) -> dict[str, list[Scores]]:
     """Return the scores of every seed, by tracker."""
     return {
-        system.label: [scores(results[cell(system, seed)]) for seed in size.seeds]
+        system.label: [run_scores(results, system, seed) for seed in size.seeds]
         for system in SYSTEMS
     }
 

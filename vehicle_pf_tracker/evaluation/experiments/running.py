@@ -9,6 +9,7 @@ import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -17,6 +18,7 @@ import cv2
 from vehicle_pf_tracker.evaluation.experiments.cells import Cell, Result
 from vehicle_pf_tracker.evaluation.experiments.identity import key
 from vehicle_pf_tracker.evaluation.experiments.store import ResultStore
+from vehicle_pf_tracker.features.errors import InputError
 
 _LARGEST_BATCH = 48
 """Cells that run together: more share a rendering, fewer are lost by an interruption."""
@@ -51,6 +53,11 @@ def complete(
         Processes; with 1 this one does the work. Results do not depend on it.
     on_progress : callable
         Is told at the start and after every batch.
+
+    Raises
+    ------
+    InputError
+        If a process is ended from outside, or a cell cannot be run.
     """
     keys = {cell: key(cell) for cell in cells}
     missing = [cell for cell, name in keys.items() if name not in store]
@@ -107,6 +114,7 @@ def _run_in_processes(
     waiting = iter(batches)
     # Fresh processes: forked ones would inherit locks of OpenCV's threads.
     pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _prepare_worker)
+    others = multiprocessing.active_children()
     running: dict[Future[list[Result]], _Batch] = {}
     try:
         while True:
@@ -118,8 +126,16 @@ def _run_in_processes(
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 batch = running.pop(future)
                 yield batch, future.result(), list(running.values())
+    except BrokenProcessPool as error:
+        raise InputError(
+            "a worker process was ended from outside, for want of memory perhaps; "
+            "run the command again to go on, with fewer --workers"
+        ) from error
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
+        for process in multiprocessing.active_children():
+            if process not in others:
+                process.terminate()
 
 
 def _prepare_worker() -> None:
