@@ -223,3 +223,12 @@ def test_a_broken_message_is_a_broken_image(bare_mcap):
     assert images[-1].stamp_ns == stamp_of(7)
     assert ": 5;" in recording.notices[0]
     assert len(list(recording.messages())) == 6
+
+
+def test_a_recording_whose_every_chunk_is_damaged_is_an_input_error(record, tmp_path):
+    whole = next(record().glob("*.mcap")).read_bytes()
+    path = tmp_path / "damaged.mcap"
+    middle = len(whole) // 2
+    path.write_bytes(whole[:middle] + bytes([whole[middle] ^ 255]) + whole[middle + 1 :])
+    with pytest.raises(InputError, match=r"no image of /camera/image_raw .* checksum is wrong"):
+        list(Recording(path).frames())

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import os
+import random
+import time
+from pathlib import Path
+
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from lifecycle_msgs.srv import ChangeState, GetState
+from sensor_msgs.msg import Image
 from tracker_rig import Rig, TrackerNode, header, on_target, overrides, road, values_of
 
 from vehicle_pf_tracker.ros.messages import image_message
@@ -124,21 +130,59 @@ def test_shutdown_lets_go_of_everything(bench, manager):
     assert rig.node.count_subscribers("/image") == 0
 
 
-def test_many_cycles_while_images_arrive(bench):
+@pytest.mark.parametrize("images", [True, False], ids=["with images", "without images"])
+def test_hundreds_of_transitions_at_any_moment(bench, images):
+    """More than 300, each through the service while images and requests are on their way."""
     rig = Rig(bench, on_target())
     frame = road(1)[0]
-    for index in range(100):
-        rig.camera.publish(image_message(header(index), frame))
-        bench.executor.spin_once(timeout_sec=0.0)
-        rig.node.trigger_deactivate()
-        bench.executor.spin_once(timeout_sec=0.0)
-        if index % 3 == 0:
-            rig.node.trigger_cleanup()
-            rig.node.trigger_configure()
-        rig.node.trigger_activate()
+    client = bench.node.create_client(ChangeState, "/apf_tracker/change_state")
+    bench.wait_for(client.service_is_ready)
+    draw = random.Random(3)
+    done = 0
+    for index in range(600):
+        if images:
+            rig.camera.publish(image_message(header(index), frame))
+        request = ChangeState.Request()
+        possible = {
+            "active": ["deactivate"],
+            "inactive": ["activate", "cleanup"],
+            "unconfigured": ["configure"],
+        }[rig.node._state_machine.current_state[1]]
+        request.transition.label = draw.choice([*possible, "nonsense"])
+        future = client.call_async(request)
+        if images:
+            rig.camera.publish(image_message(header(index), frame))
+        bench.wait_for(future.done)
+        assert future.result().success == (request.transition.label in possible)
+        done += future.result().success
+    assert done > 300
+    while rig.node._state_machine.current_state[1] != "active":
+        state = rig.node._state_machine.current_state[1]
+        (rig.node.trigger_configure if state == "unconfigured" else rig.node.trigger_activate)()
     bench.wait_until_matched(rig.camera)
     bench.wait_for(lambda: rig.node._outputs._mode.get_subscription_count() == 1)
-    before = len(rig.modes)
     rig.camera.publish(image_message(header(1000), frame))
-    bench.wait_for(lambda: rig.modes[before:] and rig.modes[-1].header == header(1000))
+    bench.wait_for(lambda: rig.modes and rig.modes[-1].header == header(1000))
     assert rig.node.count_subscribers("/image") == 1
+    assert rig.node.count_publishers("/apf_tracker/mode") == 1
+
+
+def cpu_seconds(process) -> float:
+    fields = Path("/proc", str(process.popen.pid), "stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def test_an_inactive_node_costs_next_to_nothing(bench, start_node):
+    """What it needs for its reports, while others get 100 images a second."""
+    node = start_node("apf")
+    node.wait_for_output("ready")
+    request = ChangeState.Request()
+    request.transition.label = "deactivate"
+    assert bench.call(ChangeState, "/apf_tracker/change_state", request).success
+    camera = bench.node.create_publisher(Image, "image", 1)
+    image = image_message(header(0), road(1, 640, 480)[0])
+    before, began = cpu_seconds(node), time.monotonic()
+    while time.monotonic() < began + 2.0:
+        camera.publish(image)
+        time.sleep(0.01)
+    assert cpu_seconds(node) - before < 0.1  # 5 % of a core

@@ -158,8 +158,9 @@ class Recording:
             yield from unread
             unread = []
             yield image
-        if unread:
-            reason = next(iter(self._unreadable.values()))
+        damaged = self._damages and not start_offset and duration is None
+        if not readable and (unread or damaged):
+            reason = next(iter([*self._unreadable.values(), *self._damages.values()]))
             raise InputError(f"no image of {self.image_topic} in {self.path} can be read; {reason}")
 
     def truth(self) -> tuple[Truth, ...]:

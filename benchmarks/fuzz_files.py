@@ -1,0 +1,237 @@
+"""Fuzz parameter files and recordings.
+
+    python benchmarks/fuzz_files.py --parameters 10000 --recordings 10000
+
+A parameter file must be refused with a sentence, or give exactly the values that it names, both to
+the command line and to a node. A recording must be refused with one line and status 1, or tracked
+with a row for each of its images, and with a word about what is missing. Anything else, an
+exception, or a file that takes longer than half a minute ends this with status 1, and is kept.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import csv
+import faulthandler
+import io
+import os
+import random
+import shutil
+import tempfile
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import rclpy
+from faulty_messages import FIRST_NS, PERIOD_NS, TARGET, Drive
+from rclpy.impl.implementation_singleton import rclpy_implementation
+
+from vehicle_pf_tracker.cli.main import main as command
+from vehicle_pf_tracker.cli.params import default_yaml
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.ros.configuration import Configuration
+from vehicle_pf_tracker.ros.node import TrackerNode
+from vehicle_pf_tracker.trackers.parameter_files import read_yaml
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+VARIANT = find_variant("pf")
+FRAMES = 12
+LONGEST = 30
+_VALUES = (
+    "0", "-1", "1e400", ".nan", "-.inf", "true", "~", "''", "'1'", "[1, 2.5]", "[]", "{}", "{a: 1}",
+    "99999999999999999999", "0x10", "1_000", "!!python/object/apply:os.abort []", "&a [*a]", "wörd",
+    "2026-01-01", "'\\0'", "multinomial", "3", "0.25", "|", "- x", "!!binary aGk=", "\x01",
+)  # fmt: skip
+
+
+def spoil_text(text: str, draw: random.Random) -> bytes:
+    """Change a YAML file in up to three places."""
+    lines = [line for line in text.splitlines() if "#" not in line]
+    for _ in range(draw.randint(1, 3)):
+        index = draw.randrange(len(lines))
+        name, colon, _ = lines[index].partition(":")
+        lines[index : index + 1] = draw.choice(
+            [
+                [f"{name}{colon} {draw.choice(_VALUES)}"] * draw.randint(1, 2),
+                [],
+                [" " * draw.randrange(9) + lines[index].lstrip()],
+                [lines[index].replace("_", draw.choice("._-/:")) or "..."],
+                [lines[index], *lines[: draw.randrange(4)]],
+                [draw.choice(("/**:", "apf_tracker:", "---", "\t", "? [x]", "/**/pf_tracker:"))],
+            ]
+        )
+        lines = lines or [""]
+    data = "\n".join(lines).encode()
+    return spoil_bytes(data, draw) if draw.random() < 0.3 else data
+
+
+def spoil_bytes(data: bytes, draw: random.Random) -> bytes:
+    """Overwrite, cut, insert or repeat bytes in up to four places."""
+    made = bytearray(data)
+    for _ in range(draw.randint(1, 4)):
+        place = draw.randrange(len(made) + 1)
+        length = draw.choice((1, 2, 8, 64, 1000))
+        kind = draw.randrange(5)
+        if kind == 0:
+            made[place : place + length] = draw.randbytes(length)
+        elif kind == 1:
+            del made[place : place + length]
+        elif kind == 2:
+            made[place:place] = draw.choice((b"\0", b"\xff", draw.randbytes(1))) * length
+        elif kind == 3:
+            made[place:place] = made[place // 2 : place // 2 + length]
+        else:
+            del made[draw.choice((place, len(made) - 1, len(made))) :]
+    return bytes(made)
+
+
+class WrongError(Exception):
+    """What must not come of a file."""
+
+
+def try_parameters(path: Path, _: Path) -> str:
+    """Read a parameter file as `run` does, then as a node does; return what came of it."""
+    told = _in_python(path)
+    own = _in_node(path)
+    return f"{told} by the command line, {own} by the node"
+
+
+def _in_python(path: Path) -> str:
+    try:
+        values = read_yaml(path, "pf_tracker")
+        given = Configuration.of(VARIANT).updated(values).to_mapping()
+    except InputError:
+        return "refused"
+    wrong = {name: one for name, one in values.items() if name in given and given[name] != one}
+    if wrong:
+        raise WrongError(f"taken for other values: {wrong}")
+    return "taken"
+
+
+def _in_node(path: Path) -> str:
+    context, node = rclpy.Context(), None
+    try:
+        with _quiet():
+            rclpy.init(args=["--ros-args", "--params-file", str(path)], context=context)
+            node = TrackerNode(VARIANT, context=context)
+        given = {name: one.value for name, one in node._parameters.items()}
+        asked = node._parameter_overrides
+        wrong = {n: o.value for n, o in asked.items() if n in given and given[n] != o.value}
+        if wrong:
+            raise WrongError(f"the node has other values than {wrong}")
+    except (InputError, rclpy_implementation.RCLError, rclpy_implementation.UnknownROSArgsError):
+        return "refused"
+    else:
+        return "taken"
+    finally:
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown(context=context)
+
+
+def try_recording(path: Path, folder: Path) -> str:
+    """Track a recording; return what came of it."""
+    out = folder / "out"
+    shutil.rmtree(out, ignore_errors=True)
+    target = ",".join(map(str, TARGET))
+    words = ["run", str(path), "--variant", "pf", "--set", "num_particles=20"]
+    with _captured() as (told, errors):
+        status = command([*words, "--target", target, "-o", str(out)])
+    complaint = errors.getvalue()
+    if status == 1 and complaint.strip() and "Traceback" not in complaint:
+        return "refused"
+    if status != 0:
+        raise WrongError(f"status {status}: {complaint}")
+    with (out / "estimates.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    if not rows or (len(rows) != FRAMES and not complaint.strip()):
+        raise WrongError(f"{len(rows)} rows of {FRAMES} without a word: {told.getvalue()}")
+    return "tracked whole" if len(rows) == FRAMES else "tracked in part, and said so"
+
+
+@contextlib.contextmanager
+def _captured():  # noqa: ANN202
+    told, errors = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(told), contextlib.redirect_stderr(errors):
+        yield told, errors
+
+
+@contextlib.contextmanager
+def _quiet():  # noqa: ANN202
+    """Keep what C libraries write from the terminal."""
+    kept = os.dup(2)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
+
+
+def recording(folder: Path, compression: str) -> bytes:
+    """Make a small recording; return its MCAP file."""
+    drive = Drive()
+    with RecordingWriter(folder, compression=compression) as writer:
+        for number in range(FRAMES):
+            writer.write_image(FIRST_NS + number * PERIOD_NS, np.array(drive.frame(number)))
+    return next(folder.glob("*.mcap")).read_bytes()
+
+
+def fuzz(
+    name: str,
+    count: int,
+    seed: int,
+    make: Callable[[random.Random], bytes],
+    judge: Callable[[Path, Path], str],
+) -> None:
+    """Judge `count` files, and print what came of them.
+
+    Raises
+    ------
+    SystemExit
+        If one of them is not dealt with as it should be.
+    """
+    draw, results = random.Random(seed), Counter[str]()
+    suffix = {"parameters": ".yaml", "recordings": ".mcap"}[name]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, f"fuzzed{suffix}")
+        for number in range(count):
+            path.write_bytes(make(draw))
+            faulthandler.dump_traceback_later(LONGEST, exit=True)
+            try:
+                results[judge(path, Path(folder))] += 1
+            except BaseException as error:
+                kept = Path(tempfile.gettempdir(), f"fuzzed_{number}{suffix}")
+                shutil.copy(path, kept)
+                raise SystemExit(f"{kept}: {type(error).__name__}: {error}") from error
+            faulthandler.cancel_dump_traceback_later()
+    print(f"{name}: {count} files, seed {seed}")
+    for result, times in results.most_common():
+        print(f"  {result}: {times}")
+
+
+def main() -> None:
+    """Fuzz as asked."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--parameters", type=int, default=0, metavar="COUNT")
+    parser.add_argument("--recordings", type=int, default=0, metavar="COUNT")
+    parser.add_argument("--seed", type=int, default=0)
+    args = parser.parse_args()
+    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    text = default_yaml(VARIANT)
+    with tempfile.TemporaryDirectory() as folder:
+        whole = [recording(Path(folder, kind), kind) for kind in ("none", "lz4", "zstd")]
+    fuzz("parameters", args.parameters, args.seed, lambda d: spoil_text(text, d), try_parameters)
+    fuzz(
+        "recordings", args.recordings, args.seed,
+        lambda draw: spoil_bytes(draw.choice(whole), draw), try_recording,
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

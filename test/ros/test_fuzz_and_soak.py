@@ -1,0 +1,38 @@
+"""The long runs of benchmarks/, kept short."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+pytestmark = pytest.mark.ros
+
+BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
+
+
+def run(start_process, script: str, *words: str) -> str:
+    process = start_process(str(BENCHMARKS / script), *words)
+    status = process.wait(60)
+    assert status == 0, process.output
+    return process.output
+
+
+def test_fuzzed_messages_cost_no_good_image_its_estimate(start_process):
+    told = run(start_process, "fuzz_node.py", "--images", "100", "--targets", "60", "--seed", "5")
+    assert "faulty: REJECTED" in told
+    assert "targets            60" in told
+
+
+def test_fuzzed_files_end_in_a_sentence_or_in_the_truth(start_process):
+    told = run(start_process, "fuzz_files.py", "--parameters", "60", "--recordings", "60")
+    assert "parameters: 60 files" in told
+    assert "recordings: 60 files" in told
+
+
+def test_a_short_soak(start_process):
+    told = run(start_process, "soak.py", "--minutes", "0.05")
+    assert "good images without an answer: 0" in told
+    assert "MB a minute" in told
