@@ -47,6 +47,8 @@ config: .venv/installed
 	    $(BIN)/vehicle-pf-tracker params $$variant > config/$$variant.new; \
 	    mv config/$$variant.new config/$$variant.yaml; \
 	done
+	$(BIN)/vehicle-pf-tracker params all --markdown > docs/parameters.new
+	mv docs/parameters.new docs/parameters.md
 
 clean:
 	rm -rf .venv .venv-noble build install log results *.egg-info

@@ -18,7 +18,25 @@ def test_config_holds_what_params_prints(name):
 
 
 def test_config_has_no_file_too_many():
-    assert {path.name for path in CONFIG.iterdir()} == {f"{name}.yaml" for name in VARIANTS}
+    expected = {f"{name}.yaml" for name in VARIANTS} | {"sros2_policy.xml"}
+    assert {path.name for path in CONFIG.iterdir()} == expected
+
+
+def test_the_document_of_all_parameters_is_what_is_printed(capsys):
+    # `make config` writes it anew.
+    assert main(["params", "all", "--markdown"]) == 0
+    document = CONFIG.parent / "docs" / "parameters.md"
+    assert document.read_text(encoding="utf-8") == capsys.readouterr().out
+
+
+def test_the_document_names_every_parameter_of_every_variant(capsys):
+    assert main(["params", "all", "--markdown"]) == 0
+    _, *sections = capsys.readouterr().out.split("\n## ")
+    texts = {section.partition("\n")[0]: section for section in sections}
+    assert list(texts) == ["Every node", *VARIANTS]
+    for name, variant in VARIANTS.items():
+        for one in Configuration.of(variant).specs():
+            assert (f"| `{one}` |" in texts[name]) != (f"| `{one}` |" in texts["Every node"])
 
 
 @pytest.mark.parametrize("name", VARIANTS)
@@ -38,8 +56,8 @@ def test_markdown_has_a_row_for_each_parameter(capsys):
     assert main(["params", "pf", "--markdown"]) == 0
     head, rule, *rows = capsys.readouterr().out.splitlines()
     assert len(rows) == len(Configuration.of(VARIANTS["pf"]).specs())
-    assert rule == "| --- | --- | --- | --- | --- | --- |"
-    assert {line.count(" | ") for line in (head, rule, *rows)} == {5}
+    assert rule == "| --- | --- | --- | --- | --- | --- | --- |"
+    assert {line.count(" | ") for line in (head, rule, *rows)} == {6}
     assert any(row.startswith("| `sigma` | 8.0 | from 0.01 to 1000 | px/frame |") for row in rows)
 
 

@@ -3,16 +3,29 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
 
 from vehicle_pf_tracker.cli.config_files import config_path
 from vehicle_pf_tracker.trackers.parameter_files import to_yaml
-from vehicle_pf_tracker.trackers.parameters import ParameterSpec
-from vehicle_pf_tracker.trackers.registry import Variant, find_variant
+from vehicle_pf_tracker.trackers.parameters import EFFECTS, ParameterSpec
+from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
+
+ALL = "all"
+
+_PREFACE = """# Parameters
+
+Written by `vehicle-pf-tracker params all --markdown`; `make config` does it. Names, defaults and
+ranges are those of the nodes, of the files in config/ and of `--set`. Whole numbers do for real
+ones. What a change does while a target is followed is in the last column:
+
+"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of this verb."""
-    parser.add_argument("variant", help="name of the variant, apf for instance")
+    parser.add_argument(
+        "variant", help="name of the variant, apf for instance; with --markdown, all for every one"
+    )
     forms = parser.add_mutually_exclusive_group()
     forms.add_argument(
         "--path", action="store_true", help="print where the installed parameter file is"
@@ -24,6 +37,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print what is asked for."""
+    if args.markdown and args.variant == ALL:
+        print(all_markdown(), end="")
+        return 0
     variant = find_variant(args.variant)
     if args.path:
         print(config_path(variant.name))
@@ -47,16 +63,35 @@ def default_markdown(variant: Variant) -> str:
     """Write the parameters of the node of `variant` as a Markdown table."""
     from vehicle_pf_tracker.ros.configuration import Configuration
 
-    rows = [
-        ("parameter", "default", "range", "unit", "what turning it does", "source"),
-        ("---",) * 6,
-        *map(_row, Configuration.of(variant).specs().values()),
-    ]
+    return _table(Configuration.of(variant).specs().values())
+
+
+def all_markdown() -> str:
+    """Write docs/parameters.md: what every node has, then what each variant has besides."""
+    from vehicle_pf_tracker.ros.configuration import Configuration
+
+    tables = {name: Configuration.of(variant).specs() for name, variant in VARIANTS.items()}
+    first, *others = tables.values()
+    common = {
+        name: spec for name, spec in first.items() if all(one.get(name) == spec for one in others)
+    }
+    effects = "".join(f"- *{name}*: {words}.\n" for name, words in EFFECTS.items())
+    parts = [_PREFACE, effects, "\n## Every node\n\n", _table(common.values())]
+    for name, table in tables.items():
+        own = [spec for spec in table.values() if spec.name not in common]
+        parts += [f"\n## {name}\n\n{VARIANTS[name].summary}.\n\n", _table(own)]
+    return "".join(parts)
+
+
+def _table(table: Iterable[ParameterSpec]) -> str:
+    head = "parameter", "default", "range", "unit", "what turning it does", "source", "at run time"
+    rows = [head, ("---",) * len(head), *map(_row, table)]
     return "".join(f"| {' | '.join(row)} |\n" for row in rows)
 
 
 def _row(spec: ParameterSpec) -> tuple[str, ...]:
     default = str(spec.default).lower() if spec.kind is bool else str(spec.default)
     values = ", ".join(spec.choices) or spec.bounds
-    cells = (f"`{spec.name}`", default, values, spec.unit, spec.doc, spec.source)
+    effect = "start-up only" if spec.read_only else spec.effect
+    cells = (f"`{spec.name}`", default, values, spec.unit, spec.doc, spec.source, effect)
     return tuple(cell.replace("|", "\\|") for cell in cells)

@@ -20,13 +20,14 @@ from typing import Any, Literal, TypeAlias, TypeVar, cast, get_type_hints
 from vehicle_pf_tracker.features.errors import InputError
 
 Value: TypeAlias = bool | int | float | str
-Effect: TypeAlias = Literal["keeps", "relearns", "restarts"]
+Effect: TypeAlias = Literal["keeps", "relearns", "restarts", "starts"]
 ParametersT = TypeVar("ParametersT")
 
 EFFECTS: Mapping[Effect, str] = {
     "keeps": "keeps track and reference",
     "relearns": "keeps the track, rebuilds the reference from the first frame's target",
     "restarts": "restarts the random numbers",
+    "starts": "starts again on the new target",
 }
 
 _KEY = "parameter"
@@ -51,7 +52,7 @@ class ParameterSpec:
         The words allowed; empty where any will do.
     source : str
         Paper and equation, or reading, it comes from.
-    effect : {"keeps", "relearns", "restarts"}
+    effect : {"keeps", "relearns", "restarts", "starts"}
         What a change while tracking does (`EFFECTS`).
     read_only : bool
         True where it can be set at start-up only.

@@ -26,10 +26,20 @@ class TargetParameters:
     """The box to start on."""
 
     x: float = parameter(
-        0.0, "Left edge of the target.", minimum=-_LARGEST, maximum=_LARGEST, unit="px"
+        0.0,
+        "Left edge of the target.",
+        minimum=-_LARGEST,
+        maximum=_LARGEST,
+        unit="px",
+        effect="starts",
     )
     y: float = parameter(
-        0.0, "Top edge of the target.", minimum=-_LARGEST, maximum=_LARGEST, unit="px"
+        0.0,
+        "Top edge of the target.",
+        minimum=-_LARGEST,
+        maximum=_LARGEST,
+        unit="px",
+        effect="starts",
     )
     width: float = parameter(
         0.0,
@@ -37,6 +47,7 @@ class TargetParameters:
         minimum=0.0,
         maximum=_LARGEST,
         unit="px",
+        effect="starts",
     )
     height: float = parameter(
         0.0,
@@ -44,6 +55,7 @@ class TargetParameters:
         minimum=0.0,
         maximum=_LARGEST,
         unit="px",
+        effect="starts",
     )
 
     @property

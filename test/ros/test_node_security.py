@@ -1,0 +1,80 @@
+"""The access-control policy names what the nodes have, and the code evaluates nothing."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from rclpy.parameter import Parameter
+from tracker_rig import TrackerNode, overrides
+
+from vehicle_pf_tracker.ros.configuration import Configuration
+from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
+
+pytestmark = pytest.mark.ros
+
+ROOT = Path(__file__).resolve().parents[2]
+FUNCTIONS = {"eval", "exec", "compile", "__import__"}
+METHODS = {"system", "popen", "unsafe_load", "full_load", "Unpickler"}
+
+
+def allowed(profile, kind: str, access: str) -> set[str]:
+    return {one.text for group in profile.iter(kind) if group.get(access) for one in group}
+
+
+def absolute(name: str, node: str) -> str:
+    return "/" + name.replace("~", node).lstrip("/")
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("transport", ["raw", "compressed"])
+def test_the_policy_allows_what_a_node_has_and_no_more(bench, variant, transport):
+    policy = ElementTree.parse(ROOT / "config" / "sros2_policy.xml").getroot()
+    (profile,) = policy.findall(f".//enclave[@path='/vehicle_pf_tracker/{variant}']//profile")
+    node = bench.add(
+        TrackerNode(
+            find_variant(variant),
+            context=bench.context,
+            parameter_overrides=[
+                *overrides(image_transport=transport),
+                Parameter("use_sim_time", value=True),
+            ],
+        )
+    )
+    own = node.get_name()
+    assert (profile.get("ns"), profile.get("node")) == ("/", own)
+    image = "image" if transport == "raw" else "image/compressed"
+    other = ({"image", "image/compressed"} - {image}).pop()
+    for kind, access, found, besides in (
+        ("topics", "publish", node.get_publisher_names_and_types_by_node, set()),
+        ("topics", "subscribe", node.get_subscriber_names_and_types_by_node, {other}),
+        ("services", "reply", node.get_service_names_and_types_by_node, set()),
+    ):
+        names = {absolute(one, own) for one in allowed(profile, kind, access) - besides}
+        bench.wait_for(lambda: {one for one, _ in found(own, "/")} == names)  # noqa: B023
+    assert node.get_client_names_and_types_by_node(own, "/") == []
+
+
+def test_nothing_evaluates_input():
+    calls = []
+    for path in sorted((ROOT / "vehicle_pf_tracker").rglob("*.py")):
+        for found in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(found, ast.Call):
+                function = getattr(found.func, "id", "") in FUNCTIONS
+                method = getattr(found.func, "attr", "") in METHODS
+                shell = any(word.arg == "shell" for word in found.keywords)
+                if function or method or shell:
+                    calls.append(f"{path.name}:{found.lineno}")
+    assert calls == []
+
+
+def test_no_parameter_is_a_path():
+    """What may be set over the network neither opens nor writes files."""
+    for variant in VARIANTS.values():
+        for name in Configuration.of(variant).specs():
+            assert not any(word in name for word in ("path", "file", "folder", "directory"))
