@@ -232,3 +232,13 @@ def test_a_recording_whose_every_chunk_is_damaged_is_an_input_error(record, tmp_
     path.write_bytes(whole[:middle] + bytes([whole[middle] ^ 255]) + whole[middle + 1 :])
     with pytest.raises(InputError, match=r"no image of /camera/image_raw .* checksum is wrong"):
         list(Recording(path).frames())
+
+
+def test_images_that_only_the_index_knows_are_an_input_error(record, tmp_path):
+    whole = bytearray(next(record(compression="none").glob("*.mcap")).read_bytes())
+    (block,) = Recording(tmp_path / "bag")._files[0].blocks
+    whole[block.offset] = 0x7F  # a record of an unknown kind, which MCAP says to skip
+    path = tmp_path / "damaged.mcap"
+    path.write_bytes(whole)
+    with pytest.raises(InputError, match=r"no image of /camera/image_raw .* no messages where"):
+        list(Recording(path).frames())

@@ -83,6 +83,8 @@ def read_block(path: Path, block: Block) -> Iterator[Message]:
         raise DamageError(f"it cannot be read ({error.strerror})") from error
     if len(record) < RECORD_HEAD or (len(record) < block.length and not block.is_cut):
         raise DamageError("the file ends before it")
+    if record[0] not in {Opcode.CHUNK, Opcode.MESSAGE}:
+        raise DamageError("there are no messages where the index says so")
     for opcode, content in block_records(record[0], record[RECORD_HEAD:], block.is_cut):
         if opcode == Opcode.MESSAGE:
             yield parse_message(content)

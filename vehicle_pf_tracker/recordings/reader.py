@@ -147,8 +147,10 @@ class Recording:
         # Held back until one can be read, so that a recording of rubbish is an error.
         unread: list[StampedFrame] = []
         readable = False
+        count = 0
         for _, message in self._select({self.image_topic}, start_offset, duration):
             image = self._decode_or_note(message)
+            count += 1
             if not readable and image.frame is None:
                 unread.append(image)
                 if len(unread) == _UNREADABLE_IN_A_ROW:
@@ -158,8 +160,13 @@ class Recording:
             yield from unread
             unread = []
             yield image
-        damaged = self._damages and not start_offset and duration is None
-        if not readable and (unread or damaged):
+        is_short = count < self._frame_count and not start_offset and duration is None
+        if is_short and not self._damages and len(unread) < _UNREADABLE_IN_A_ROW:
+            self._damages[self.path, -1] = (
+                f"recording {self.path}: {self._frame_count - count} images that it says it has "
+                "are missing"
+            )
+        if not readable and (unread or is_short):
             reason = next(iter([*self._unreadable.values(), *self._damages.values()]))
             raise InputError(f"no image of {self.image_topic} in {self.path} can be read; {reason}")
 
