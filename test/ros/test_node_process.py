@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -159,3 +160,22 @@ def test_the_node_loads_neither_recordings_nor_evaluation():
     rooms = {name.split(".")[1] for name in loaded.split()}
     assert rooms == {"ros", "trackers", "features", "filtering"}
     assert "player" not in loaded
+
+
+def segments(process) -> list[int]:
+    """Sizes in bytes of the shared-memory segments of Fast DDS that a process has mapped."""
+    maps = Path("/proc", str(process.popen.pid), "maps").read_text().splitlines()
+    spans = [line.split()[0].split("-") for line in maps if "/fastrtps_" in line]
+    return [int(end, 16) - int(begin, 16) for begin, end in spans]
+
+
+def test_a_node_has_room_for_its_overlays(start_node):
+    node = start_node("apf")
+    node.wait_for_output("ready")
+    assert max(segments(node)) >= 4 * 1280 * 720 * 3
+
+
+def test_a_users_choice_of_transport_is_left_alone(start_node):
+    node = start_node("apf", FASTDDS_BUILTIN_TRANSPORTS="DEFAULT")
+    node.wait_for_output("ready")
+    assert max(segments(node)) < 2**20
