@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 from typing import TypeAlias
 
-from vehicle_pf_tracker.evaluation.experiments.apf_systems import APF, READINGS, RIVALS
+from vehicle_pf_tracker.evaluation.experiments.apf_systems import ALL_READINGS, APF, RIVALS
 from vehicle_pf_tracker.evaluation.experiments.cells import SceneChoice
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds
@@ -43,7 +43,7 @@ Errors: TypeAlias = Mapping[str, Mapping[str, Sequence[float]]]
 
 def condition_table(conditions: Errors) -> DataTable:
     """Put the medians side by side, and how far APF is behind the best rival."""
-    readings = [system.label for system in READINGS.values()]
+    readings = [system.label for system in ALL_READINGS.values()]
     labels = [*(rival.label for rival in RIVALS), *readings]
     rows: list[tuple[Entry, ...]] = [
         (name, *(median(errors[label]) for label in labels), f"{_ratio(errors, APF.label):.2f}")
@@ -59,16 +59,16 @@ def condition_claims(conditions: Errors) -> tuple[Claim, ...]:
             f"(not the paper's, but what it takes for granted) without occlusion APF's median RMSE "
             f"is at most {FACTOR:g} times the best rival's, in each condition",
             "unoccluded conditions",
-            tuple(_finding(conditions, reading) for reading in READINGS),
+            tuple(_finding(conditions, reading) for reading in ALL_READINGS),
         ),
     )
 
 
 def _finding(conditions: Errors, reading: str) -> Finding:
-    label = READINGS[reading].label
+    label = ALL_READINGS[reading].label
     ratios = {name: _ratio(errors, label) for name, errors in conditions.items()}
     behind = {name: ratio for name, ratio in ratios.items() if ratio > FACTOR}
-    told = ", ".join(f"{name} {ratio:.1f}" for name, ratio in behind.items())
+    told = "; ".join(f"{name} {ratio:.2f}" for name, ratio in behind.items())
     return Finding(
         reading,
         Holds.share(1 - len(behind) / len(ratios), yes=1.0),

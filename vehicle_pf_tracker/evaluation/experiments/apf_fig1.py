@@ -10,7 +10,11 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from vehicle_pf_tracker.evaluation.experiments.apf_artificial import SETTING, artificial_video
-from vehicle_pf_tracker.evaluation.experiments.apf_systems import READINGS, with_sigma
+from vehicle_pf_tracker.evaluation.experiments.apf_systems import (
+    READINGS,
+    READINGS_TOLD,
+    with_sigma,
+)
 from vehicle_pf_tracker.evaluation.experiments.cells import RunCell
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
@@ -116,7 +120,8 @@ def _verdict(grids: Mapping[str, Grid], size: Size) -> Verdict:
             ),
         ),
         f"{SETTING} No bar; speeds from {speeds[0]} to {speeds[-1]} and sigma from {sigmas[0]} to "
-        f"{sigmas[-1]} px/frame, {len(size.seeds)} seeds; grey levels are means over the seeds.",
+        f"{sigmas[-1]} px/frame, {len(size.seeds)} seeds; grey levels are means over the seeds. "
+        f"{READINGS_TOLD}",
     )
 
 

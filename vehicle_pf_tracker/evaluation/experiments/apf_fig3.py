@@ -16,7 +16,11 @@ from vehicle_pf_tracker.evaluation.experiments.apf_artificial import (
     artificial_video,
     covered,
 )
-from vehicle_pf_tracker.evaluation.experiments.apf_systems import READINGS, with_sigma
+from vehicle_pf_tracker.evaluation.experiments.apf_systems import (
+    READINGS,
+    READINGS_TOLD,
+    with_sigma,
+)
 from vehicle_pf_tracker.evaluation.experiments.cells import Result, RunCell
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
@@ -174,7 +178,8 @@ def _verdict(table: _Runs) -> Verdict:
         ),
         f"{SETTING} The vehicle passes at {SPEED:g} px/frame, sigma is the same number, and the "
         f"threshold is the paper's 0.8 where there is one; {len(table.widths)} widths, "
-        f"{len(table.seeds)} seeds. Grey levels are those of the first seed.",
+        f"{len(table.seeds)} seeds. Grey levels are those of the first seed. "
+        f"{READINGS_TOLD}",
     )
 
 

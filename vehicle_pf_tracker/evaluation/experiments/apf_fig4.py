@@ -13,7 +13,11 @@ from vehicle_pf_tracker.evaluation.experiments.apf_artificial import (
     artificial_video,
     covered,
 )
-from vehicle_pf_tracker.evaluation.experiments.apf_systems import READINGS, with_sigma
+from vehicle_pf_tracker.evaluation.experiments.apf_systems import (
+    READINGS,
+    READINGS_TOLD,
+    with_sigma,
+)
 from vehicle_pf_tracker.evaluation.experiments.cells import Result, RunCell
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
@@ -115,8 +119,8 @@ def _verdict(results: Results, size: Size) -> Verdict:
             ),
         ),
         f"{SETTING} It passes at {SPEED:g} px/frame, sigma is the same number; {len(size.seeds)} "
-        "seeds. Curves are those of the first seed. Our reading holds the similarities against "
-        "their own running level instead of the line.",
+        "seeds. Curves are those of the first seed. "
+        f"{READINGS_TOLD}",
     )
 
 

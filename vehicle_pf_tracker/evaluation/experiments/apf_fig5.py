@@ -35,17 +35,19 @@ def cells(size: Size) -> list[RunCell]:
 
 
 def report(results: Results, size: Size) -> Report:
-    """Show the first seed's path over three frames, and judge all seeds."""
+    """Show the first seed's path over four frames, and judge all seeds."""
     runs = {
         system.label: [video3.run_scores(results, system, seed) for seed in size.seeds]
         for system in READINGS.values()
     }
     return Report(
-        video3.data(runs, size), _figure(runs[APF.label][0]), _verdict(results, runs, size)
+        video3.data(runs, size),
+        _figure(runs[APF.label][0], size.seeds[0]),
+        _verdict(results, runs, size),
     )
 
 
-def _figure(scored: Scores) -> Figure:
+def _figure(scored: Scores, seed: int) -> Figure:
     sign, coach = _hidden_stretches(scored)
     shown = {
         _EARLY: "in the clear",
@@ -53,7 +55,7 @@ def _figure(scored: Scores) -> Figure:
         sum(coach) // 2: "hidden by the coach",
         len(scored.frames): "in the clear again",
     }
-    frames = _frames(set(shown))
+    frames = _frames(set(shown), seed)
     figure = Figure(figsize=(7, 8), layout="constrained")
     for ax, (number, what) in zip(figure.subplots(4, 1, sharex=True), shown.items(), strict=True):
         _draw(ax, frames[number], scored, number)
@@ -70,9 +72,9 @@ def _hidden_stretches(scored: Scores) -> list[tuple[int, int]]:
     return [(o.first_frame, o.last_frame) for o in measure(scored).occlusions]
 
 
-def _frames(numbers: set[int]) -> dict[int, Frame]:
+def _frames(numbers: set[int], seed: int) -> dict[int, Frame]:
     """Render the frames of these numbers."""
-    shown = enumerate(video3.SCENE.make().frames(), start=1)
+    shown = enumerate(video3.SCENE.seeded(seed).make().frames(), start=1)
     return {number: scene_frame.frame for number, scene_frame in shown if number in numbers}
 
 

@@ -29,8 +29,8 @@ _HEAD = """# Reproduction of the papers' experiments
 synthetic scenes with exact truth, draws the figures and writes the verdicts. Nothing here is
 written by hand. The papers' own videos are not public, so every scene is a synthetic counterpart.
 Beside each figure, `results/reproduce/<name>/` has all cells as `data.csv`. A claim is judged under
-our reading of the paper (the variant's defaults), and under other readings beside it; "as printed"
-follows the paper to the letter. "No" is as good an answer as "yes".
+our reading of the paper, which gives the verdict, and under other readings beside it. "No" is as
+good an answer as "yes".
 
 {overview}
 """
