@@ -76,6 +76,19 @@ def test_an_inactive_node_neither_listens_nor_speaks(bench, manager):
     assert values_of(answer)["regime"] != "start"  # the track outlives a pause
 
 
+@pytest.mark.parametrize("transitions", [["deactivate"], ["deactivate", "cleanup"]])
+def test_an_image_taken_just_before_is_left_alone(bench, manager, transitions):
+    """As an executor of several threads may do."""
+    rig = Rig(bench, on_target())
+    frames = road(4)
+    rig.play(frames[:3])
+    for transition in transitions:
+        assert manager.change(transition)
+    rig.node._on_image(image_message(header(3), frames[3]), {})
+    assert rig.node._diagnostics._health.images == 3
+    assert len(rig.modes) == 3
+
+
 def test_cleanup_forgets_the_track(bench, manager):
     rig = Rig(bench, on_target())
     rig.play(road(3))

@@ -114,6 +114,7 @@ def test_a_click_takes_the_present_size(tracking):
         (polygon((-1e30, 0), (1e30, 20)), "larger than the image"),
         (polygon((math.nan, 1), (5, 5)), "not finite"),
         (polygon((1, 1), (math.inf, 5)), "not finite"),
+        (polygon((20, 50), (math.nan, 50), (44, 68)), "not finite"),  # which min() may overlook
         (polygon(), "0 corners"),
         (polygon((10, 10), (20, 20), frame_id="map"), "frame 'map'"),
         (point(math.nan, 1), "not finite"),
