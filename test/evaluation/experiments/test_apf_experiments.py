@@ -140,7 +140,9 @@ def test_every_condition_is_unoccluded_and_comes_with_both_cameras():
 def test_one_rule_sets_sigma(speed, sigma):
     scene = SceneChoice.of("clear", {"speed": speed})
     for system in apf_systems.SIX:
-        parameters = apf_systems.ruled(scene, system, 7).system.parameters(7)
+        ruled = apf_systems.ruled(scene, system, 7).system
+        assert apf_systems.sigma_of(ruled) == (None if system.variant == "ms" else sigma)
+        parameters = ruled.parameters(7)
         if system.variant == "apf":
             assert parameters.motion.sigma_w == sigma
         elif system.variant != "ms":

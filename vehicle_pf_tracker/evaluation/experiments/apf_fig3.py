@@ -176,8 +176,8 @@ def _verdict(table: _Runs) -> Verdict:
             claim("the wider the occlusion, the lower the similarity falls in it", _deeper),
             claim("after the occlusion the regular mode resumes", _resumed),
         ),
-        f"{SETTING} The vehicle passes at {SPEED:g} px/frame, sigma is the same number, and the "
-        f"threshold is the paper's 0.8 where there is one; {len(table.widths)} widths, "
+        f"{SETTING} The vehicle passes at {SPEED:g} px/frame, sigma is the same number; "
+        f"{len(table.widths)} widths, "
         f"{len(table.seeds)} seeds. Grey levels are those of the first seed. "
         f"{READINGS_TOLD}",
     )

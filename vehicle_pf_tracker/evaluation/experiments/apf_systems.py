@@ -37,7 +37,8 @@ LEAST_SIGMA, LARGEST_SIGMA = 5.0, 10.0
 SIGMA_RULE = (
     f"One rule sets sigma for every tracker that has one: {SPEEDS_PER_SIGMA:g} times the vehicle's "
     "nominal speed (the paper relates sigma to the speed), kept within the paper's interval from "
-    f"{LEAST_SIGMA:g} to {LARGEST_SIGMA:g} px/frame. Everything else is each variant's default. {READINGS_TOLD}"
+    f"{LEAST_SIGMA:g} to {LARGEST_SIGMA:g} px/frame. Everything else is each variant's default. "
+    + READINGS_TOLD
 )
 _SIGMA = {"apf": "motion.sigma_w", "ms": None}
 
@@ -46,6 +47,12 @@ def with_sigma(system: System, sigma: float) -> System:
     """Set the spread of `system`; mean shift has none."""
     name = _SIGMA.get(system.variant, "sigma")
     return system if name is None else system.but({name: sigma})
+
+
+def sigma_of(system: System) -> float | None:
+    """Return the spread that `with_sigma` has set; None where there is none."""
+    found = dict(system.settings).get(_SIGMA.get(system.variant, "sigma") or "")
+    return None if found is None else float(found)
 
 
 def ruled(scene: SceneChoice, system: System, seed: int, record: tuple[str, ...] = ()) -> RunCell:

@@ -21,6 +21,7 @@ from vehicle_pf_tracker.evaluation.experiments.apf_systems import (
     SIGMA_RULE,
     SIX,
     ruled,
+    sigma_of,
 )
 from vehicle_pf_tracker.evaluation.experiments.apf_table2_figure import table_figure
 from vehicle_pf_tracker.evaluation.experiments.cells import RunCell, SceneChoice, System
@@ -133,9 +134,7 @@ def _data(results: Results, size: Size) -> DataTable:
                 found = results[cell]["metrics"]
                 hits = [occlusion["recovered"] for occlusion in found["occlusions"]]
                 rows.append(
-                    (name, system.label, seed, dict(cell.system.settings).get(
-                        "motion.sigma_w", dict(cell.system.settings).get("sigma")),
-                     found["rmse_px"], found["rmse_visible_px"], found["on_target"],
+                    (name, system.label, seed, sigma_of(cell.system), found["rmse_px"], found["rmse_visible_px"], found["on_target"],
                      len(hits), hits.count(True))
                 )  # fmt: skip
     columns = ("scene", "tracker", "seed", "sigma", "rmse_px", "rmse_visible_px", "on_target",

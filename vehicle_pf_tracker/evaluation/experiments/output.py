@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,6 +21,7 @@ from vehicle_pf_tracker.evaluation.output_files import (
     write_text,
 )
 from vehicle_pf_tracker.evaluation.plots import save
+from vehicle_pf_tracker.evaluation.run_info import versions
 
 DATA, FIGURE, VERDICT = "data.csv", "figure", "verdict"
 _PICTURES = "images/reproduction"
@@ -48,7 +50,12 @@ def write_report(folder: Path, experiment: Experiment, report: Report, size: Siz
     write_text(folder / DATA, report.data.to_csv())
     for kind in ("svg", "png"):
         save(report.figure, folder / f"{FIGURE}.{kind}")
-    facts = {"name": experiment.name, "title": experiment.title, "seeds": list(size.seeds)}
+    facts = {
+        "name": experiment.name,
+        "title": experiment.title,
+        "seeds": list(size.seeds),
+        "versions": versions(),
+    }
     write_json(folder / f"{VERDICT}.json", {**facts, **report.verdict.to_json()})
     write_text(folder / f"{VERDICT}.md", _section(experiment, report, size))
 
@@ -71,7 +78,8 @@ def write_document(
         text = (results / experiment.name / f"{VERDICT}.md").read_text(encoding="utf-8")
         picture = _copy_smallest(results / experiment.name, pictures, experiment.name)
         sections.append(text.replace(f"({FIGURE}.png)", f"({_PICTURES}/{picture})"))
-        word = text.partition("**Verdict: ")[2].partition(".")[0]
+        verdict = json.loads((results / experiment.name / f"{VERDICT}.json").read_text("utf-8"))
+        word = verdict["holds"]
         overview.append(
             f"| [`{experiment.name}`](#{experiment.name}) | {experiment.title} | {word} |"
         )
