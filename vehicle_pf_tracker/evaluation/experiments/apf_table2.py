@@ -134,8 +134,8 @@ def _data(results: Results, size: Size) -> DataTable:
                 found = results[cell]["metrics"]
                 hits = [occlusion["recovered"] for occlusion in found["occlusions"]]
                 rows.append(
-                    (name, system.label, seed, sigma_of(cell.system), found["rmse_px"], found["rmse_visible_px"], found["on_target"],
-                     len(hits), hits.count(True))
+                    (name, system.label, seed, sigma_of(cell.system), found["rmse_px"],
+                     found["rmse_visible_px"], found["on_target"], len(hits), hits.count(True))
                 )  # fmt: skip
     columns = ("scene", "tracker", "seed", "sigma", "rmse_px", "rmse_visible_px", "on_target",
                "total_occlusions", "recovered")  # fmt: skip
