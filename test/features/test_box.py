@@ -38,7 +38,9 @@ def test_boxes_no_tracker_can_start_on(box):
         check_target(box, 64, 48)
 
 
-@pytest.mark.parametrize("box", [Box(0, 0, 1, 1), Box(-5, -5, 10, 10), Box(59, 43, 10, 10), Box(-96, -72, 256, 192)])
+@pytest.mark.parametrize(
+    "box", [Box(0, 0, 1, 1), Box(-5, -5, 10, 10), Box(59, 43, 10, 10), Box(-96, -72, 256, 192)]
+)
 def test_boxes_at_the_border_are_targets(box):
     assert check_target(box, 64, 48) is box
 
