@@ -1,8 +1,7 @@
 """A recording played to one tracker node: `ros2 launch … replay.launch.py recording:=FOLDER`."""
 
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
-from launch.conditions import IfCondition, UnlessCondition
+from launch import LaunchContext, LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
@@ -16,29 +15,37 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription(
         [
             DeclareLaunchArgument("recording", description="rosbag2 folder, or bare .mcap file"),
+            DeclareLaunchArgument(
+                "target",
+                default_value="",
+                description="Box to start on, x,y,w,h in px; empty takes the first true box",
+            ),
             DeclareLaunchArgument("rate", default_value="1.0", description="Speed of the replay"),
             DeclareLaunchArgument("loop", default_value="false", description="Begin again"),
             # The arguments of tracker.launch.py are declared there, and hold here too.
             IncludeLaunchDescription(PythonLaunchDescriptionSource(tracker)),
-            replay(UnlessCondition(LaunchConfiguration("loop"))),
-            replay(IfCondition(LaunchConfiguration("loop")), "--loop"),
+            OpaqueFunction(function=replay),
         ]
     )
 
 
-def replay(condition: IfCondition | UnlessCondition, *options: str) -> Node:
-    return Node(
-        package="vehicle_pf_tracker",
-        executable="bag_replay",
-        arguments=[
-            LaunchConfiguration("recording"),
-            "--rate",
-            LaunchConfiguration("rate"),
-            "--wait-for-subscribers",
-            "--decompress",  # the tracker listens for raw images unless its parameters say else
-            *options,
-        ],
-        condition=condition,
-        output="screen",
-        emulate_tty=True,
-    )
+def replay(context: LaunchContext) -> list[Node]:
+    def given(name: str) -> str:
+        return LaunchConfiguration(name).perform(context)
+
+    # Raw images, since that is what the tracker listens for unless its parameters say else.
+    arguments = [given("recording"), "--rate", given("rate"), "--wait-for-subscribers"]
+    arguments.append("--decompress")
+    if given("target"):
+        arguments += ["--target", given("target")]
+    if given("loop").lower() in {"true", "1"}:
+        arguments.append("--loop")
+    return [
+        Node(
+            package="vehicle_pf_tracker",
+            executable="bag_replay",
+            arguments=arguments,
+            output="screen",
+            emulate_tty=True,
+        )
+    ]

@@ -108,3 +108,11 @@ def test_replay_plays_the_recording_to_the_tracker():
 def test_replay_loops_when_asked():
     context, nodes = started("replay", recording="/data/highway", loop="true")
     assert "--loop" in command(context, nodes[1])
+
+
+@pytest.mark.parametrize(("target", "told"), [("", []), ("1,2,30,40", ["--target", "1,2,30,40"])])
+def test_replay_passes_a_target_on(target, told):
+    context, nodes = started("replay", recording="/data/highway", target=target)
+    words = command(context, nodes[1])
+    assert words[words.index("--decompress") + 1 :][: len(told)] == told
+    assert ("--target" in words) == bool(told)
