@@ -97,7 +97,11 @@ def test_progress_tells_done_running_and_time_left():
 def test_what_was_ended_continues_and_comes_out_the_same(tmp_path, number):
     whole, ended = tmp_path / "whole", tmp_path / "ended"
     assert reproduce(whole, "apf-fig3") == 0
-    code = "import sys; from vehicle_pf_tracker.cli.main import main; sys.exit(main())"
+    # Those who start us in the background may have had SIGINT ignored, which a child inherits.
+    code = (
+        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "from vehicle_pf_tracker.cli.main import main; sys.exit(main())"
+    )
     words = ["reproduce", "apf-fig3", *WORDS[:-1], "2", "-o", str(ended)]
     process = subprocess.Popen(
         [sys.executable, "-c", code, *words], stderr=subprocess.PIPE, text=True
