@@ -44,7 +44,7 @@ def tracker_process(
         yield process
     finally:
         status = _end(process)
-    if status not in {0, -signal.SIGINT}:
+    if status not in {0, -signal.SIGTERM}:
         raise InputError(
             f"the node {variant}_tracker ended with status {status}; see its log above"
         )
@@ -52,7 +52,8 @@ def tracker_process(
 
 def _end(process: subprocess.Popen[bytes]) -> int:
     if process.poll() is None:
-        process.send_signal(signal.SIGINT)
+        # Not SIGINT, which a process begun in a shell's background inherits as ignored.
+        process.terminate()
     try:
         return process.wait(_END_SECONDS)
     except subprocess.TimeoutExpired:
