@@ -83,10 +83,11 @@ def _setting(size: Size) -> str:
         "Scenes `video01` to `video20` are counterparts of the paper's table I (kind of vehicle, "
         "resolution, kind of occlusion; 15 frames per second), made before any tracker ran on "
         f"them. Seeds {size.seeds.start} to {size.seeds.stop - 1}: each draws the scene anew "
-        "(colour of the vehicle, traffic, ground, noise) and seeds the tracker; none of them was "
-        f"used to choose anything. {SIGMA_RULE} This rule was the best of three that follow the "
-        "speed (1 and 1.5 times the nominal one, 1 times the highest) for the six trackers "
-        "together, on 14 scenes with seeds from 100 on."
+        f"(colour of the vehicle, traffic, ground, noise) and seeds the tracker. {SIGMA_RULE} The "
+        "rule was chosen on 14 scenes with seeds from 100 on: of three that follow the speed (1 "
+        "and 1.5 times the nominal one, 1 times the highest) it gave the six trackers together the "
+        "least error, 23.7 px (geometric mean). A constant of 10 px/frame, which does not follow "
+        "the speed, gave 22.6 px."
     )
 
 
