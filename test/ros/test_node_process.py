@@ -59,6 +59,8 @@ def test_a_second_ctrl_c_does_not_reach_the_clean_up(start_process):
 def test_a_signal_while_libraries_load_leaves_no_traceback(start_process):
     code = (
         "import os, signal, sys\n"
+        # A shell that runs us in the background has us inherit SIGINT as ignored.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "class Interrupting:\n"
         "    def find_spec(self, name, path=None, target=None):\n"
         "        if name == 'vehicle_pf_tracker.ros.process':\n"
