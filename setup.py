@@ -22,9 +22,15 @@ RUNTIME = [
     "rich>=13",
     "matplotlib>=3.6",
     "PyYAML>=6.0",
+    "scipy>=1.11",
+    "jinja2>=3.1",
 ]
+NUMBA = ["numba>=0.60"]
+CLUSTER = ["distributed>=2024.5", "fsspec>=2024.5"]
+TUNE = ["optuna>=4.0"]
 TEST = ["pytest>=7", "hypothesis>=6.100"]
 LINT = ["ruff>=0.17,<0.18", "mypy>=2.4,<3", "types-PyYAML"]
+PEERS = ["evo>=1.30"]  # reads what we write
 ROS = [
     f"{wheel}; {JAZZY_WHEELS}"
     for wheel in (
@@ -65,7 +71,15 @@ setup(
     ],
     zip_safe=False,
     install_requires=[] if BUILT_FOR_ROS else RUNTIME,
-    extras_require={"ros": ROS, "test": TEST, "lint": LINT, "dev": TEST + LINT},
+    extras_require={
+        "ros": ROS,
+        "numba": NUMBA,
+        "cluster": CLUSTER,
+        "tune": TUNE,
+        "test": TEST,
+        "lint": LINT,
+        "dev": TEST + LINT + NUMBA + CLUSTER + TUNE + PEERS,
+    },
     entry_points={
         "console_scripts": [
             f"vehicle-pf-tracker = {NAME}.cli.main:main",
