@@ -2,7 +2,7 @@ import pytest
 from experiment_samples import PF, SCENE, run_cells
 
 from vehicle_pf_tracker.evaluation.experiments.cells import RunCell, SceneChoice, System
-from vehicle_pf_tracker.evaluation.experiments.identity import key, source_digest
+from vehicle_pf_tracker.evaluation.experiments.identity import key
 from vehicle_pf_tracker.evaluation.experiments.running import run_together
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
@@ -56,27 +56,6 @@ def test_whatever_decides_the_result_is_in_the_key(other):
 def test_the_name_in_tables_and_spelt_out_defaults_are_not():
     renamed = System.of("mine", "pf", {**dict(PF.settings), "histogram_bits": 3})
     assert key(RunCell(SCENE, renamed, 0)) == key(RunCell(SCENE, PF, 0))
-
-
-def test_the_code_is_in_the_key(tmp_path):
-    for folder in ("features", "filtering", "trackers", "scenes", "recordings"):
-        (tmp_path / folder).mkdir()
-    (tmp_path / "evaluation" / "experiments").mkdir(parents=True)
-    files = [
-        "trackers/apf.py", "recordings/truth.py", "evaluation/association.py",
-        "evaluation/metrics.py", "evaluation/occlusions.py", "evaluation/scores.py",
-        "evaluation/experiments/cells.py", "evaluation/experiments/timing_cell.py",
-    ]  # fmt: skip
-    for name in files:
-        (tmp_path / name).write_text("one")
-    before = source_digest(tmp_path)
-    (tmp_path / "recordings" / "reader.py").write_text("no matter")
-    assert source_digest(tmp_path) == before
-    for name in files:
-        (tmp_path / name).write_text("two")
-        assert source_digest(tmp_path) != before
-        (tmp_path / name).write_text("one")
-    assert source_digest(tmp_path) == before
 
 
 def test_speeds_come_from_settings_defaults_and_tables():

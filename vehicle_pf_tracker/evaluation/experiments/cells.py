@@ -113,6 +113,11 @@ class Cell(Protocol):
         ...
 
     @property
+    def variants(self) -> tuple[str, ...]:
+        """Names of the variants that run."""
+        ...
+
+    @property
     def alone(self) -> bool:
         """Whether nothing else may run beside it, as where time is measured."""
         ...
@@ -143,6 +148,11 @@ class RunCell:
     def label(self) -> str:
         """Scene and tracker."""
         return f"{self.scene.name} {self.system.label}"
+
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """Name the one variant."""
+        return (self.system.variant,)
 
     @property
     def alone(self) -> bool:

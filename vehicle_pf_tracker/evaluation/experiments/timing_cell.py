@@ -39,6 +39,11 @@ class TimingCell:
         return f"{self.scene.name} timing"
 
     @property
+    def variants(self) -> tuple[str, ...]:
+        """Name the variants in the order of the systems."""
+        return tuple(system.variant for system in self.systems)
+
+    @property
     def alone(self) -> bool:
         """Nothing may run beside it."""
         return True

@@ -1,0 +1,59 @@
+import pytest
+
+from vehicle_pf_tracker.evaluation import source_digest as module
+from vehicle_pf_tracker.evaluation.source_digest import source_digest
+
+FILES = {
+    "start.py": "from made.middle import thing\nimport numpy\n",
+    "middle.py": "def f():\n    import made.sub.late\n",
+    "sub/__init__.py": "",
+    "sub/late.py": "X = 1\n",
+    "other.py": "Y = 1\n",
+    "table.py": "from made import other\n",
+}
+
+
+@pytest.fixture
+def root(tmp_path):
+    (tmp_path / "made" / "sub").mkdir(parents=True)
+    for name, text in FILES.items():
+        (tmp_path / "made" / name).write_text(text)
+    return tmp_path
+
+
+def digest(root, *modules):
+    module._imported.cache_clear()
+    return source_digest(modules, root, "made")
+
+
+@pytest.mark.parametrize("name", ["start.py", "middle.py", "sub/late.py"])
+def test_whatever_is_imported_counts_also_late(root, name):
+    before = digest(root, "made.start")
+    file = root / "made" / name
+    file.write_text(FILES[name] + "# changed")
+    assert digest(root, "made.start") != before
+    file.write_text(FILES[name])
+    assert digest(root, "made.start") == before
+
+
+def test_what_is_not_imported_does_not_count(root):
+    before = digest(root, "made.start")
+    (root / "made" / "other.py").write_text("Y = 2\n")
+    assert digest(root, "made.start") == before
+    assert digest(root, "made.start", "made.other") != before
+
+
+def test_a_table_and_what_it_lists_do_not_count(root, monkeypatch):
+    monkeypatch.setattr(module, "_TABLES", frozenset({"made.table"}))
+    (root / "made" / "sub" / "late.py").write_text("import made.table\n")
+    before = digest(root, "made.start")
+    for name in ("other.py", "table.py"):
+        (root / "made" / name).write_text("Y = 2\n")
+        assert digest(root, "made.start") == before
+
+
+def test_one_variant_does_not_decide_another():
+    names = [f"vehicle_pf_tracker.trackers.{name}" for name in ("apf", "ms", "session")]
+    assert len({source_digest([name]) for name in names}) == 3
+    found = module._imported("vehicle_pf_tracker.trackers.session", module._ROOT, module._PACKAGE)
+    assert "vehicle_pf_tracker.trackers.registry" in found
