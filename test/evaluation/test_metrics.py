@@ -58,6 +58,32 @@ def test_mode_against_truth():
     }  # fmt: skip
 
 
+def test_claims_of_an_occlusion_by_hand():
+    metrics = metrics_of(
+        scored(1, 0, mode="OCCLUDED"),
+        scored(2, 0, PARTIAL, mode="OCCLUDED"),
+        scored(3, 0, TOTAL, mode="OCCLUDED"),
+        scored(4, 0, TOTAL, mode="OCCLUDED"),
+        scored(5, 0, TOTAL, mode="LOST"),
+        scored(6, 0, NONE, mode="LOST"),
+        scored(7, 0, NONE, mode="LOST"),
+        scored(8, 0, TOTAL),
+    )
+    assert (metrics.occluded_precision, metrics.occluded_precision_partial) == (0.5, 0.75)
+    assert metrics.occluded_recall == 0.5
+    assert (metrics.lost_hidden, metrics.lost_visible) == (1, 2)
+
+
+def test_claims_that_are_not_made_have_no_precision():
+    metrics = metrics_of(scored(1, 0), scored(2, 0, mode="LOST"))
+    assert metrics.occluded_precision is metrics.occluded_recall is None
+
+
+def test_quantiles_of_the_error():
+    metrics = metrics_of(*(scored(i, i) for i in range(1, 22)))
+    assert (metrics.median_px, metrics.p95_px, metrics.max_px) == (11, 20, 21)
+
+
 def test_step_times():
     rows = [row(i, 100.0, step_ms=float(i)) for i in range(1, 22)]
     metrics = measure(score_frames(rows, []))

@@ -83,3 +83,31 @@ def test_frames_without_an_estimate_do_not_judge():
     frames += [scored(n, None, mode="REJECTED") for n in range(20, 40)]
     (score,) = score_occlusions(frames)
     assert (score.judged_frames, score.recovered) == (4, None)
+
+
+def test_exit_and_return_by_hand():
+    # Hidden to frame 5, off for 3 frames, from frame 9 on the vehicle (20 px and less).
+    (score,) = judged((5, 0, TOTAL), (3, 40, NONE), (30, 2, NONE))
+    assert (score.error_at_exit_px, score.frames_to_recover) == (40, 4)
+
+
+def test_at_once_is_one_frame():
+    (score,) = judged((5, 0, TOTAL), (30, 2, NONE))
+    assert (score.error_at_exit_px, score.frames_to_recover) == (2, 1)
+
+
+def test_a_pass_over_the_vehicle_is_no_return():
+    (score,) = judged((5, 0, TOTAL), (4, 2, NONE), (1, 90, NONE), (4, 2, NONE), (9, 90, NONE))
+    assert score.frames_to_recover is None
+    (score,) = judged((5, 0, TOTAL), (4, 2, NONE), (1, 90, NONE), (5, 2, NONE), (9, 90, NONE))
+    assert score.frames_to_recover == 6
+
+
+def test_the_next_occlusion_ends_the_search():
+    first, second = judged((1, 0, TOTAL), (4, 2, NONE), (2, 0, TOTAL), (5, 2, NONE))
+    assert (first.frames_to_recover, second.frames_to_recover) == (None, 1)
+
+
+def test_an_occlusion_until_the_end_has_no_exit():
+    (score,) = judged((5, 3, TOTAL))
+    assert (score.error_at_exit_px, score.frames_to_recover) == (None, None)

@@ -1,8 +1,9 @@
 """What a run is worth, in numbers.
 
 Scored are the frames that have truth, from the frame on in which the target was set. Hidden frames
-are those in which it is totally occluded, visible ones the rest. A frame without an estimate (the
-tracker rejected it) counts as a miss in every share, and is left out of means and quantiles.
+are those in which it is totally occluded, visible ones the rest. What stands for an estimate that
+is missing, see `scores`; a frame before the first estimate counts as a miss in every share, and is
+left out of means and quantiles.
 """
 
 from __future__ import annotations
@@ -14,13 +15,23 @@ from typing import Any
 
 import numpy as np
 
+from vehicle_pf_tracker.evaluation.curves import (
+    Curve,
+    normalised_precision_curve,
+    precision_curve,
+    success_curve,
+)
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING
+from vehicle_pf_tracker.evaluation.failures import count_failures
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX, OcclusionScore, score_occlusions
 from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
+from vehicle_pf_tracker.recordings.truth import Occlusion
 from vehicle_pf_tracker.trackers.estimate import Mode
 
 PRECISION_PX = 20.0
 """Threshold of the precision that the OTB benchmark ranks by."""
+NORMALISED_PRECISION = 0.2
+"""Threshold of the normalised precision that the LaSOT benchmark ranks by."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +46,9 @@ class Metrics:
         Scored frames; frames whose true position is not known; frames before the target was set.
     truths_unmatched : int
         Truths that belong to no frame.
-    rmse_px, median_px, max_px : float or None
+    frames_standing : int
+        Scored frames without an estimate, in which the last one stands.
+    rmse_px, median_px, p95_px, max_px : float or None
         Error of the centre over all scored frames.
     rmse_visible_px : float or None
         The same over visible frames.
@@ -43,12 +56,27 @@ class Metrics:
         Share of scored frames with an error below 15 px.
     precision_20px : float or None
         Share of scored frames with an error of at most 20 px, as in OTB.
+    precision_auc, success_auc, normalised_precision_auc : float or None
+        Areas of the curves of `curves`, over all scored frames.
+    normalised_precision_20 : float or None
+        Share of scored frames with a normalised error of at most 0.2, as in LaSOT.
     on_target : float or None
         Share of visible frames with an error below half the true box's diagonal.
     hidden_not_tracking : float or None
         Share of hidden frames in which the mode is not TRACKING.
     visible_tracking : float or None
         Share of visible frames in which it is.
+    occluded_precision : float or None
+        Share of the scored frames with the mode OCCLUDED that are hidden.
+    occluded_precision_partial : float or None
+        The same, where a partial occlusion counts too.
+    occluded_recall : float or None
+        Share of hidden frames with the mode OCCLUDED; LOST is no such claim.
+    lost_hidden, lost_visible : int
+        Hidden and visible frames with the mode LOST.
+    failures : int
+        Times that the estimate came to have nothing in common with a visible vehicle; see
+        `failures`.
     frames_by_mode : mapping of str to int
         Number of frames, scored or not.
     step_ms_p50, step_ms_p95 : float or None
@@ -62,15 +90,27 @@ class Metrics:
     frames_without_truth: int
     frames_waiting: int
     truths_unmatched: int
+    frames_standing: int
     rmse_px: float | None
     rmse_visible_px: float | None
     median_px: float | None
+    p95_px: float | None
     max_px: float | None
     p_error_lt_15px: float | None
     precision_20px: float | None
+    precision_auc: float | None
+    success_auc: float | None
+    normalised_precision_auc: float | None
+    normalised_precision_20: float | None
     on_target: float | None
     hidden_not_tracking: float | None
     visible_tracking: float | None
+    occluded_precision: float | None
+    occluded_precision_partial: float | None
+    occluded_recall: float | None
+    lost_hidden: int
+    lost_visible: int
+    failures: int
     frames_by_mode: Mapping[str, int]
     step_ms_p50: float | None
     step_ms_p95: float | None
@@ -95,26 +135,24 @@ def measure(scores: Scores) -> Metrics:
     counted = scores.counted
     visible = [frame for frame in counted if not frame.hidden]
     hidden = [frame for frame in counted if frame.hidden]
-    errors = _errors(counted)
+    times = [frame.row.step_ms for frame in scores.frames if frame.row.step_ms is not None]
     return Metrics(
         frames=len(scores.frames),
         frames_scored=len(counted),
         frames_without_truth=sum(frame.truth is None for frame in scores.frames),
         frames_waiting=sum(frame.waiting for frame in scores.frames),
         truths_unmatched=scores.truths_unmatched,
-        rmse_px=_rms(errors),
+        frames_standing=sum(frame.stands_still for frame in counted),
         rmse_visible_px=_rms(_errors(visible)),
-        median_px=_quantile(errors, 0.5),
-        max_px=_quantile(errors, 1.0),
-        p_error_lt_15px=_share([e is not None and e < CLOSE_PX for e in _all_errors(counted)]),
-        precision_20px=_share([e is not None and e <= PRECISION_PX for e in _all_errors(counted)]),
         on_target=_share([is_on_target(frame) for frame in visible]),
-        hidden_not_tracking=_share([frame.row.mode != Mode.TRACKING for frame in hidden]),
-        visible_tracking=_share([frame.row.mode == Mode.TRACKING for frame in visible]),
+        failures=count_failures(scores.frames),
         frames_by_mode=_by_mode(scores.frames),
-        step_ms_p50=_quantile(_step_times(scores.frames), 0.5),
-        step_ms_p95=_quantile(_step_times(scores.frames), 0.95),
+        step_ms_p50=_quantile(times, 0.5),
+        step_ms_p95=_quantile(times, 0.95),
         occlusions=score_occlusions(counted),
+        **_errors_of(counted),
+        **_curves_of(counted),
+        **_modes_of(visible, hidden),
     )
 
 
@@ -125,16 +163,51 @@ def is_on_target(frame: FrameScore) -> bool:
     return frame.error < frame.truth.box.diagonal / 2
 
 
-def _all_errors(frames: Sequence[FrameScore]) -> list[float | None]:
-    return [frame.error for frame in frames]
+def _errors_of(counted: Sequence[FrameScore]) -> dict[str, Any]:
+    errors = _errors(counted)
+    return {
+        "rmse_px": _rms(errors),
+        "median_px": _quantile(errors, 0.5),
+        "p95_px": _quantile(errors, 0.95),
+        "max_px": _quantile(errors, 1.0),
+        "p_error_lt_15px": _share([f.error is not None and f.error < CLOSE_PX for f in counted]),
+    }
+
+
+def _curves_of(counted: Sequence[FrameScore]) -> dict[str, Any]:
+    precision, normalised = precision_curve(counted), normalised_precision_curve(counted)
+    return {
+        "precision_20px": precision.at(PRECISION_PX) if precision else None,
+        "precision_auc": _auc(precision),
+        "success_auc": _auc(success_curve(counted)),
+        "normalised_precision_auc": _auc(normalised),
+        "normalised_precision_20": normalised.at(NORMALISED_PRECISION) if normalised else None,
+    }
+
+
+def _modes_of(visible: Sequence[FrameScore], hidden: Sequence[FrameScore]) -> dict[str, Any]:
+    occluded = [f for f in (*visible, *hidden) if f.row.mode == Mode.OCCLUDED]
+    return {
+        "hidden_not_tracking": _share([f.row.mode != Mode.TRACKING for f in hidden]),
+        "visible_tracking": _share([f.row.mode == Mode.TRACKING for f in visible]),
+        "occluded_precision": _share([f.hidden for f in occluded]),
+        "occluded_precision_partial": _share([_is_occluded(f) for f in occluded]),
+        "occluded_recall": _share([f.row.mode == Mode.OCCLUDED for f in hidden]),
+        "lost_hidden": sum(f.row.mode == Mode.LOST for f in hidden),
+        "lost_visible": sum(f.row.mode == Mode.LOST for f in visible),
+    }
+
+
+def _is_occluded(frame: FrameScore) -> bool:
+    return frame.truth is not None and frame.truth.occlusion is not Occlusion.NONE
 
 
 def _errors(frames: Sequence[FrameScore]) -> list[float]:
-    return [error for error in _all_errors(frames) if error is not None]
+    return [frame.error for frame in frames if frame.error is not None]
 
 
-def _step_times(frames: Sequence[FrameScore]) -> list[float]:
-    return [frame.row.step_ms for frame in frames if frame.row.step_ms is not None]
+def _auc(curve: Curve | None) -> float | None:
+    return curve.auc if curve else None
 
 
 def _by_mode(frames: Sequence[FrameScore]) -> dict[str, int]:

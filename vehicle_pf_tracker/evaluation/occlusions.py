@@ -37,6 +37,11 @@ class OcclusionScore:
     recovered : bool or None
         Whether `error_after_px` is below `threshold_px`; None where there are fewer than
         `FEWEST_JUDGED` frames to judge by.
+    error_at_exit_px : float or None
+        Error in the first frame after `last_frame`.
+    frames_to_recover : int or None
+        Frames from `last_frame` to the first of `FEWEST_JUDGED` scored frames in a row that are on
+        the vehicle (see `threshold`); None where there are none before the next total occlusion.
     """
 
     first_frame: int
@@ -47,6 +52,8 @@ class OcclusionScore:
     error_after_px: float | None
     threshold_px: float | None
     recovered: bool | None
+    error_at_exit_px: float | None
+    frames_to_recover: int | None
 
 
 def score_occlusions(counted: Sequence[FrameScore]) -> tuple[OcclusionScore, ...]:
@@ -95,7 +102,17 @@ def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> Occlusio
         error_after_px=after,
         threshold_px=limit,
         recovered=recovered,
+        error_at_exit_px=seen[0].error if seen else None,
+        frames_to_recover=_frames_to_recover(last, seen),
     )
+
+
+def _frames_to_recover(last_hidden: int, seen: Sequence[FrameScore]) -> int | None:
+    on_vehicle = [frame.error is not None and frame.error < threshold(frame) for frame in seen]
+    for index, frame in enumerate(seen[: len(seen) - FEWEST_JUDGED + 1]):
+        if all(on_vehicle[index : index + FEWEST_JUDGED]):
+            return frame.row.frame - last_hidden
+    return None
 
 
 def _mean_error(frames: Sequence[FrameScore]) -> float | None:

@@ -1,23 +1,40 @@
-"""Each frame's estimate held against its truth."""
+"""Each frame's estimate held against its truth.
+
+One rule serves all systems. What a system estimates is scored as it stands, whatever mode it
+claims. Where it gives no estimate, its last one stands: silence neither helps nor hurts more than
+holding still does. Before its first estimate there is nothing to stand, and the frame is a miss.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF, associate
 from vehicle_pf_tracker.evaluation.estimates import WAITING, EstimateRow
+from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 
 @dataclass(frozen=True, slots=True)
 class FrameScore:
-    """A frame of a recording, and its truth where that is known."""
+    """A frame of a recording, and its truth where that is known.
+
+    Attributes
+    ----------
+    row : EstimateRow
+        What was estimated in this frame.
+    truth : Truth or None
+        None where it is not known.
+    standing : EstimateRow or None
+        The last row before with an estimate, which stands where `row` has none.
+    """
 
     row: EstimateRow
     truth: Truth | None
+    standing: EstimateRow | None = None
 
     @property
     def waiting(self) -> bool:
@@ -35,12 +52,55 @@ class FrameScore:
         return self.truth is not None and self.truth.occlusion is Occlusion.TOTAL
 
     @property
+    def scored_row(self) -> EstimateRow | None:
+        """The estimate that is scored here; None before there was any."""
+        return self.row if _is_estimate(self.row) else self.standing
+
+    @property
+    def stands_still(self) -> bool:
+        """Whether the last estimate is scored for want of one of this frame."""
+        return self.standing is not None and not _is_estimate(self.row)
+
+    @property
     def error(self) -> float | None:
-        """Distance of the centres in px; None without truth or without a finite estimate."""
-        position = self.row.position
-        if self.truth is None or position is None or not all(map(math.isfinite, position)):
+        """Distance of the centres in px; None without truth or before the first estimate."""
+        offset = self._offset
+        return None if offset is None else math.hypot(*offset)
+
+    @property
+    def normalised_error(self) -> float | None:
+        """The same in widths and heights of the true box (Mueller et al. 2018, TrackingNet)."""
+        offset = self._offset
+        if offset is None or self.truth is None or self.truth.box.area <= 0:
             return None
-        return math.dist(position, self.truth.box.centre)
+        return math.hypot(offset[0] / self.truth.box.width, offset[1] / self.truth.box.height)
+
+    @property
+    def overlap(self) -> float | None:
+        """Intersection over union of the boxes, 0 to 1; None as `error`, or without a size."""
+        row = self.scored_row
+        if self.truth is None or row is None or row.x is None or row.y is None:
+            return None
+        if row.width is None or row.height is None:
+            return None
+        return overlap(Box.around((row.x, row.y), row.width, row.height), self.truth.box)
+
+    @property
+    def _offset(self) -> tuple[float, float] | None:
+        position = None if self.scored_row is None else self.scored_row.position
+        if self.truth is None or position is None:
+            return None
+        centre = self.truth.box.centre
+        return position[0] - centre[0], position[1] - centre[1]
+
+
+def overlap(one: Box, other: Box) -> float:
+    """Return the intersection over the union of two boxes, 0 to 1."""
+    width = min(one.x + one.width, other.x + other.width) - max(one.x, other.x)
+    height = min(one.y + one.height, other.y + other.height) - max(one.y, other.y)
+    shared = max(width, 0.0) * max(height, 0.0)
+    union = one.area + other.area - shared
+    return shared / union if union > 0 else 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,9 +143,25 @@ def score_frames(
             "a larger --max-diff may help"
         )
     frames = (
-        FrameScore(row, truths[pairs[i]] if i in pairs else None) for i, row in enumerate(rows)
+        FrameScore(row, truths[pairs[i]] if i in pairs else None, standing)
+        for i, (row, standing) in enumerate(zip(rows, _standing(rows), strict=True))
     )
     return Scores(tuple(frames), len(truths) - len(pairs))
+
+
+def _standing(rows: Sequence[EstimateRow]) -> Iterator[EstimateRow | None]:
+    """For each row the last estimate before it; a new wait for a target forgets it."""
+    last: EstimateRow | None = None
+    for row in rows:
+        if row.mode == WAITING:
+            last = None
+        yield last
+        if _is_estimate(row):
+            last = row
+
+
+def _is_estimate(row: EstimateRow) -> bool:
+    return row.position is not None and all(map(math.isfinite, row.position))
 
 
 def _span(stamps: Sequence[int]) -> str:
