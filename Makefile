@@ -12,7 +12,7 @@ CORE_AND_NODE := $(wildcard $(addprefix test/,filtering features trackers scenes
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: demo test test-slow test-noble lint types format config colcon clean
+.PHONY: demo test test-slow test-noble lint types format config colcon peers clean
 
 demo: .venv/installed
 	$(BIN)/vehicle-pf-tracker demo -o results/demo
@@ -29,6 +29,9 @@ test-noble: .venv-noble/installed
 
 colcon: .venv/colcon
 	PATH="$(CURDIR)/$(BIN):$$PATH" .ci/colcon
+
+# OpenCV's trackers to compare with: two OpenCV packages in one environment overwrite each other.
+peers: .venv-peers/locked
 
 lint: .venv/installed
 	$(BIN)/ruff check .
@@ -51,7 +54,7 @@ config: .venv/installed
 	mv docs/parameters.new docs/parameters.md
 
 clean:
-	rm -rf .venv .venv-noble build install log results *.egg-info
+	rm -rf .venv .venv-noble .venv-peers build install log results *.egg-info
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
@@ -62,6 +65,9 @@ clean:
 
 .venv-noble/locked: requirements/noble.txt requirements/ros-jazzy.txt
 	.ci/make-venv .venv-noble requirements/noble.txt $(or $(NOBLE_PYTHON),3.12 3.11 3.10)
+
+.venv-peers/locked: requirements/peers.txt
+	.ci/make-venv --without-ros .venv-peers requirements/peers.txt $(PYTHON)
 
 .venv/installed .venv-noble/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml
 	$*/bin/python $(INSTALL) --no-build-isolation --editable .

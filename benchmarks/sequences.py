@@ -1,19 +1,16 @@
 """Score all variants, and OpenCV's trackers, on a folder of real sequences with truth.
 
-    python benchmarks/sequences.py ../shared/sequences --peers PYTHON -o docs/sequences.md
+    python benchmarks/sequences.py ../shared/sequences --peers .venv-peers/bin/python
 
-`PYTHON` is the interpreter of an environment with ``opencv-contrib-python-headless``; without it
-the peers are left out. Every cell is the share of visible frames with an error below half the true
-box's diagonal, the mean over seeds with the least and the most; defaults throughout.
+`make peers` builds the environment of the peers; without ``--peers`` they are left out. Every cell
+is the share of visible frames with an error below half the true box's diagonal, the mean over seeds
+with the least and the most; defaults throughout.
 """
 
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import statistics
-import subprocess
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -23,6 +20,8 @@ from pathlib import Path
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
+from vehicle_pf_tracker.evaluation.peers.client import Peer
+from vehicle_pf_tracker.evaluation.peers.rows import peer_rows
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.recordings.importing import import_recording
 from vehicle_pf_tracker.recordings.reader import Recording
@@ -31,7 +30,6 @@ from vehicle_pf_tracker.trackers.parameters import from_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 PEERS = ("csrt", "kcf", "mil")
-WORKER = Path(__file__).with_name("peer_worker.py")
 TITLE = f"""# The variants on real sequences
 
 Share of visible frames with an error below half the true box's diagonal: mean over the seeds, and
@@ -81,22 +79,9 @@ def score_sequence(folder: Path, seeds: int, peers: Path | None) -> dict[str, li
             tracker = OfflineTracker(variant, parameters, first_truth=truth[0])
             shares.setdefault(name, []).append(_share(list(tracker.rows(frames)), truth))
     for name in PEERS if peers else ():
-        stamps = [stamp for stamp, _ in frames]
-        shares[name] = [_share(_peer_rows(peers, folder, name, stamps), truth)]
+        with Peer(name, peers) as peer:
+            shares[name] = [_share(list(peer_rows(peer, frames, truth[0])), truth)]
     return shares
-
-
-def _peer_rows(
-    python: Path | None, folder: Path, name: str, stamps: Sequence[int]
-) -> list[EstimateRow]:
-    done = subprocess.run(
-        [str(python), str(WORKER), str(folder), name], capture_output=True, text=True, check=True
-    )
-    boxes = [list(map(float, line)) for line in csv.reader(io.StringIO(done.stdout))]
-    return [
-        EstimateRow(i, stamp, x + w / 2, y + h / 2, w, h, "TRACKING", None, None, None)
-        for i, (stamp, (x, y, w, h)) in enumerate(zip(stamps, boxes, strict=True), start=1)
-    ]
 
 
 def _share(rows: Sequence[EstimateRow], truth: Sequence[Truth]) -> float:

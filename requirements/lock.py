@@ -1,5 +1,7 @@
 """Write the lock files anew: `python requirements/lock.py python3.10 python3.11 python3.12 ...`.
 
+`--only peers` before the interpreters writes that lock alone.
+
 For every interpreter and every lock file, pip resolves the extras of setup.py in a throw-away
 environment. A version that all interpreters share is written once; where they differ, each line
 carries a marker. Give all supported interpreters, and run it on Linux x86_64.
@@ -7,6 +9,7 @@ carries a marker. Give all supported interpreters, and run it on Linux x86_64.
 
 from __future__ import annotations
 
+import argparse
 import subprocess
 import sys
 import tempfile
@@ -37,6 +40,7 @@ NOBLE = (  # what Ubuntu 24.04 has from apt; its Python is 3.12
     "rich==13.7.1",
     "pytest==7.4.4",
 )
+PEERS = ("opencv-contrib-python-headless<5",)  # the trackers compared with
 # The ROS wheels unpack metadata of their own besides; only what pip installed has a WHEEL file.
 INSTALLED = """
 from importlib.metadata import distributions
@@ -47,21 +51,33 @@ for found in distributions():
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--only", choices=["peers"])
+    parser.add_argument("interpreters", nargs="+")
+    args = parser.parse_args()
     locks: dict[str, dict[str, set[str]]] = {}
-    for interpreter in sys.argv[1:]:
+    for interpreter in args.interpreters:
         version = run(interpreter, "-c", "import sys; print('%d.%d' % sys.version_info[:2])")[0]
-        base = resolve(interpreter, BASE)
-        pins = {
-            "locked": base,
-            "ros-jazzy": resolve(interpreter, ROS) - base,
-            "colcon": resolve(interpreter, COLCON) - base,
-        }
-        if version in {"3.10", "3.11", "3.12"}:  # NumPy 1.26 has no wheels for later ones
-            pins["noble"] = resolve(interpreter, NOBLE)
+        pins = {"peers": resolve(interpreter, PEERS)}
+        if args.only is None:
+            pins |= own_pins(interpreter, version)
         for lock, found in pins.items():
             locks.setdefault(lock, {})[version] = found
     for lock, by_version in locks.items():
         (HERE / f"{lock}.txt").write_text(merged(by_version))
+
+
+def own_pins(interpreter: str, version: str) -> dict[str, set[str]]:
+    """Return the pins of every lock that this package itself is installed with."""
+    base = resolve(interpreter, BASE)
+    pins = {
+        "locked": base,
+        "ros-jazzy": resolve(interpreter, ROS) - base,
+        "colcon": resolve(interpreter, COLCON) - base,
+    }
+    if version in {"3.10", "3.11", "3.12"}:  # NumPy 1.26 has no wheels for later ones
+        pins["noble"] = resolve(interpreter, NOBLE)
+    return pins
 
 
 def resolve(interpreter: str, wanted: tuple[str, ...]) -> set[str]:
@@ -69,6 +85,7 @@ def resolve(interpreter: str, wanted: tuple[str, ...]) -> set[str]:
     with tempfile.TemporaryDirectory() as folder:
         run(interpreter, "-m", "venv", folder)
         python = str(Path(folder, "bin", "python"))
+        run(python, "-m", "pip", "uninstall", "--quiet", "--yes", "setuptools")
         run(python, "-m", "pip", "install", "--quiet", "--upgrade", "pip")
         run(python, "-m", "pip", "install", "--quiet", *wanted)
         pins = run(python, "-c", INSTALLED)

@@ -1,0 +1,205 @@
+"""OpenCV's trackers on our frames, in a process of their own (`worker`)."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import subprocess
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType, TracebackType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from vehicle_pf_tracker.evaluation.peers.environment import peer_python
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame, frame_size
+
+MODELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "csrt": (),
+        "kcf": (),
+        "mil": (),
+        "vit": ("net",),
+        "nano": ("backbone", "neckhead"),
+        "dasiamrpn": ("model", "kernel_cls1", "kernel_r1"),
+    }
+)
+"""The peers by name, and the model files that the user brings for each."""
+
+_WORKER = Path(__file__).with_name("worker.py")
+_END_SECONDS = 10.0
+
+
+class PeerAnswer(NamedTuple):
+    """What a peer says of one frame.
+
+    Attributes
+    ----------
+    box : Box
+        In px; the last one known where the peer gave the frame up.
+    found : bool
+        Whether the peer claims to see its target.
+    seconds : float
+        CPU of the tracking thread, without the transfer of the frame.
+    """
+
+    box: Box
+    found: bool
+    seconds: float
+
+
+class Peer:
+    """One of OpenCV's trackers; a context manager, since it owns a process.
+
+    A new process repeats a run exactly. Started anew in the same process, MIL draws other samples.
+
+    Parameters
+    ----------
+    name : str
+        A key of `MODELS`.
+    python : Path or None
+        Interpreter with OpenCV's contrib package; None looks where `peer_python` says.
+    models : mapping of str to Path
+        Model files by the names that `MODELS` gives for this peer.
+
+    Attributes
+    ----------
+    opencv : str
+        Version of OpenCV that runs.
+
+    Raises
+    ------
+    InputError
+        If there is no such peer, interpreter, tracker or model file.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        python: Path | None = None,
+        models: Mapping[str, Path] = MappingProxyType({}),
+    ) -> None:
+        words = [f"{key}={path}" for key, path in _checked_models(name, models).items()]
+        self.name = name
+        self._box: Box | None = None
+        self._python = str(peer_python(python))
+        command = [self._python, "-I", str(_WORKER), name, *words]
+        self._log = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process
+        try:
+            self._process = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._log
+            )
+        except OSError as error:
+            self._log.close()
+            raise InputError(f"cannot run {self._python}: {error.strerror}") from error
+        try:
+            self.opencv = str(self._answer()["opencv"])
+        except BaseException:
+            self.close()
+            raise
+
+    def start(self, frame: Frame, box: Box) -> PeerAnswer:
+        """Begin anew on `box` (rounded to whole px, as these trackers want it) of `frame`.
+
+        Raises
+        ------
+        InputError
+            If the peer refuses the box, or has died.
+        """
+        self._box = None
+        left, top = round(box.x), round(box.y)
+        return self._ask(
+            frame, box=[left, top, max(round(box.width), 1), max(round(box.height), 1)]
+        )
+
+    def step(self, frame: Frame) -> PeerAnswer:
+        """Follow the target into the next frame, which is (H, W, 3) RGB.
+
+        Raises
+        ------
+        InputError
+            If the peer was not started, or has died.
+        """
+        if self._box is None:
+            raise InputError(f"the peer {self.name} has no target yet: start it on a box first")
+        return self._ask(frame)
+
+    def close(self) -> None:
+        """End the process."""
+        assert self._process.stdin is not None
+        with contextlib.suppress(BrokenPipeError):  # it died; what was under way is lost
+            self._process.stdin.close()
+        try:
+            self._process.wait(_END_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        if self._process.stdout is not None:
+            self._process.stdout.close()
+        self._log.close()
+
+    def __enter__(self) -> Peer:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _ask(self, frame: Frame, **request: object) -> PeerAnswer:
+        width, height = frame_size(frame)
+        header = json.dumps({"height": height, "width": width, **request}).encode() + b"\n"
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(header)
+            self._process.stdin.write(np.ascontiguousarray(frame).data)
+            self._process.stdin.flush()
+        except BrokenPipeError:
+            raise self._death() from None
+        answer = self._answer()
+        found = answer["box"] is not None
+        box = Box(*answer["box"]) if found else self._box
+        assert box is not None  # a start answers with a box
+        self._box = box
+        return PeerAnswer(box, found, float(answer["seconds"]))
+
+    def _answer(self) -> dict[str, Any]:
+        assert self._process.stdout is not None
+        line = self._process.stdout.readline()
+        if not line:
+            raise self._death()
+        answer: dict[str, Any] = json.loads(line)
+        if "error" in answer:
+            raise InputError(f"the peer {self.name} cannot go on: {answer['error']}")
+        return answer
+
+    def _death(self) -> InputError:
+        status = self._process.wait()
+        self._log.seek(0)
+        said = self._log.read().decode(errors="replace").strip().splitlines()
+        reason = said[-1] if said else f"status {status}"
+        return InputError(
+            f"the peer {self.name}, run by {self._python}, ended: {reason}; "
+            "`make peers` builds an environment that has what it needs"
+        )
+
+
+def _checked_models(name: str, models: Mapping[str, Path]) -> dict[str, Path]:
+    if name not in MODELS:
+        raise InputError(f"there is no peer {name!r}; the peers are {', '.join(MODELS)}")
+    wanted = MODELS[name]
+    if set(models) != set(wanted):
+        words = f"these model files: {', '.join(wanted)}" if wanted else "no model files"
+        given = f"got {', '.join(sorted(models))}" if models else "got none"
+        raise InputError(f"the peer {name} needs {words}; {given}")
+    for key, path in models.items():
+        if not Path(path).is_file():
+            raise InputError(f"there is no file {path} for the model {key} of the peer {name}")
+    return {key: Path(path).absolute() for key, path in models.items()}
