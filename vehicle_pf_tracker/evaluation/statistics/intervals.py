@@ -1,0 +1,69 @@
+"""Mean, spread and a bootstrap interval of a few numbers."""
+
+from __future__ import annotations
+
+import inspect
+import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+CONFIDENCE = 0.95
+RESAMPLES = 9999
+_GENERATOR = "rng" if "rng" in inspect.signature(stats.bootstrap).parameters else "random_state"
+"""What SciPy calls the argument: another name from 1.15 on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Mean and spread of independent values.
+
+    Attributes
+    ----------
+    count : int
+        How many values there are.
+    mean : float
+        Their mean.
+    spread : float or None
+        Their sample standard deviation; None for a single value.
+    low, high : float or None
+        Percentile bootstrap interval of the mean, of confidence `CONFIDENCE`; None for a single
+        value. Of five values or fewer it is too narrow; it shows the scale, not the promise.
+    """
+
+    count: int
+    mean: float
+    spread: float | None
+    low: float | None
+    high: float | None
+
+
+def summarise(values: Sequence[float | None], seed: int = 0) -> Summary | None:
+    """Summarise the values that are not None; None if there are none.
+
+    The same values and seed give the same interval.
+    """
+    known = [float(value) for value in values if value is not None]
+    if not known:
+        return None
+    mean = statistics.fmean(known)
+    if len(known) == 1:
+        return Summary(1, mean, None, None, None)
+    low, high = _interval(known, seed)
+    return Summary(len(known), mean, statistics.stdev(known), low, high)
+
+
+def _interval(values: Sequence[float], seed: int) -> tuple[float, float]:
+    if min(values) == max(values):
+        return values[0], values[0]
+    result = stats.bootstrap(
+        (np.asarray(values),),
+        np.mean,
+        n_resamples=RESAMPLES,
+        confidence_level=CONFIDENCE,
+        method="percentile",
+        **{_GENERATOR: np.random.default_rng(seed)},
+    )
+    return float(result.confidence_interval.low), float(result.confidence_interval.high)
