@@ -62,6 +62,14 @@ def test_a_level_that_never_varied_still_bears_noise():
     assert not level.clear
 
 
+def test_a_fall_to_a_small_share_is_one_whatever_the_deviation():
+    wide = ClearLevelParameters(enter=100.0, leave=100.0, rate=0.5, certain=0.65)
+    level = level_of(0.8)
+    for similarity, clear in ((0.53, True), (0.51, False), (0.53, True)):
+        level.judge(similarity, wide)
+        assert level.clear is clear
+
+
 def test_judging_does_not_count():
     level = level_of(0.8, 0.7)
     before = level.value, level.deviation

@@ -19,7 +19,7 @@ PERIOD_NS = 40_000_000
 CHANGE = 6
 FRAMES = 40
 HALT = 13
-SINKING = {time: abs(index - 9) / 9 for index, time in enumerate(range(HALT, HALT + 19))}
+SINKING = {time: abs(index - 6) / 6 for index, time in enumerate(range(HALT, HALT + 13))}
 """How much of the vehicle is seen, by time; all at others."""
 
 WITHOUT_EFFECT = {

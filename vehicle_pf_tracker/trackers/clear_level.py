@@ -2,7 +2,7 @@
 
 Similarities of real vehicles change with size, light and pose, those of made ones hardly do. So a
 fall is held against the running mean and the running mean deviation of clear frames, with
-hysteresis.
+hysteresis. A fall to a small share of the mean is one whatever the deviation.
 """
 
 from __future__ import annotations
@@ -38,6 +38,13 @@ class ClearLevelParameters:
         maximum=100.0,
         unit="mean deviations below the level",
     )
+    certain: float = parameter(
+        0.65,
+        "Higher: smaller falls are occlusions however much the similarity varies; 0: never.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="of the level",
+    )
     rate: float = parameter(
         0.05,
         "Higher: level and deviation follow the similarity faster.",
@@ -61,7 +68,8 @@ class ClearLevel:
         if self._frames > 0:
             share = parameters.enter if self.clear else parameters.leave
             least = self.value - share * max(self.deviation, _LEAST_DEVIATION)
-            self.clear = similarity >= least
+            # An occlusion in the first frames meets a deviation that is still wide.
+            self.clear = similarity >= max(least, parameters.certain * self.value)
 
     def follow(self, similarity: float, parameters: ClearLevelParameters) -> None:
         """Count the similarity of a clear frame."""
