@@ -1,0 +1,105 @@
+"""A small evaluation folder: two recordings, three variants and a peer that could not run."""
+
+import json
+
+from drive import HEIGHT, WIDTH, box_of, frame_of, stamp_of
+
+from vehicle_pf_tracker.evaluation.evaluation_folder import cell_folder
+from vehicle_pf_tracker.evaluation.metrics import measure
+from vehicle_pf_tracker.evaluation.offline import OfflineTracker
+from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
+from vehicle_pf_tracker.evaluation.results import ResultFolder
+from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run, versions
+from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.evaluation.truth_file import write_truth
+from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.trackers.parameters import from_mapping, to_mapping
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+FRAMES = 36
+HIDDEN = {"under_a_bridge": range(8, 14), "free": range(0)}
+VARIANTS = ("pf", "ms", "apf")
+SEEDS = (0, 1)
+NO_PEERS = "the environment of the peers is not there; make it with `make peers`"
+
+
+def make_evaluation(folder):
+    """Make the folder's `evaluation`, and the recordings beside it; returns the former."""
+    made = folder / "evaluation"
+    truths = {name: _record(folder / name, hidden) for name, hidden in HIDDEN.items()}
+    for name, truth in truths.items():
+        make_folder(made / "recordings" / name)
+        write_truth(made / "recordings" / name / "truth.csv", dict(enumerate(truth, start=1)))
+        for seed in SEEDS:
+            for variant in VARIANTS:
+                _run(cell_folder(made, name, variant, seed), folder / name, truth, variant, seed)
+            failed = make_folder(cell_folder(made, name, "peer:csrt", seed)) / "failed.json"
+            write_json(failed, {"reason": NO_PEERS})
+    write_json(made / "evaluation.json", _plan(folder))
+    return made
+
+
+def _frame(index, hidden):
+    frame = frame_of(index)
+    if index in hidden:
+        frame[20:40] = 70
+    return frame
+
+
+def _record(path, hidden):
+    truths = [
+        Truth(stamp_of(i), box_of(i), Occlusion.TOTAL if i in hidden else Occlusion.NONE)
+        for i in range(FRAMES)
+    ]
+    with RecordingWriter(path) as writer:
+        for index, truth in enumerate(truths):
+            writer.write_image(truth.stamp_ns, _frame(index, hidden))
+            writer.write_truth(truth)
+    return truths
+
+
+def _parameters(variant, seed):
+    values = {"seed": seed}
+    if "num_particles" in to_mapping(variant.parameters()):
+        values["num_particles"] = 40
+    return from_mapping(variant.parameters, values)
+
+
+def _run(folder, recording, truth, name, seed):
+    variant = find_variant(name)
+    tracker = OfflineTracker(variant, _parameters(variant, seed), first_truth=truth[0])
+    hidden = HIDDEN[recording.name]
+    rows = list(tracker.rows([(stamp_of(i), _frame(i, hidden)) for i in range(FRAMES)]))
+    results = ResultFolder(folder)
+    info = RunInfo([], str(recording), "/camera/image_raw", tracker.start_frame, [])
+    results.write_run(rows, describe_run(info, tracker.session))
+    results.write_metrics(measure(score_frames(rows, truth)))
+
+
+def _plan(folder):
+    systems = [
+        {
+            "label": name, "variant": name, "parameter_set": "", "overrides": {"num_particles": 40},
+            "parameters": to_mapping(_parameters(find_variant(name), 0)),
+        }
+        for name in VARIANTS
+    ]  # fmt: skip
+    systems.append({"label": "peer:csrt", "peer": "csrt", "overrides": {}, "parameters": {}})
+    recordings = [
+        {
+            "name": name, "path": str(folder / name), "topic": "/camera/image_raw",
+            "frames": FRAMES, "width": WIDTH, "height": HEIGHT, "digest": "0" * 64,
+        }
+        for name in HIDDEN
+    ]  # fmt: skip
+    plan = {
+        "format": 1,
+        "command": ["vehicle-pf-tracker", "evaluate", "free", "-o", "evaluation"],
+        "recordings": recordings,
+        "systems": systems,
+        "seeds": SEEDS,
+        "versions": versions(),
+        "options": {"max_diff": 0.01},
+    }
+    return json.loads(json.dumps(plan))

@@ -1,0 +1,64 @@
+import pytest
+from evaluation_samples import FRAMES, NO_PEERS, SEEDS, make_evaluation
+
+from vehicle_pf_tracker.evaluation.evaluation_folder import (
+    EvaluationFolder,
+    cell_folder,
+    read_document,
+    safe_name,
+)
+from vehicle_pf_tracker.features.errors import InputError
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return make_evaluation(tmp_path_factory.mktemp("made"))
+
+
+def test_the_plan(folder):
+    evaluation = EvaluationFolder(folder)
+    assert [entry.name for entry in evaluation.recordings] == ["under_a_bridge", "free"]
+    assert [entry.kind for entry in evaluation.systems] == ["pf", "ms", "apf", "peer:csrt"]
+    assert evaluation.systems[0].overrides == {"num_particles": 40}
+    assert evaluation.seeds == SEEDS
+    assert evaluation.timings() is evaluation.robustness() is None
+
+
+def test_cells_have_rows_or_a_reason(folder):
+    evaluation = EvaluationFolder(folder)
+    cell = evaluation.cell("free", "pf", 1)
+    assert len(cell.rows) == FRAMES
+    assert cell.run["seed"] == 1
+    assert evaluation.cell("free", "peer:csrt", 0).reason == NO_PEERS
+    assert evaluation.cell("free", "pf", 7).reason == "it was not run"
+
+
+def test_truth_by_frame(folder):
+    evaluation = EvaluationFolder(folder)
+    truth = evaluation.truth("under_a_bridge")
+    assert list(truth) == list(range(1, FRAMES + 1))
+    assert [n for n, t in truth.items() if t.occlusion.name == "TOTAL"] == list(range(9, 15))
+    assert evaluation.truth("elsewhere") == {}
+
+
+def test_labels_become_names_of_folders(tmp_path):
+    assert safe_name("peer:csrt") == "peer_csrt"
+    assert safe_name("apf@fast/2") == "apf_fast_2"
+    assert cell_folder(tmp_path, "a", "peer:x", 3) == tmp_path / "cells/a/peer_x/seed-3"
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [(None, "no folder of an evaluation"), ("{", "no JSON"), ("[]", "no JSON object"),
+     ('{"recordings": []}', "broken: KeyError"), ('{"recordings": [{}]}', "broken")],
+)  # fmt: skip
+def test_mistakes_about_the_folder(tmp_path, text, sentence):
+    if text is not None:
+        (tmp_path / "evaluation.json").write_text(text)
+    with pytest.raises(InputError, match=sentence):
+        EvaluationFolder(tmp_path)
+
+
+def test_a_document_that_is_not_there(tmp_path):
+    with pytest.raises(InputError, match="cannot read"):
+        read_document(tmp_path / "none.json")
