@@ -5,10 +5,12 @@ import numpy as np
 from vehicle_pf_tracker.features.glcm import Cooccurrence
 from vehicle_pf_tracker.features.gradients import GradientDirections
 from vehicle_pf_tracker.features.haralick import HaralickStatistics
+from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.lbp import BinaryPatterns
 from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
 
 FEATURES = {
+    "joint": JointColour(),
     "color": RgbMarginals(),
     "edge": GradientDirections(),
     "edge 80 %": GradientDirections(threshold=0.8),

@@ -4,9 +4,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.features.colour import bin_count, bin_indices, joint_histogram
-from vehicle_pf_tracker.features.colour_kernel import joint_similarity
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import check_frame
+from vehicle_pf_tracker.features.joint_colour import JointColour
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient, hellinger_distance
 from vehicle_pf_tracker.features.window import Window
 
@@ -42,6 +43,10 @@ def test_similarity_by_hand():
     assert hellinger_distance(0.5) == pytest.approx(np.sqrt(0.5))
     assert hellinger_distance(1.0 + 1e-12) == 0.0
     assert bhattacharyya_coefficient(p, p) == 1.0
+
+
+def joint_similarity(frame, positions, window, reference, bits):
+    return JointColour(bits).similarity(frame, positions, window, Reference(reference))
 
 
 def test_similarity_of_a_reference_without_any_bin_is_zero():

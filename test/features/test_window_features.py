@@ -6,6 +6,7 @@ from feature_samples import FEATURES
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient
 from vehicle_pf_tracker.features.window import Window
 
@@ -35,7 +36,7 @@ def test_many_windows_at_once_agree_with_one_after_the_other(feature, seed, size
     assert np.all((np.abs(sums - 1) < 1e-9) | (sums == 0))
     reference = together[0]
     expected = bhattacharyya_coefficient(together, reference)
-    assert feature.similarity(frame, positions, window, reference) == pytest.approx(
+    assert feature.similarity(frame, positions, window, Reference(reference)) == pytest.approx(
         expected, abs=1e-9
     )
 
@@ -45,7 +46,7 @@ def test_a_window_is_most_alike_to_itself(feature):
     frame, window = noise(1, (60, 80)), Window(12, 9)
     positions = np.random.default_rng(2).uniform(10, 50, (30, 2))
     reference = feature.histograms(frame, positions[4:5], window)[0]
-    similarity = feature.similarity(frame, positions, window, reference)
+    similarity = feature.similarity(frame, positions, window, Reference(reference))
     assert similarity[4] == pytest.approx(1.0)
     assert similarity.argmax() == 4
 
@@ -54,7 +55,7 @@ def test_a_window_is_most_alike_to_itself(feature):
 def test_a_reference_without_any_bin_is_similar_to_nothing(feature):
     positions = np.array([[4.0, 4.0], [5.0, 4.0]])
     similarity = feature.similarity(
-        noise(3, (9, 9)), positions, Window(2, 2), np.zeros(feature.bins)
+        noise(3, (9, 9)), positions, Window(2, 2), Reference(np.zeros(feature.bins))
     )
     assert similarity.tolist() == [0.0, 0.0]
 

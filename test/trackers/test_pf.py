@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from street import Street, error, follow
 
-from vehicle_pf_tracker.features.colour_kernel import joint_similarity
+from vehicle_pf_tracker.features.joint_colour import JointColour
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.trackers.parameters import from_mapping
 from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
 
@@ -17,8 +18,8 @@ def test_weights_are_perez_exponential_of_the_squared_distance():
     street = Street()
     tracker = make(num_particles=50)
     estimate = follow(tracker, street, range(2))[-1]
-    reference = tracker.target.joint_histogram(tracker.window, 3)
-    rho = joint_similarity(street.frame(1), estimate.particles, tracker.window, reference, 3)
+    reference = Reference(tracker.target.joint_histogram(tracker.window, 3))
+    rho = JointColour(3).similarity(street.frame(1), estimate.particles, tracker.window, reference)
     # sigma_v 0.158 is a lambda of 20.03: exp(-lambda d²) with d² = 1 - rho.
     expected = np.exp(-(1 - rho) / (2 * 0.158**2))
     assert estimate.weights == pytest.approx(expected / expected.sum())

@@ -56,7 +56,7 @@ class OfflineTracker:
     ) -> None:
         self.session = Session(variant, parameters, settings)
         self.start_frame: int | None = None
-        self.notices: list[str] = []
+        self.notices = list(self.session.tracker.kernels.notices)
         self._first_truth = first_truth if self.session.waiting else None
         self._limit_ns = max_diff_ns(max_diff)
 

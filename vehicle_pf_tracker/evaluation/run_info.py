@@ -43,7 +43,8 @@ class RunInfo:
 def describe_run(info: RunInfo, session: Session) -> dict[str, Any]:
     """Make the content of `run.json`.
 
-    `seed` is the one in use: the drawn one where the parameter `seed` is -1.
+    `seed` is the one in use: the drawn one where the parameter `seed` is -1; `kernels` likewise
+    those that `auto` chose.
     """
     box = session.settings.target.box
     return {
@@ -53,6 +54,7 @@ def describe_run(info: RunInfo, session: Session) -> dict[str, Any]:
         "image_topic": info.image_topic,
         "variant": session.variant.name,
         "seed": session.tracker.seed,
+        "kernels": session.tracker.kernels.name,
         "target": None if box is None else [box.x, box.y, box.width, box.height],
         "start_frame": info.start_frame,
         "parameters": {**to_mapping(session.tracker.parameters), **to_mapping(session.settings)},

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.window import Bounds, Positions, Window, bounds
-from vehicle_pf_tracker.features.window_feature import CountedFeature, Grey, to_grey
+from vehicle_pf_tracker.features.window_feature import Counted, CountedFeature, Grey, to_grey
 from vehicle_pf_tracker.features.window_sums import areas, bin_counts, covered_region
 
 LEVELS = 8
@@ -27,12 +26,14 @@ class Cooccurrence(CountedFeature):
 
     bins = LEVELS * LEVELS
 
-    def _counts(
+    def counts(
         self, frame: Frame, positions: Positions, window: Window, active: npt.NDArray[np.intp]
-    ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    ) -> Counted:
+        """Count windows; see `CountedFeature.counts`."""
         region, windows = covered_region(frame, bounds(frame, positions, window))
         pairs = Bounds(windows.left, windows.top, windows.right - 1, windows.bottom)
-        return bin_counts(pair_bins(to_grey(region)), active, self.bins, pairs), areas(pairs)
+        counts = bin_counts(pair_bins(to_grey(region)), active, self.bins, pairs)
+        return Counted(counts, areas(pairs))
 
 
 def pair_bins(grey: Grey) -> Grey:

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.features.window import (
     centres,
     keep_inside,
 )
-from vehicle_pf_tracker.features.window_feature import CountedFeature, to_grey
+from vehicle_pf_tracker.features.window_feature import Counted, CountedFeature, to_grey
 from vehicle_pf_tracker.features.window_gradients import window_direction_counts
 from vehicle_pf_tracker.features.window_sums import areas, bin_counts, covered_region
 
@@ -63,16 +63,17 @@ class GradientDirections(CountedFeature):
 
     bins = DIRECTION_BINS
 
-    def _counts(
+    def counts(
         self, frame: Frame, positions: Positions, window: Window, active: npt.NDArray[np.intp]
-    ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    ) -> Counted:
+        """Count windows; see `CountedFeature.counts`."""
         in_image = bounds(frame, positions, window)
         # One pixel more makes every gradient in the windows that of the whole frame.
         region, windows = covered_region(frame, in_image, margin=1)
         grey = to_grey(region)
         if not self.in_frame:
             counts = window_direction_counts(grey, windows, self._limits, signed=self.signed)
-            return counts[:, active], counts.sum(axis=1)
+            return Counted(counts[:, active], counts.sum(axis=1))
         gx, gy = (
             np.asarray(cv2.Sobel(grey, cv2.CV_16S, dx, 1 - dx, ksize=3), np.int16) for dx in (1, 0)
         )
@@ -127,7 +128,7 @@ def _count_points(
     limits: Strengths,
     windows: Bounds,
     active: npt.NDArray[np.intp],
-) -> tuple[Counts, Counts]:
+) -> Counted:
     """Count points by direction: those above every limit in planes, the few others one by one."""
     certain = points.strength >= limits.max(initial=0.0, where=np.isfinite(limits))
     sure = points.where(certain)
@@ -136,7 +137,7 @@ def _count_points(
     sums = bin_counts(indices, np.append(active, _NO_EDGE), _NO_EDGE + 1, windows)
     doubtful = _compare(points.where(~certain), limits, windows)
     totals = areas(windows) - sums[:, -1] + doubtful.sum(axis=1)
-    return sums[:, :-1] + doubtful[:, active], totals
+    return Counted(sums[:, :-1] + doubtful[:, active], totals)
 
 
 def _compare(points: EdgePoints, limits: Strengths, windows: Bounds) -> Counts:

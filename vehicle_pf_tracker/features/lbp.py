@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import cv2
 import numpy as np
@@ -11,7 +10,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.window import Positions, Window, bounds
-from vehicle_pf_tracker.features.window_feature import CountedFeature, Grey, to_grey
+from vehicle_pf_tracker.features.window_feature import Counted, CountedFeature, Grey, to_grey
 from vehicle_pf_tracker.features.window_sums import areas, bin_counts, covered_region
 
 NEIGHBOURS = ((0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (0, 1))
@@ -27,11 +26,13 @@ class BinaryPatterns(CountedFeature):
 
     bins = 256
 
-    def _counts(
+    def counts(
         self, frame: Frame, positions: Positions, window: Window, active: npt.NDArray[np.intp]
-    ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    ) -> Counted:
+        """Count windows; see `CountedFeature.counts`."""
         region, windows = covered_region(frame, bounds(frame, positions, window), margin=1)
-        return bin_counts(patterns(to_grey(region)), active, self.bins, windows), areas(windows)
+        counts = bin_counts(patterns(to_grey(region)), active, self.bins, windows)
+        return Counted(counts, areas(windows))
 
 
 def patterns(grey: Grey) -> Grey:

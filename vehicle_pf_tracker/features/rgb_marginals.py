@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.window import Positions, Window, bounds
-from vehicle_pf_tracker.features.window_feature import CountedFeature
+from vehicle_pf_tracker.features.window_feature import Counted, CountedFeature
 from vehicle_pf_tracker.features.window_sums import areas, bin_counts, covered_region
 
 CHANNEL_BINS = 21
@@ -22,9 +21,10 @@ class RgbMarginals(CountedFeature):
 
     bins = 3 * CHANNEL_BINS
 
-    def _counts(
+    def counts(
         self, frame: Frame, positions: Positions, window: Window, active: npt.NDArray[np.intp]
-    ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    ) -> Counted:
+        """Count windows; see `CountedFeature.counts`."""
         region, windows = covered_region(frame, bounds(frame, positions, window))
         levels = marginal_bins(region)
         edges = np.searchsorted(active, [0, CHANNEL_BINS, 2 * CHANNEL_BINS, self.bins])
@@ -37,7 +37,7 @@ class RgbMarginals(CountedFeature):
             )
             for channel in range(3)
         ]
-        return np.concatenate(counts, axis=1), 3 * areas(windows)
+        return Counted(np.concatenate(counts, axis=1), 3 * areas(windows))
 
 
 def marginal_bins(pixels: Frame) -> npt.NDArray[np.uint16]:

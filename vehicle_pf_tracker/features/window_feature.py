@@ -3,24 +3,41 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient
 from vehicle_pf_tracker.features.window import Positions, Window
 
 Grey: TypeAlias = npt.NDArray[np.uint8]
 Histograms: TypeAlias = npt.NDArray[np.float64]
+Coefficients: TypeAlias = npt.NDArray[np.float64]
+
+
+class Counted(NamedTuple):
+    """Counts of chosen bins (N, K), and of all bins together (N,)."""
+
+    bins: npt.NDArray[Any]
+    totals: npt.NDArray[Any]
+
+    def coefficients(self, values: Histograms) -> Coefficients:
+        """Bhattacharyya coefficient of each row with a reference's `values` (K,), shape (N,)."""
+        overlap = np.sqrt(self.bins * values).sum(axis=1)
+        return np.asarray(np.minimum(overlap / np.sqrt(np.maximum(self.totals, 1)), 1.0))
 
 
 class WindowFeature(ABC):
     """A feature that describes each window by a histogram."""
 
-    bins: int
+    @property
+    @abstractmethod
+    def bins(self) -> int:
+        """Number of bins."""
 
     @abstractmethod
     def histograms(self, frame: Frame, positions: Positions, window: Window) -> Histograms:
@@ -42,44 +59,43 @@ class WindowFeature(ABC):
         """
 
     def similarity(
-        self, frame: Frame, positions: Positions, window: Window, reference: Histograms
-    ) -> npt.NDArray[np.float64]:
+        self, frame: Frame, positions: Positions, window: Window, reference: Reference
+    ) -> Coefficients:
         """Bhattacharyya coefficient of each window with `reference`, shape (N,), 0 to 1.
 
         Parameters
         ----------
         frame, positions, window
             As in `histograms`.
-        reference : (bins,) array
+        reference : Reference
             One histogram; all zero is similar to nothing.
         """
-        return bhattacharyya_coefficient(self.histograms(frame, positions, window), reference)
+        histograms = self.histograms(frame, positions, window)
+        return bhattacharyya_coefficient(histograms, reference.histogram)
 
 
 class CountedFeature(WindowFeature):
     """A feature whose histograms count pixels, so that only some bins need be counted."""
 
     @abstractmethod
-    def _counts(
+    def counts(
         self, frame: Frame, positions: Positions, window: Window, active: npt.NDArray[np.intp]
-    ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
-        """Count the sorted `active` bins (N, K), and all bins together (N,)."""
+    ) -> Counted:
+        """Count the ascending bins `active`, and all bins together."""
 
     def histograms(self, frame: Frame, positions: Positions, window: Window) -> Histograms:
         """Describe windows; see `WindowFeature.histograms`."""
-        counts, totals = self._counts(frame, positions, window, np.arange(self.bins))
+        counts, totals = self.counts(frame, positions, window, np.arange(self.bins))
         return np.asarray(counts / np.maximum(totals, 1)[:, np.newaxis])
 
     def similarity(
-        self, frame: Frame, positions: Positions, window: Window, reference: Histograms
-    ) -> npt.NDArray[np.float64]:
+        self, frame: Frame, positions: Positions, window: Window, reference: Reference
+    ) -> Coefficients:
         """Compare windows by the bins of `reference` alone; see `WindowFeature.similarity`."""
-        active = np.flatnonzero(reference)
-        if len(active) == 0:
+        if len(reference.active) == 0:
             return np.zeros(len(positions))
-        counts, totals = self._counts(frame, positions, window, active)
-        overlap = np.sqrt(counts * reference[active]).sum(axis=1)
-        return np.asarray(np.minimum(overlap / np.sqrt(np.maximum(totals, 1)), 1.0))
+        counted = self.counts(frame, positions, window, reference.active)
+        return counted.coefficients(reference.values)
 
 
 def to_grey(pixels: Frame) -> Grey:

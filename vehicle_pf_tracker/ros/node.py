@@ -64,7 +64,7 @@ class TrackerNode(ManagedNode):
         self._outputs = Outputs(self, topic)
         health = self._diagnostics.begin()
         self._stream = Stream(self, self._variant, configuration, self._outputs, health)
-        self._diagnostics.facts = {"variant": self._variant.name, "seed": self._stream.seed}
+        self._diagnostics.facts = {"variant": self._variant.name, **self._stream.facts}
         self._reset_service = self.create_service(Trigger, "~/reset", self._on_reset)
 
     def activate(self) -> None:
@@ -79,7 +79,9 @@ class TrackerNode(ManagedNode):
             self.create_subscription(PolygonStamped, "~/set_box", self._on_polygon, 10),
             self.create_subscription(PointStamped, "~/clicked_point", self._on_point, 10),
         ]
-        self.get_logger().info(f"ready: images on {source}, {self._stream.target_words}")
+        kernels = self._stream.facts["kernels"]
+        words = f"ready: images on {source}, {self._stream.target_words}, {kernels} kernels"
+        self.get_logger().info(words)
 
     def deactivate(self) -> None:
         """Close the inputs: an inactive node pays nothing for images."""
@@ -127,7 +129,7 @@ class TrackerNode(ManagedNode):
     def _reconfigure(self, configuration: Configuration) -> None:
         if self._stream is not None:
             self._stream.reconfigure(configuration)
-            self._diagnostics.facts["seed"] = self._stream.seed
+            self._diagnostics.facts.update(self._stream.facts)
 
     def _warn_of(self, sentences: list[str]) -> None:
         for sentence in sentences:

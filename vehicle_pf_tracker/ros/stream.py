@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import traceback
+from collections.abc import Mapping
 
 from rclpy.node import Node
 from sensor_msgs.msg import CompressedImage, Image
@@ -66,11 +67,18 @@ class Stream:
         self.frame_id: str | None = None
         self.estimate: Estimate | None = None
         self._tell_drawn_seed()
+        for notice in self._session.tracker.kernels.notices:
+            self._log.warning(notice)
 
     @property
     def seed(self) -> int:
         """The seed in use."""
         return self._session.tracker.seed
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """What the parameters left open: the seed and the kernels in use."""
+        return {"seed": self.seed, "kernels": self._session.tracker.kernels.name}
 
     @property
     def target_words(self) -> str:

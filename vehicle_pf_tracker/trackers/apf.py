@@ -11,8 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle_pf_tracker.features.colour import Histogram, joint_histogram
-from vehicle_pf_tracker.features.colour_kernel import joint_similarity
 from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.joint_colour import JointColour
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient, hellinger_distance
 from vehicle_pf_tracker.filtering.motion import (
     RAYLEIGH_MEAN,
@@ -35,7 +36,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
     def __init__(self, parameters: ApfParameters) -> None:
         super().__init__(parameters)
         self._first: Histogram = np.zeros(0)
-        self._reference: Histogram = np.zeros(0)
+        self._reference = Reference(np.zeros(0))
         self._velocity = MeanVelocity(0)
         self._position = (0.0, 0.0)
         self._pi = self._pi_up = 1.0
@@ -49,7 +50,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
 
     def _learn(self) -> None:
         self._first = self.target.joint_histogram(self.window, self.parameters.histogram_bits)
-        self._reference = self._first
+        self._reference = Reference(self._first)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         settings = self.parameters.effective()
@@ -62,7 +63,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self.parameters.effective()
-        bits = settings.histogram_bits
+        bits, window = settings.histogram_bits, self.window
         regular = self._is_clear(settings)  # step 4
         if regular:
             parents = self._resample(settings)  # steps 5 and 6
@@ -73,12 +74,13 @@ class ApfTracker(ParticleTracker[ApfParameters]):
             parents = self._cloud.positions
             moves = self._drift(settings, len(parents), elapsed)  # step 9
         particles, left_image = self._move(frame, parents, moves)
-        rho = joint_similarity(frame, particles, self.window, self._reference, bits)
+        feature = JointColour(bits)
+        rho = self.kernels.similarity(feature, frame, particles, window, self._reference)
         weights = from_log(log_likelihood(rho, settings.likelihood))  # steps 11 and 12
         cloud = Cloud(particles, *weights)
         position = cloud.mean()  # step 13
-        histogram = joint_histogram(frame, position, self.window, bits)  # step 14
-        evidence = _similarity(histogram, self._reference)
+        histogram = joint_histogram(frame, position, window, bits)  # step 14
+        evidence = _similarity(histogram, self._reference.histogram)
         self._compare_and_learn(settings, histogram)  # steps 15 and 16
         self._follow(settings, position, elapsed, regular=regular)
         return Outcome(
@@ -118,13 +120,13 @@ class ApfTracker(ParticleTracker[ApfParameters]):
     def _compare_and_learn(self, settings: ApfParameters, histogram: Histogram) -> None:
         """Do steps 15 and 16."""
         alpha = self._follow_rate(settings, histogram)
-        blended = alpha * histogram + (1 - alpha) * self._reference
+        blended = alpha * histogram + (1 - alpha) * self._reference.histogram
         judged = histogram if settings.occlusion.raw_histogram else blended
         self._pi = _similarity(judged, self._first)
-        self._pi_up = _similarity(judged, self._reference)
+        self._pi_up = _similarity(judged, self._reference.histogram)
         self._keep_levels(settings)
         if self._is_clear(settings) or not settings.reference.frozen_while_occluded:
-            self._reference = blended
+            self._reference = Reference(blended)
 
     def _follow_rate(self, settings: ApfParameters, histogram: Histogram) -> float:
         """Return alpha of step 15; with the relative rule only good frames have one."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from vehicle_pf_tracker.features.box import Box, check_target
 from vehicle_pf_tracker.features.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.features.kernels.choice import load_kernels
 from vehicle_pf_tracker.features.window import Window, are_outside, keep_inside
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
@@ -79,6 +80,11 @@ class BaseTracker(ABC, Generic[ParametersT]):
     ----------
     parameters : ParametersT
         The variant's own dataclass.
+
+    Attributes
+    ----------
+    kernels : Kernels
+        What windows are measured with, ready for use.
     """
 
     def __init__(self, parameters: ParametersT) -> None:
@@ -86,6 +92,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         self.frame_period = DEFAULT_PERIOD
         self._seed = _draw_seed(parameters.seed)
         self._rng = np.random.default_rng(self._seed)
+        self.kernels = load_kernels(parameters.kernels)
         self._target: Target | None = None
         self._judge = EvidenceJudge()
         self._cloud = Cloud.uniform(np.zeros((1, 2)))
@@ -146,6 +153,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         """Take new parameters; see `Tracker.reconfigure`."""
         changed = _changed_effects(self.parameters, parameters)
         self.parameters = parameters
+        self.kernels = load_kernels(parameters.kernels)
         if "restarts" in changed:
             self._seed = _draw_seed(parameters.seed)
             self._rng = np.random.default_rng(self._seed)

@@ -12,9 +12,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from vehicle_pf_tracker.features.colour import Histogram
-from vehicle_pf_tracker.features.colour_kernel import joint_similarity
 from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.joint_colour import JointColour
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import hellinger_distance
 from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
@@ -68,12 +68,13 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
 
     def __init__(self, parameters: ColourParametersT) -> None:
         super().__init__(parameters)
-        self._reference: Histogram = np.zeros(0)
+        self._reference = Reference(np.zeros(0))
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
         self._position = (0.0, 0.0)
 
     def _learn(self) -> None:
-        self._reference = self.target.joint_histogram(self.window, self.parameters.histogram_bits)
+        histogram = self.target.joint_histogram(self.window, self.parameters.histogram_bits)
+        self._reference = Reference(histogram)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         self._velocity, self._position = MeanVelocity(VELOCITY_WINDOW), centre
@@ -91,8 +92,8 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
 
     def _similarity(self, frame: Frame, positions: Array) -> Array:
         """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
-        bits = self.parameters.histogram_bits
-        return joint_similarity(frame, positions, self.window, self._reference, bits)
+        feature = JointColour(self.parameters.histogram_bits)
+        return self.kernels.similarity(feature, frame, positions, self.window, self._reference)
 
     def _report(
         self, frame: Frame, cloud: Cloud, elapsed: float, *, left_image: bool, passes: int = 1

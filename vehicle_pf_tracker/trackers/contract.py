@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.kernels.choice import CHOICES, load_kernels
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.evidence import EvidenceParameters
 from vehicle_pf_tracker.trackers.parameters import group, parameter
@@ -60,12 +61,20 @@ class CommonParameters:
         maximum=86_400.0,
         unit="s",
     )
+    kernels: str = parameter(
+        "auto",
+        "Code that measures windows: numba is several times faster, opencv always there; auto "
+        "takes numba where it is installed. Estimates may differ in their last digits.",
+        choices=CHOICES,
+    )
     window: WindowParameters = group(WindowParameters)
     evidence: EvidenceParameters = group(EvidenceParameters)
 
     def validate(self) -> None:
-        """Check parameters against each other."""
+        """Check parameters against each other, and the kernels for being there."""
         self.evidence.validate()
+        if self.kernels == "numba":
+            load_kernels(self.kernels)
 
 
 @dataclass(frozen=True, slots=True)

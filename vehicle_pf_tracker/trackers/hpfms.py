@@ -13,6 +13,7 @@ import numpy as np
 
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.mean_shift import kernel_histogram, kernel_similarity, mean_shift
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
@@ -72,9 +73,10 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         self._evidence = 0.0
 
     def _learn(self) -> None:
-        self._reference = kernel_histogram(
+        histogram = kernel_histogram(
             self.target.patch, self.target.centre, self.window, self.parameters.histogram_bits
         )
+        self._reference = Reference(histogram)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self.parameters
@@ -99,8 +101,8 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
 
     def _similarity(self, frame: Frame, positions: Array) -> Array:
         bits = self.parameters.histogram_bits
-        return kernel_similarity(frame, positions, self.window, self._reference, bits)
+        return kernel_similarity(frame, positions, self.window, self._reference.histogram, bits)
 
     def _shift(self, frame: Frame, positions: Array) -> Array:
         bits = self.parameters.histogram_bits
-        return mean_shift(frame, positions, self.window, self._reference, bits)
+        return mean_shift(frame, positions, self.window, self._reference.histogram, bits)

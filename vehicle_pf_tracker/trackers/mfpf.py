@@ -17,6 +17,7 @@ import numpy as np
 
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.gradients import GradientDirections
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
 from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient, hellinger_distance
 from vehicle_pf_tracker.features.window import keep_inside
@@ -51,7 +52,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         super().__init__(parameters)
         self._features: Mapping[str, WindowFeature] = {}
         self._first: list[Histograms] = []
-        self._references: list[Histograms] = []
+        self._references: list[Reference] = []
         self._initial: Array | None = None
         self._weights: Array | None = None
         self._velocity = MeanVelocity(1)
@@ -85,7 +86,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             feature.histograms(self.target.patch, centre, self.window)[0]
             for feature in self._features.values()
         ]
-        self._references = list(self._first)
+        self._references = [Reference(first) for first in self._first]
         if self._initial is not None:
             # The first frame after the start is gone; the start itself is the next best to it.
             radius, count = self._search_radius(1.0), self.parameters.num_particles
@@ -178,7 +179,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         window = self.window
         return np.stack(
             [
-                feature.similarity(frame, particles, window, reference)
+                self.kernels.similarity(feature, frame, particles, window, reference)
                 for feature, reference in zip(
                     self._features.values(), self._references, strict=True
                 )
@@ -221,7 +222,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     def _similarities(self, histograms: list[Histograms]) -> Array:
         """``1 - BD`` of histograms to the references, shape (F,)."""
         rho = [
-            bhattacharyya_coefficient(found, reference)
+            bhattacharyya_coefficient(found, reference.histogram)
             for found, reference in zip(histograms, self._references, strict=True)
         ]
         return np.asarray(1.0 - hellinger_distance(np.asarray(rho)))
@@ -237,7 +238,8 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         weight = self._settings.reference_weight
         for number in np.flatnonzero(fusion.factors):
             found = histograms[number]
-            self._references[number] = weight * self._first[number] + (1 - weight) * found
+            blended = weight * self._first[number] + (1 - weight) * found
+            self._references[number] = Reference(blended)
         if fusion.full_occlusion:
             self._searching = (self._searching or 0.0) + elapsed
         else:
