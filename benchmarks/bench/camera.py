@@ -1,0 +1,142 @@
+"""The process that publishes images to the nodes that are measured, and hears their answers."""
+
+from __future__ import annotations
+
+import time
+from types import TracebackType
+
+import rclpy
+from geometry_msgs.msg import PointStamped
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import Image
+from std_msgs.msg import Header
+
+from benchmarks.bench.material import FRAME_RATE, drive
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.ros.transport import image_transport
+
+_TIMEOUT = 20.0
+_DEPTH = 10
+_HEARD = 1000
+_SETTLE = 2.0
+"""Seconds that late answers have."""
+
+_PERIOD_NS = round(1e9 / FRAME_RATE)
+
+
+class Camera:
+    """Shows the drive to nodes, each with an image topic of its own; a context manager.
+
+    Parameters
+    ----------
+    nodes : dict of str to str
+        Where each node publishes its position, by the image topic that it listens to.
+    """
+
+    def __init__(self, nodes: dict[str, str]) -> None:
+        self._context = Context()
+        bytes_of_one = drive().frames[0].nbytes * len(nodes)
+        middleware = rclpy.get_rmw_implementation_identifier()
+        with image_transport(bytes_of_one, middleware):
+            self._context.init()
+            self._node = rclpy.create_node("camera", context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._images = {
+            topic: self._node.create_publisher(Image, topic, QoSProfile(depth=_DEPTH))
+            for topic in nodes
+        }
+        self.answered = dict.fromkeys(nodes, 0)
+        for topic, position in nodes.items():
+            self._node.create_subscription(
+                PointStamped,
+                position,
+                lambda _, topic=topic: self._heard(topic),
+                QoSProfile(depth=_HEARD),
+            )
+        there = [image_message(_header(0), frame) for frame in drive().frames]
+        self._shown = there + there[-2:0:-1]  # and back, since a vehicle does not jump
+        self.sent = dict.fromkeys(nodes, 0)
+
+    def wait(self) -> None:
+        """Wait until every node listens, and has answered an image.
+
+        Raises
+        ------
+        InputError
+            If one does not.
+        """
+        deadline = time.monotonic() + _TIMEOUT
+        for topic in self._images:
+            while not self.answered[topic]:
+                if time.monotonic() > deadline:
+                    raise InputError(f"the node on {topic} answers no image")
+                self.show(topic)
+                self.listen(0.1)
+        self.listen(0.5)
+
+    def show(self, topic: str) -> None:
+        """Publish the next image of the drive there and back."""
+        number = self.sent[topic]
+        message = self._shown[number % len(self._shown)]
+        message.header = _header(number)
+        self.sent[topic] += 1
+        self._images[topic].publish(message)
+
+    def listen(self, seconds: float) -> None:
+        """Take answers for this long."""
+        deadline = time.monotonic() + seconds
+        while (left := deadline - time.monotonic()) > 0:
+            self._executor.spin_once(timeout_sec=left)
+
+    def batch(self, topic: str, count: int, rate: float) -> None:
+        """Show `count` images at `rate` per second, each after the answer to the one before.
+
+        Raises
+        ------
+        InputError
+            If an answer does not come.
+        """
+        for _ in range(count):
+            due = time.monotonic() + 1 / rate
+            wanted = self.answered[topic] + 1
+            self.show(topic)
+            while self.answered[topic] < wanted:
+                if time.monotonic() > due + _TIMEOUT:
+                    raise InputError(f"the node on {topic} did not answer an image")
+                self._executor.spin_once(timeout_sec=0.1)
+            self.listen(due - time.monotonic())
+
+    def stream(self, seconds: float, rate: float) -> None:
+        """Show every node `rate` images per second, spread over the period, without waiting."""
+        topics = list(self._images)
+        began = time.monotonic()
+        for number in range(round(seconds * rate) * len(topics)):
+            self.listen(began + number / (rate * len(topics)) - time.monotonic())
+            self.show(topics[number % len(topics)])
+        self.listen(_SETTLE)
+
+    def __enter__(self) -> Camera:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._executor.shutdown()
+        self._node.destroy_node()
+        self._context.try_shutdown()
+
+    def _heard(self, topic: str) -> None:
+        self.answered[topic] += 1
+
+
+def _header(number: int) -> Header:
+    header = Header(frame_id="camera")
+    header.stamp.sec, header.stamp.nanosec = divmod(10**9 + number * _PERIOD_NS, 10**9)
+    return header

@@ -1,0 +1,53 @@
+"""What more of something costs a step: particles, window, image, trackers in one process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from benchmarks.bench.case import Case
+from benchmarks.bench.effort import Effort
+from benchmarks.bench.material import SIZES
+from benchmarks.bench.turns import Follower, Own, follow
+
+VARIANTS = ("apf", "mfpf")
+PARTICLES = (50, 200, 1000, 5000)
+WINDOWS = ((21, 15), (41, 31), (81, 61), (161, 121))
+TRACKERS = (1, 4, 16, 64)
+
+
+def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
+    """Measure ``cost/WHAT/VARIANT/SETTING``, whose peer is the same variant as `BASES` has it."""
+    for variant in VARIANTS:
+        for what, settings in _settings(variant).items():
+            yield from _compared(f"cost/{what}/{variant}", settings, BASES[what], wanted, effort)
+
+
+BASES = {"particles": "n200", "window": "41x31", "image": "vga", "trackers": "1"}
+
+
+def _settings(variant: str) -> dict[str, dict[str, Follower]]:
+    return {
+        "particles": {f"n{count}": Own(variant, {"num_particles": count}) for count in PARTICLES},
+        "window": {
+            f"{width}x{height}": Own(variant, {"window.width": width, "window.height": height})
+            for width, height in WINDOWS
+        },
+        "image": {size: Own(variant, size=size) for size in SIZES},
+        "trackers": {str(count): Own(variant, count=count) for count in TRACKERS},
+    }
+
+
+def _compared(
+    prefix: str,
+    settings: dict[str, Follower],
+    base: str,
+    wanted: Callable[[str], bool],
+    effort: Effort,
+) -> Iterator[Case]:
+    chosen = [name for name in settings if name != base and wanted(f"{prefix}/{name}")]
+    if not chosen:
+        return
+    followers = {name: settings[name] for name in (base, *chosen)}
+    times, _ = follow(followers, range(1), effort.frames)
+    for name in chosen:
+        yield Case.of(f"{prefix}/{name}", times[name], times[base])

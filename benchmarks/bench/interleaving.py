@@ -1,0 +1,47 @@
+"""Two pieces of work measured in turns, so that what slows the machine down slows both."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TypeAlias
+
+from benchmarks.bench.case import Case
+
+Work: TypeAlias = Callable[[int], object]
+"""Does one piece of work; the number of the round lets it take another input each time."""
+
+_CALLS_FOR = 5e-4
+"""CPU seconds that a round repeats its work for, at least: far above the clock's own cost."""
+_LEAST_ROUNDS = 9
+_MOST_ROUNDS = 301
+
+
+def compare(name: str, ours: Work, peer: Work, seconds: float) -> Case:
+    """Measure two pieces of work in turns for about `seconds`.
+
+    Both are called once before anything counts. Each round takes CPU time of this thread alone,
+    and the order within it changes from round to round.
+    """
+    works = ours, peer
+    calls = [_calls(work) for work in works]
+    times: tuple[list[float], list[float]] = ([], [])
+    deadline = time.monotonic() + seconds
+    for number in range(_MOST_ROUNDS):
+        if number >= _LEAST_ROUNDS and time.monotonic() > deadline:
+            break
+        for side in (0, 1) if number % 2 else (1, 0):
+            times[side].append(_cpu_seconds(works[side], number, calls[side]))
+    return Case.of(name, *times)
+
+
+def _calls(work: Work) -> int:
+    work(0)
+    return max(round(_CALLS_FOR / max(_cpu_seconds(work, 0, 1), 1e-7)), 1)
+
+
+def _cpu_seconds(work: Work, number: int, calls: int) -> float:
+    before = time.thread_time()
+    for index in range(calls):
+        work(number + index)
+    return (time.thread_time() - before) / calls

@@ -1,0 +1,108 @@
+"""What a tracker node costs over the floor, and whether many nodes at once lose an image."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from typing import NamedTuple
+
+from benchmarks.bench.camera import Camera
+from benchmarks.bench.case import Case
+from benchmarks.bench.effort import Effort
+from benchmarks.bench.memory import MemoryCase
+from benchmarks.bench.processes import NodeProcess, StepMeter, floor_words, tracker_words
+
+RATE = 30.0
+FLEET = 8
+FLEET_RATE = 15.0
+
+
+class Delivery(NamedTuple):
+    """What became of the images sent to several nodes at once."""
+
+    name: str
+    nodes: int
+    rate_hz: float
+    sent: int
+    lost: int
+    cpu_ms: float
+
+
+class _Batch(NamedTuple):
+    floor: float
+    node: float
+    step: float
+
+
+def measure(
+    wanted: Callable[[str], bool], effort: Effort
+) -> tuple[list[Case], list[MemoryCase]]:
+    """Measure ``node/apf`` against the floor, with its step and without, and its memory.
+
+    Raises
+    ------
+    InputError
+        If a node does not start or answer.
+    """
+    names = "node/apf/without_step", "node/apf/with_step"
+    if not any(map(wanted, (*names, "memory/node/apf"))):
+        return [], []
+    batches, memory = _alternate("apf", effort)
+    floor = [batch.floor for batch in batches]
+    without = Case.of(names[0], [batch.node - batch.step for batch in batches], floor)
+    return [without, Case.of(names[1], [batch.node for batch in batches], floor)], [memory]
+
+
+def _alternate(variant: str, effort: Effort) -> tuple[list[_Batch], MemoryCase]:
+    """Give images to the floor and to the node in turns: CPU seconds per image of each turn."""
+    meter = StepMeter()
+    count = effort.batch_frames
+    topics = {"/bench/floor": "/floor/position", "/bench/node": f"/{variant}_tracker/position"}
+    with (
+        NodeProcess(floor_words("/bench/floor")) as floor,
+        NodeProcess(tracker_words(variant, "/bench/node", meter)) as node,
+        Camera(topics) as camera,
+    ):
+        camera.wait()
+        batches = []
+        for _ in range(effort.batches + 1):
+            before = floor.cpu_seconds
+            camera.batch("/bench/floor", count, RATE)
+            of_floor = floor.cpu_seconds - before
+            before, steps = node.cpu_seconds, meter.cpu_seconds
+            camera.batch("/bench/node", count, RATE)
+            of_node, of_steps = node.cpu_seconds - before, meter.cpu_seconds - steps
+            batches.append(_Batch(of_floor / count, of_node / count, of_steps / count))
+        memory = MemoryCase(f"memory/node/{variant}", node.resident_mb, floor.resident_mb)
+    return batches[1:], memory  # the first one warms up
+
+
+def fleet(wanted: Callable[[str], bool], effort: Effort) -> list[Delivery]:
+    """Let `FLEET` nodes of ``apf`` follow at once, each with a camera of its own; reliable, 10.
+
+    Raises
+    ------
+    InputError
+        If a node does not start or answer.
+    """
+    name = f"fleet/apf/{FLEET}x640x480"
+    if not wanted(name):
+        return []
+    with contextlib.ExitStack() as stack:
+        topics, nodes = {}, []
+        for number in range(FLEET):
+            image, own = f"/bench/camera_{number}", f"tracker_{number}"
+            words = tracker_words("apf", image, queue_depth=10)
+            words += ["-r", f"__node:={own}"]
+            words += ["-p", f"qos_overrides.{image}.subscription.reliability:=reliable"]
+            nodes.append(stack.enter_context(NodeProcess(words)))
+            topics[image] = f"/{own}/position"
+        camera = stack.enter_context(Camera(topics))
+        camera.wait()
+        sent, answered = dict(camera.sent), dict(camera.answered)
+        before = sum(node.cpu_seconds for node in nodes)
+        camera.stream(effort.fleet_seconds, FLEET_RATE)
+        cpu = sum(node.cpu_seconds for node in nodes) - before
+        total = sum(camera.sent.values()) - sum(sent.values())
+        lost = total - (sum(camera.answered.values()) - sum(answered.values()))
+    return [Delivery(name, FLEET, FLEET_RATE, total, lost, cpu / total * 1e3)]

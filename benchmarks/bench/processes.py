@@ -1,0 +1,142 @@
+"""Nodes as processes, what they cost, and what they keep in memory."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+
+from benchmarks.bench.material import drive
+from benchmarks.bench.metered_node import METER
+from vehicle_pf_tracker.features.errors import InputError
+
+ROOT = Path(__file__).resolve().parents[2]
+ALLOCATOR = {
+    "MALLOC_MMAP_THRESHOLD_": "1073741824",
+    "MALLOC_TRIM_THRESHOLD_": "1073741824",
+    "MALLOC_TOP_PAD_": "67108864",
+}
+"""What the launch files set, for the floor and for the tracker nodes alike."""
+
+_READY = "ready:"
+_END_SECONDS = 10.0
+
+
+class NodeProcess:
+    """A node in a process of its own; returns from its constructor once the node is ready.
+
+    Parameters
+    ----------
+    words : sequence of str
+        What Python runs, with arguments.
+    environment : mapping
+        Variables over those of this process.
+
+    Raises
+    ------
+    InputError
+        If it ends before it is ready.
+    """
+
+    def __init__(self, words: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
+        self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - open as long as the process
+        variables = {**os.environ, **ALLOCATOR, **(environment or {})}
+        self._process = subprocess.Popen(
+            [sys.executable, *words],
+            env=variables,
+            cwd=ROOT,
+            stdout=self._log,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        assert self._process.stderr is not None
+        said = []
+        for line in self._process.stderr:
+            said.append(line)
+            if _READY in line:
+                return
+        self.end()
+        raise InputError(f"the node {' '.join(words)} ended at once: {''.join(said)[-2000:]}")
+
+    @property
+    def cpu_seconds(self) -> float:
+        """CPU time of the whole process so far, of all its threads."""
+        return time.clock_gettime((~self._process.pid << 3) | 2)  # Linux: CPU clock of a process
+
+    @property
+    def resident_mb(self) -> float:
+        """Resident memory in MB, shared libraries included."""
+        pages = int(Path("/proc", str(self._process.pid), "statm").read_text().split()[1])
+        return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+    def end(self) -> None:
+        """End the process."""
+        self._process.terminate()
+        try:
+            self._process.wait(_END_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        assert self._process.stderr is not None
+        self._process.stderr.close()
+        self._log.close()
+
+    def __enter__(self) -> NodeProcess:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.end()
+
+
+class StepMeter:
+    """What the steps of a metered node cost so far."""
+
+    def __init__(self) -> None:
+        self._file = tempfile.NamedTemporaryFile()  # noqa: SIM115 - as long as this object
+        self._file.write(METER.pack(0.0, 0.0))
+        self._file.flush()
+
+    @property
+    def path(self) -> str:
+        """Where the node writes it."""
+        return self._file.name
+
+    @property
+    def cpu_seconds(self) -> float:
+        """CPU seconds of all steps."""
+        return float(METER.unpack(Path(self.path).read_bytes())[0])
+
+
+def floor_words(image: str) -> list[str]:
+    """Words that run the floor on the topic `image`."""
+    return ["-m", "benchmarks.bench.floor_node", "--ros-args", "-r", f"image:={image}"]
+
+
+def tracker_words(
+    variant: str, image: str, meter: StepMeter | None = None, **parameters: object
+) -> list[str]:
+    """Words that run the node of `variant` on the drive's vehicle; `__` in a name is a dot."""
+    script = f"import sys; from vehicle_pf_tracker.ros.executables import {variant}_tracker as run;"
+    words = ["-c", f"{script} sys.exit(run())"]
+    if meter is not None:
+        words = ["-m", "benchmarks.bench.metered_node", meter.path, variant]
+    box = drive().boxes[0]
+    values: dict[str, object] = {
+        "target.x": float(box.x),
+        "target.y": float(box.y),
+        "target.width": float(box.width),
+        "target.height": float(box.height),
+        **{name.replace("__", "."): value for name, value in parameters.items()},
+    }
+    given = [word for name, value in values.items() for word in ("-p", f"{name}:={value}")]
+    return [*words, "--ros-args", "-r", f"image:={image}", *given]

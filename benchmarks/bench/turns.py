@@ -1,0 +1,141 @@
+"""Several trackers on one drive in turns, frame by frame."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+from benchmarks.bench.material import drive, enlarged
+from vehicle_pf_tracker.evaluation.peers.client import Peer
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+
+class Follower(Protocol):
+    """Something that follows the vehicle, and tells what each frame cost it."""
+
+    def start(self, frame: Frame, box: Box, seed: int) -> None:
+        """Begin on `box`."""
+        ...
+
+    def step(self, frame: Frame) -> float:
+        """Follow into the next frame; CPU seconds of the one thread that works."""
+        ...
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Where it says the vehicle is, px."""
+        ...
+
+
+class Own:
+    """Trackers of one variant; with several, a step is theirs together and its cost the share.
+
+    Parameters
+    ----------
+    name : str
+        Of the variant.
+    settings : mapping
+        Parameters over the defaults.
+    count : int
+        Trackers in this process.
+    size : str
+        Images that the drive's frames stand in, one of `SIZES`.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        settings: Mapping[str, Any] | None = None,
+        *,
+        count: int = 1,
+        size: str = "vga",
+    ) -> None:
+        self._variant = find_variant(name)
+        self._settings = settings or {}
+        self._count = count
+        self._size = size
+        self._trackers: list[Any] = []
+
+    def start(self, frame: Frame, box: Box, seed: int) -> None:
+        """Begin on `box`, every tracker with a seed of its own."""
+        parameters = [
+            from_mapping(self._variant.parameters, {**self._settings, "seed": seed + number})
+            for number in range(self._count)
+        ]
+        self._trackers = [self._variant.tracker(own) for own in parameters]
+        for tracker in self._trackers:
+            tracker.start(enlarged(frame, self._size), box)
+        self.centre = box.centre
+
+    def step(self, frame: Frame) -> float:
+        """Follow into the next frame."""
+        image = enlarged(frame, self._size)
+        before = time.thread_time()
+        for tracker in self._trackers:
+            estimate = tracker.step(image)
+        seconds = time.thread_time() - before
+        self.centre = estimate.position
+        return seconds / self._count
+
+
+class Theirs:
+    """A peer, whose own process does the work."""
+
+    def __init__(self, peer: Peer) -> None:
+        self._peer = peer
+
+    def start(self, frame: Frame, box: Box, seed: int) -> None:
+        """Begin on `box`; a peer has no seed."""
+        self.centre = self._peer.start(frame, box).box.centre
+
+    def step(self, frame: Frame) -> float:
+        """Follow into the next frame."""
+        answer = self._peer.step(frame)
+        self.centre = answer.box.centre
+        return answer.seconds
+
+
+def follow(
+    followers: Mapping[str, Follower],
+    seeds: Sequence[int],
+    most_frames: int,
+) -> tuple[dict[str, list[float]], dict[str, float]]:
+    """Let all follow the vehicle; who begins changes from frame to frame.
+
+    Parameters
+    ----------
+    followers : mapping of str to Follower
+        By name.
+    seeds : sequence of int
+        One pass over the drive for each.
+    most_frames : int
+        Where a pass ends.
+
+    Returns
+    -------
+    dict of str to list of float, dict of str to float
+        Seconds of each step; and the share of frames in which the error was below half the
+        vehicle's diagonal.
+    """
+    shown, boxes = drive()
+    names = list(followers)
+    times: dict[str, list[float]] = {name: [] for name in names}
+    hits = dict.fromkeys(names, 0)
+    count = min(len(shown), most_frames)
+    for seed in seeds:
+        for name, follower in followers.items():
+            follower.start(shown[0], boxes[0], seed)
+        for index in range(1, count):
+            for name in names[index % len(names) :] + names[: index % len(names)]:
+                times[name].append(followers[name].step(shown[index]))
+                hits[name] += _is_close(followers[name].centre, boxes[index])
+    return times, {name: hits[name] / len(times[name]) for name in names}
+
+
+def _is_close(centre: tuple[float, float], box: Box) -> bool:
+    across = centre[0] - box.centre[0], centre[1] - box.centre[1]
+    return 4 * (across[0] ** 2 + across[1] ** 2) < box.diagonal**2
