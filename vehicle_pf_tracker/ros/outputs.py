@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped, PolygonStamped, Vector3Stamped
-from rclpy.lifecycle import LifecycleNode
+from rclpy.lifecycle import LifecycleNode, LifecyclePublisher
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image, PointCloud2
 from std_msgs.msg import Header
@@ -29,7 +29,7 @@ _BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class Outputs:
-    """Everything that a configured node publishes.
+    """Everything that a configured node publishes; what nobody listens to is not even made.
 
     Parameters
     ----------
@@ -72,23 +72,38 @@ class Outputs:
     ) -> None:
         """Publish where the vehicle is; `frame_period` in s makes px/frame to px/s."""
         self._overlay.follow(estimate)
-        self._position.publish(position_message(header, estimate))
-        if switches.box:
+        if _is_heard(self._position):
+            self._position.publish(position_message(header, estimate))
+        if switches.box and _is_heard(self._box):
             self._box.publish(box_message(header, estimate))
-        if switches.velocity:
+        if switches.velocity and _is_heard(self._velocity):
             self._velocity.publish(velocity_message(header, estimate, frame_period))
-        if switches.particles and self._particles.get_subscription_count():
+        if switches.particles and _is_heard(self._particles):
             self._particles.publish(particles_message(header, estimate))
 
     def publish_overlay(
         self, header: Header, frame: Frame, mode: str, estimate: Estimate | None
     ) -> None:
         """Publish the drawn-on image, if anybody looks."""
-        if self._picture.get_subscription_count():
+        if _is_heard(self._picture):
             picture = self._overlay.draw(frame, mode, estimate)
             self._picture.publish(image_message(header, picture))
 
-    def publish_mode(self, header: Header, mode: str, values: Mapping[str, object]) -> None:
-        """Publish the one `~/mode` of an image."""
+    def publish_mode(
+        self,
+        header: Header,
+        mode: str,
+        values: Mapping[str, object],
+        estimate: Estimate | None = None,
+    ) -> None:
+        """Publish the one `~/mode` of an image: the scalars of its estimate, and `values`."""
+        if not _is_heard(self._mode):
+            return
         name = f"{self._node.get_name()}: target"
-        self._mode.publish(mode_message(header, name, self._hardware_id, mode, values))
+        scalars = estimate.scalars() if estimate is not None else {}
+        all_values = {**scalars, **values}
+        self._mode.publish(mode_message(header, name, self._hardware_id, mode, all_values))
+
+
+def _is_heard(publisher: LifecyclePublisher) -> bool:
+    return bool(publisher.get_subscription_count())

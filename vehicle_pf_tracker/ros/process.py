@@ -9,13 +9,14 @@ from collections.abc import Sequence
 from types import FrameType
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.ros.allocator import keep_image_memory
+from vehicle_pf_tracker.ros.image_executor import ImageExecutor
 from vehicle_pf_tracker.ros.node import TrackerNode
 from vehicle_pf_tracker.ros.transport import image_transport
 from vehicle_pf_tracker.trackers.registry import Variant
@@ -73,7 +74,7 @@ def run_node(variant: Variant, arguments: Sequence[str]) -> int:
 
 
 def _serve(variant: Variant) -> int:
-    executor = SingleThreadedExecutor()
+    executor = ImageExecutor()
     node = None
     try:
         # For ~/overlay; whether the frames come through is decided by the camera's segment.
@@ -91,12 +92,12 @@ def _serve(variant: Variant) -> int:
     return 0
 
 
-def _spin(executor: SingleThreadedExecutor, node: Node) -> None:
+def _spin(executor: ImageExecutor, node: Node) -> None:
     while rclpy.ok():
         _spin_once(executor, node)
 
 
-def _spin_once(executor: SingleThreadedExecutor, node: Node) -> None:
+def _spin_once(executor: ImageExecutor, node: Node) -> None:
     try:
         executor.spin_once()
     except ExternalShutdownException:

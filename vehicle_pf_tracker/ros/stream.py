@@ -147,18 +147,16 @@ class Stream:
             self.refuse_target(str(error))
 
     def _answer(self, header: Header, frame: Frame, estimate: Estimate | None) -> None:
-        values: dict[str, object] = self._events()
-        mode = WAITING
+        events = self._events()
+        mode = estimate.mode.value if estimate is not None else WAITING
+        switches = self._configuration.node.publish
         if estimate is not None:
-            mode = estimate.mode.value
-            values = {**estimate.scalars(), **values}
             period = self._session.tracker.frame_period
-            switches = self._configuration.node.publish
             self._outputs.publish_estimate(header, estimate, switches, period)
-        if self._configuration.node.publish.overlay:
+        if switches.overlay:
             self._outputs.publish_overlay(header, frame, mode, estimate)
         self._health.answered(mode, estimate.duration * 1e3 if estimate else None)
-        self._outputs.publish_mode(header, mode, values)
+        self._outputs.publish_mode(header, mode, events, estimate)
 
     def _reject(self, header: Header, reason: str) -> None:
         self._health.reject(reason)
