@@ -1,4 +1,4 @@
-"""Similarity of many windows against one crop and one histogram per particle."""
+"""Similarity of many windows against one crop and one histogram per particle, one thread each."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from typing import NamedTuple
 from benchmarks.bench import naive
 from benchmarks.bench.case import Case
 from benchmarks.bench.effort import Effort
-from benchmarks.bench.interleaving import compare
+from benchmarks.bench.interleaving import Work, compare
 from benchmarks.bench.material import clouds, drive, enlarged
-from benchmarks.bench.routes import Route, routes
+from benchmarks.bench.routes import Route, routes, three_references
 from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.window import Positions, Window
 
 COUNTS = (50, 200, 1000, 5000)
@@ -32,19 +33,61 @@ class _Inputs(NamedTuple):
 
 def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
     """Measure features, windows, image sizes, numbers of particles and routes."""
-    for kind, route in routes().items():
-        for size in ("vga", "1080p"):
-            for window in WINDOWS:
-                for count in COUNTS:
-                    name = f"{kind}/joint512/{window}/{size}/n{count}"
-                    if wanted(name):
-                        yield _joint(name, route, _inputs(size, window, count), effort)
-        name = f"{kind}/joint512/41x31/1080p/n200-over-vga"
-        if wanted(name):
-            yield _sizes(name, route, effort)
-        name = f"{kind}/three_features/41x31/vga/n200"
-        if wanted(name):
-            yield _three(name, route, _inputs("vga", "41x31", 200), effort)
+    for route in routes():
+        for name, make in contests(route).items():
+            if wanted(name):
+                yield compare(name, *make(), effort.case_seconds)
+
+
+def contests(route: Route) -> dict[str, Callable[[], tuple[Work, Work]]]:
+    """Give what makes the two pieces of work of each case, by its name."""
+    made: dict[str, Callable[[], tuple[Work, Work]]] = {
+        f"{route.name}/joint512/{window}/{size}/n{count}": _joint(route, size, window, count)
+        for size in ("vga", "1080p")
+        for window in WINDOWS
+        for count in COUNTS
+    }
+    made[f"{route.name}/joint512/41x31/1080p-over-vga/n200"] = _sizes(route)
+    made[f"{route.name}/three_features/41x31/vga/n200"] = _three(route)
+    return made
+
+
+def _joint(route: Route, size: str, window: str, count: int) -> Callable[[], tuple[Work, Work]]:
+    def make() -> tuple[Work, Work]:
+        inputs = _inputs(size, window, count)
+        histogram = naive.joint_histogram(inputs.frames[0], *_target(), inputs.window)
+        reference = Reference(histogram)
+        return (
+            lambda number: route.joint(*inputs.at(number), reference),
+            lambda number: naive.joint_similarity(*inputs.at(number), histogram),
+        )
+
+    return make
+
+
+def _sizes(route: Route) -> Callable[[], tuple[Work, Work]]:
+    def make() -> tuple[Work, Work]:
+        large, small = (_inputs(size, "41x31", 200) for size in ("1080p", "vga"))
+        reference = Reference(naive.joint_histogram(small.frames[0], *_target(), small.window))
+        return (
+            lambda number: route.joint(*large.at(number), reference),
+            lambda number: route.joint(*small.at(number), reference),
+        )
+
+    return make
+
+
+def _three(route: Route) -> Callable[[], tuple[Work, Work]]:
+    def make() -> tuple[Work, Work]:
+        inputs = _inputs("vga", "41x31", 200)
+        histograms = naive.three_histograms(inputs.frames[0], *_target(), inputs.window)
+        references = three_references(histograms)
+        return (
+            lambda number: route.three(*inputs.at(number), references),
+            lambda number: naive.three_similarities(*inputs.at(number), histograms),
+        )
+
+    return make
 
 
 def _inputs(size: str, window: str, count: int) -> _Inputs:
@@ -52,37 +95,6 @@ def _inputs(size: str, window: str, count: int) -> _Inputs:
     frames = [enlarged(frame, size) for frame in drive().frames[first : first + _VARIETY]]
     centre = drive().boxes[first].centre
     return _Inputs(frames, clouds(centre, count, _VARIETY), WINDOWS[window])
-
-
-def _joint(name: str, route: Route, inputs: _Inputs, effort: Effort) -> Case:
-    reference = naive.joint_histogram(inputs.frames[0], *_target(), inputs.window)
-    return compare(
-        name,
-        lambda number: route.joint(*inputs.at(number), reference),
-        lambda number: naive.joint_similarity(*inputs.at(number), reference),
-        effort.case_seconds,
-    )
-
-
-def _sizes(name: str, route: Route, effort: Effort) -> Case:
-    large, small = (_inputs(size, "41x31", 200) for size in ("1080p", "vga"))
-    reference = naive.joint_histogram(small.frames[0], *_target(), small.window)
-    return compare(
-        name,
-        lambda number: route.joint(*large.at(number), reference),
-        lambda number: route.joint(*small.at(number), reference),
-        effort.case_seconds,
-    )
-
-
-def _three(name: str, route: Route, inputs: _Inputs, effort: Effort) -> Case:
-    references = naive.three_histograms(inputs.frames[0], *_target(), inputs.window)
-    return compare(
-        name,
-        lambda number: route.three(*inputs.at(number), references),
-        lambda number: naive.three_similarities(*inputs.at(number), references),
-        effort.case_seconds,
-    )
 
 
 def _target() -> tuple[float, float]:

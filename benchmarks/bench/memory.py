@@ -1,13 +1,54 @@
-"""How much memory things keep."""
+"""How much memory trackers keep: `… memory VARIANT COUNT` prints MB with one and with COUNT."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from benchmarks.bench.costs import VARIANTS
+from benchmarks.bench.material import drive
+from benchmarks.bench.resident import resident_mb
+from benchmarks.bench.root import ROOT
+from benchmarks.bench.turns import Own
+
+TRACKERS = 64
+_STEPS = 5
 
 
-class MemoryCase(NamedTuple):
+@dataclass(frozen=True)
+class MemoryCase:
     """Resident memory of ours and of what it is compared with, in MB."""
 
     name: str
     ours_mb: float
     peer_mb: float
+
+
+def measure(wanted: Callable[[str], bool]) -> Iterator[MemoryCase]:
+    """Measure ``memory/trackers/VARIANT``: a process with `TRACKERS` trackers and with one."""
+    for variant in VARIANTS:
+        name = f"memory/trackers/{variant}/{TRACKERS}"
+        if wanted(name):
+            words = [sys.executable, "-m", "benchmarks.bench.memory", variant, str(TRACKERS)]
+            done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
+            one, many = map(float, done.stdout.split())
+            yield MemoryCase(name, many, one)
+
+
+def main(variant: str, count: int) -> None:
+    """Let one tracker follow, then `count` more, and print what was resident each time."""
+    frames, boxes = drive()
+    kept = []
+    for number in (1, count):
+        trackers = Own(variant, count=number)
+        trackers.start(frames[0], boxes[0], seed=0)
+        for frame in frames[1 : 1 + _STEPS]:
+            trackers.step(frame)
+        kept.append(trackers)
+        print(resident_mb())
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]))

@@ -40,7 +40,7 @@ def joint_similarity(
 
 
 def three_histograms(frame: Frame, x: float, y: float, window: Window) -> ThreeHistograms:
-    """The three features of P2 in the window at (x, y), each from its own crop."""
+    """Measure the three features of P2 in the window at (x, y), each from its own crop."""
     crop = _crop(frame, x, y, window)
     colour = np.concatenate(
         [cv2.calcHist([crop], [channel], None, [21], [0, 256]).ravel() for channel in range(3)]
@@ -49,9 +49,7 @@ def three_histograms(frame: Frame, x: float, y: float, window: Window) -> ThreeH
     grey = around[1:-1, 1:-1]
     levels = grey // 32
     texture = np.bincount((8 * levels[:, :-1] + levels[:, 1:]).ravel(), minlength=64)
-    return ThreeHistograms(
-        colour / colour.sum(), _edge_directions(around), texture / texture.sum()
-    )
+    return ThreeHistograms(colour / colour.sum(), _edge_directions(around), texture / texture.sum())
 
 
 def three_similarities(

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from benchmarks.bench.camera import Camera
 from benchmarks.bench.case import Case
+from benchmarks.bench.delivery import Delivery
 from benchmarks.bench.effort import Effort
 from benchmarks.bench.memory import MemoryCase
 from benchmarks.bench.processes import NodeProcess, StepMeter, floor_words, tracker_words
@@ -17,26 +18,13 @@ FLEET = 8
 FLEET_RATE = 15.0
 
 
-class Delivery(NamedTuple):
-    """What became of the images sent to several nodes at once."""
-
-    name: str
-    nodes: int
-    rate_hz: float
-    sent: int
-    lost: int
-    cpu_ms: float
-
-
 class _Batch(NamedTuple):
     floor: float
     node: float
     step: float
 
 
-def measure(
-    wanted: Callable[[str], bool], effort: Effort
-) -> tuple[list[Case], list[MemoryCase]]:
+def measure(wanted: Callable[[str], bool], effort: Effort) -> tuple[list[Case], list[MemoryCase]]:
     """Measure ``node/apf`` against the floor, with its step and without, and its memory.
 
     Raises

@@ -13,9 +13,10 @@ from types import TracebackType
 
 from benchmarks.bench.material import drive
 from benchmarks.bench.metered_node import METER
+from benchmarks.bench.resident import resident_mb
+from benchmarks.bench.root import ROOT
 from vehicle_pf_tracker.features.errors import InputError
 
-ROOT = Path(__file__).resolve().parents[2]
 ALLOCATOR = {
     "MALLOC_MMAP_THRESHOLD_": "1073741824",
     "MALLOC_TRIM_THRESHOLD_": "1073741824",
@@ -71,8 +72,7 @@ class NodeProcess:
     @property
     def resident_mb(self) -> float:
         """Resident memory in MB, shared libraries included."""
-        pages = int(Path("/proc", str(self._process.pid), "statm").read_text().split()[1])
-        return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
+        return resident_mb(self._process.pid)
 
     def end(self) -> None:
         """End the process."""

@@ -2,46 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from benchmarks.bench.naive import ThreeHistograms
-from vehicle_pf_tracker.features import colour_kernel
-from vehicle_pf_tracker.features.colour import Histogram
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.glcm import Cooccurrence
 from vehicle_pf_tracker.features.gradients import GradientDirections
+from vehicle_pf_tracker.features.joint_colour import JointColour
+from vehicle_pf_tracker.features.kernels.choice import load_kernels
+from vehicle_pf_tracker.features.kernels.interface import Kernels
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
 from vehicle_pf_tracker.features.similarity import Array
 from vehicle_pf_tracker.features.window import Positions, Window
 
+_THREE = RgbMarginals(), GradientDirections(), Cooccurrence()
+
 
 class Route(NamedTuple):
-    """One implementation of the kernels, made ready."""
+    """Kernels under the first word of their cases' names."""
 
     name: str
+    kernels: Kernels
 
     def joint(
-        self, frame: Frame, positions: Positions, window: Window, reference: Histogram
+        self, frame: Frame, positions: Positions, window: Window, reference: Reference
     ) -> Array:
         """Similarity of the 512-bin histograms, shape (N,)."""
-        return colour_kernel.joint_similarity(frame, positions, window, reference, 3)
+        return self.kernels.similarity(JointColour(3), frame, positions, window, reference)
 
     def three(
-        self, frame: Frame, positions: Positions, window: Window, references: ThreeHistograms
+        self, frame: Frame, positions: Positions, window: Window, references: list[Reference]
     ) -> Array:
         """Similarities of P2's three features, shape (3, N)."""
-        features = RgbMarginals(), GradientDirections(), Cooccurrence()
         return np.array(
             [
-                feature.similarity(frame, positions, window, reference)
-                for feature, reference in zip(features, references, strict=True)
+                self.kernels.similarity(feature, frame, positions, window, reference)
+                for feature, reference in zip(_THREE, references, strict=True)
             ]
         )
 
 
-def routes() -> Mapping[str, Route]:
-    """Return the routes that work here, by the first word of their cases' names."""
-    return {"kernel-opencv": Route("opencv")}
+def three_references(histograms: ThreeHistograms) -> list[Reference]:
+    """Make the references that `Route.three` takes."""
+    return [Reference(histogram) for histogram in histograms]
+
+
+def routes() -> list[Route]:
+    """Return the routes that work here: that of numba too, if it is installed."""
+    best = load_kernels("auto")
+    ways = [Route("kernel", best)] if best.name == "numba" else []
+    return [*ways, Route("kernel-opencv", load_kernels("opencv"))]

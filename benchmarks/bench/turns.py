@@ -127,7 +127,7 @@ def follow(
     hits = dict.fromkeys(names, 0)
     count = min(len(shown), most_frames)
     for seed in seeds:
-        for name, follower in followers.items():
+        for follower in followers.values():
             follower.start(shown[0], boxes[0], seed)
         for index in range(1, count):
             for name in names[index % len(names) :] + names[: index % len(names)]:

@@ -1,0 +1,92 @@
+"""Measure everything, and write `bench.json`: `python -m benchmarks.bench [--quick]`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from fnmatch import fnmatch
+from importlib.util import find_spec
+from pathlib import Path
+
+import cv2
+
+from benchmarks.bench import costs, kernels, memory, steps
+from benchmarks.bench.case import Case
+from benchmarks.bench.effort import FULL, QUICK, Effort
+from benchmarks.bench.environment import describe
+from benchmarks.bench.results import Results
+from vehicle_pf_tracker.features.errors import InputError
+
+OUTPUT = Path("results/bench/bench.json")
+
+
+def main() -> int:
+    """Run the benchmarks; 1 where something that they need is missing."""
+    args = _arguments()
+    cv2.setNumThreads(1)
+    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
+    effort = QUICK if args.quick else FULL
+    words = sys.argv[1:]
+    results = Results(describe(), [" ".join(["python -m benchmarks.bench", *words])])
+    try:
+        _measure(results, lambda name: any(fnmatch(name, one) for one in args.only), effort, args)
+    except InputError as error:
+        print(f"bench: {error}", file=sys.stderr)
+        return 1
+    results.save(args.output)
+    print(f"wrote {args.output}")
+    return 0
+
+
+def _measure(
+    results: Results, wanted: Callable[[str], bool], effort: Effort, args: argparse.Namespace
+) -> None:
+    results.cases += _told(kernels.measure(wanted, effort))
+    of_steps, results.on_target = steps.measure(wanted, effort, args.peers)
+    results.cases += _told(of_steps)
+    results.cases += _told(costs.measure(wanted, effort))
+    results.memory += memory.measure(wanted)
+    if find_spec("rclpy") is None:
+        print("no rclpy here: the nodes are left out", file=sys.stderr)
+        return
+    from benchmarks.bench import nodes, startup  # noqa: PLC0415 - they need ROS
+
+    results.cases += _told(startup.measure(wanted, effort))
+    of_nodes, resident = nodes.measure(wanted, effort)
+    results.cases += _told(of_nodes)
+    results.memory += resident
+    results.deliveries += nodes.fleet(wanted, effort)
+    for one in results.memory:
+        print(f"{one.name:48} {one.ours_mb:10.1f} MB {one.peer_mb:10.1f} MB")
+    for delivery in results.deliveries:
+        print(f"{delivery.name:48} {delivery.lost} of {delivery.sent} lost")
+
+
+def _told(cases: Iterable[Case]) -> Iterator[Case]:
+    for case in cases:
+        print(
+            f"{case.name:48} {case.ours_ms:10.4f} ms {case.peer_ms:10.4f} ms "
+            f"{case.ratio:8.2f}x  +- {case.spread / 2:.2f}",
+            flush=True,
+        )
+        yield case
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.bench", description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="rough numbers in about a minute")
+    parser.add_argument(
+        "--only", nargs="+", default=["*"], metavar="PATTERN", help="cases by name, as step/*/csrt"
+    )
+    parser.add_argument(
+        "--peers", type=Path, help="interpreter with OpenCV's contrib trackers; see `make peers`"
+    )
+    parser.add_argument("-o", "--output", type=Path, default=OUTPUT)
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
