@@ -119,3 +119,22 @@ def test_drawing_leaves_the_frame_alone(bench, rig):
     before = frame.copy()
     Overlay().draw(frame[::2, ::2], "TRACKING", rig.node._stream.estimate)
     assert (frame == before).all()
+
+
+def test_messages_that_nobody_hears_are_not_made(bench, rig, monkeypatch):
+    made = []
+    for name in ("box_message", "velocity_message", "particles_message"):
+        original = getattr(outputs, name)
+
+        def record(*arguments, name=name, original=original):
+            made.append(name)
+            return original(*arguments)
+
+        monkeypatch.setattr(outputs, name, record)
+    frames = road(4)
+    rig.play(frames[:2])
+    assert made == []
+    boxes = bench.collect(PolygonStamped, "/apf_tracker/box")
+    rig.play(frames[2:], first=2)
+    bench.wait_for(lambda: len(boxes) == 2)
+    assert made == ["box_message"] * 2

@@ -1,0 +1,119 @@
+"""The nodes' executor: messages first, and everything else in good time."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+import rclpy
+from rclpy.service import Service
+from std_msgs.msg import Header
+from std_srvs.srv import Trigger
+
+from vehicle_pf_tracker.ros import image_executor
+from vehicle_pf_tracker.ros.image_executor import ImageExecutor
+
+pytestmark = pytest.mark.ros
+
+
+class Served:
+    """A node of an `ImageExecutor`, and a tester that publishes to it and calls its service."""
+
+    def __init__(self, bench):
+        self.bench = bench
+        self.node = rclpy.create_node("served", context=bench.context)
+        self.heard = []
+        self.asked = 0
+        self.node.create_subscription(Header, "topic", self.heard.append, 100)
+        self.node.create_service(Trigger, "service", self.answer)
+        self.executor = ImageExecutor(context=bench.context)
+        self.executor.add_node(self.node)
+        self.publisher = bench.node.create_publisher(Header, "topic", 100)
+        self.client = bench.node.create_client(Trigger, "service")
+        bench.wait_for(self.publisher.get_subscription_count)
+        bench.wait_for(self.client.service_is_ready)
+
+    def answer(self, _, response):
+        self.asked += 1
+        return response
+
+    def spin_until(self, condition):
+        deadline = time.perf_counter() + 20
+        while not condition():
+            assert time.perf_counter() < deadline
+            self.executor.spin_once()
+
+    def hear_one(self):
+        before = len(self.heard)
+        self.publisher.publish(Header())
+        self.spin_until(lambda: len(self.heard) > before)
+
+    def waits_for_services(self):
+        services = [one for one in self.node.services if isinstance(one, Service)]
+        return all(map(self.executor.can_execute, services))
+
+    def close(self):
+        self.executor.shutdown()
+        self.node.destroy_node()
+
+
+@pytest.fixture
+def served(bench):
+    made = Served(bench)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """The executor's clock, which stands still unless it is set."""
+    times = [0.0]
+    monkeypatch.setattr(image_executor.time, "monotonic", lambda: times[0])
+    return times
+
+
+def test_while_messages_flow_nothing_else_is_waited_for(served, clock):
+    assert served.waits_for_services()
+    served.hear_one()
+    assert not served.waits_for_services()
+
+
+def test_messages_that_never_pause_starve_no_service(served):
+    served.hear_one()
+    future = served.client.call_async(Trigger.Request())
+    deadline = time.perf_counter() + 20
+    while not served.asked:
+        assert time.perf_counter() < deadline
+        served.hear_one()
+    served.bench.wait_for(future.done)
+
+
+def test_a_look_serves_what_is_ready_and_ends(served, clock):
+    served.hear_one()
+    clock[0] += image_executor.LOOK_EVERY
+    served.executor.spin_once()  # nothing is ready
+    assert not served.waits_for_services()
+
+
+def test_silence_brings_back_the_wait_for_everything(served, clock):
+    served.hear_one()
+    served.spin_until(served.waits_for_services)  # each spin ends after LOOK_EVERY at most
+    future = served.client.call_async(Trigger.Request())
+    served.spin_until(lambda: served.asked)
+    served.bench.wait_for(future.done)
+
+
+def test_an_error_in_a_callback_is_raised(served):
+    def fail(_):
+        raise RuntimeError("broken")
+
+    served.node.create_subscription(Header, "other", fail, 1)
+    publisher = served.bench.node.create_publisher(Header, "other", 1)
+    served.bench.wait_for(publisher.get_subscription_count)
+    publisher.publish(Header())
+    with pytest.raises(RuntimeError, match="broken"):
+        while True:
+            served.executor.spin_once()
