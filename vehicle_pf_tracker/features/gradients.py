@@ -72,7 +72,7 @@ class GradientDirections(CountedFeature):
         region, windows = covered_region(frame, in_image, margin=1)
         grey = to_grey(region)
         if not self.in_frame:
-            counts = window_direction_counts(grey, windows, self._limits, signed=self.signed)
+            counts = window_direction_counts(grey, windows, self.limits, signed=self.signed)
             return Counted(counts[:, active], counts.sum(axis=1))
         gx, gy = (
             np.asarray(cv2.Sobel(grey, cv2.CV_16S, dx, 1 - dx, ksize=3), np.int16) for dx in (1, 0)
@@ -80,11 +80,12 @@ class GradientDirections(CountedFeature):
         strength = squared_strength(gx, gy)
         corner = in_image.left[0] - windows.left[0], in_image.top[0] - windows.top[0]
         middles = centres(keep_inside(frame, positions)) - corner
-        limits = self._limits(_window_peaks(strength, middles, window))
+        limits = self.limits(window_peaks(strength, middles, window))
         points = _edge_points(gx, gy, strength, limits, signed=self.signed)
         return _count_points(points, strength.shape, limits, windows, active)
 
-    def _limits(self, peaks: Strengths) -> Strengths:
+    def limits(self, peaks: Strengths) -> Strengths:
+        """Least squared strength of edge points in windows whose strongest have `peaks`."""
         return squared_limits(peaks, self.threshold, self.floor)
 
 
@@ -101,7 +102,7 @@ class EdgePoints(NamedTuple):
         return EdgePoints(*(column[chosen] for column in self))
 
 
-def _window_peaks(strength: Strengths, middles: npt.NDArray[np.intp], window: Window) -> Strengths:
+def window_peaks(strength: Strengths, middles: npt.NDArray[np.intp], window: Window) -> Strengths:
     """Largest strength in each window, shape (N,); `middles` are the windows' own pixels (N, 2)."""
     height, width = strength.shape
     half = min(window.half_width, width), min(window.half_height, height)

@@ -25,6 +25,11 @@ class Counted(NamedTuple):
     bins: npt.NDArray[Any]
     totals: npt.NDArray[Any]
 
+    @property
+    def histograms(self) -> Histograms:
+        """Counts relative to all; zero where nothing was counted."""
+        return np.asarray(self.bins / np.maximum(self.totals, 1)[:, np.newaxis])
+
     def coefficients(self, values: Histograms) -> Coefficients:
         """Bhattacharyya coefficient of each row with a reference's `values` (K,), shape (N,)."""
         overlap = np.sqrt(self.bins * values).sum(axis=1)
@@ -85,8 +90,7 @@ class CountedFeature(WindowFeature):
 
     def histograms(self, frame: Frame, positions: Positions, window: Window) -> Histograms:
         """Describe windows; see `WindowFeature.histograms`."""
-        counts, totals = self.counts(frame, positions, window, np.arange(self.bins))
-        return np.asarray(counts / np.maximum(totals, 1)[:, np.newaxis])
+        return self.counts(frame, positions, window, np.arange(self.bins)).histograms
 
     def similarity(
         self, frame: Frame, positions: Positions, window: Window, reference: Reference

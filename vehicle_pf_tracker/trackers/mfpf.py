@@ -214,9 +214,10 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         return float(x), float(y)
 
     def _describe(self, frame: Frame, position: tuple[float, float]) -> list[Histograms]:
-        at = np.asarray([position])
+        at, window = np.asarray([position]), self.window
         return [
-            feature.histograms(frame, at, self.window)[0] for feature in self._features.values()
+            self.kernels.histograms(feature, frame, at, window)[0]
+            for feature in self._features.values()
         ]
 
     def _similarities(self, histograms: list[Histograms]) -> Array:

@@ -13,7 +13,13 @@ from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.window import Positions, Window
-from vehicle_pf_tracker.features.window_feature import Coefficients, Counted, WindowFeature
+from vehicle_pf_tracker.features.window_feature import (
+    Coefficients,
+    Counted,
+    CountedFeature,
+    Histograms,
+    WindowFeature,
+)
 
 SimilarityMap: TypeAlias = npt.NDArray[np.float32]
 
@@ -72,6 +78,14 @@ class Kernels(ABC):
         Counted
             Counts of the bins (N, K), and of all bins together (N,).
         """
+
+    def histograms(
+        self, feature: WindowFeature, frame: Frame, positions: Positions, window: Window
+    ) -> Histograms:
+        """Describe windows; see `WindowFeature.histograms`."""
+        if not isinstance(feature, CountedFeature):
+            return feature.histograms(frame, positions, window)
+        return self.counts(feature, frame, positions, window, np.arange(feature.bins)).histograms
 
     @abstractmethod
     def similarity(

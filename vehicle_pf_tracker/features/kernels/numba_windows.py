@@ -224,6 +224,16 @@ def slide_windows(
     return result
 
 
+@compiled(types.float64[::1](_COUNTS, types.int64[::1], SCALE))
+def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
+    """Compare windows that are counted already; `totals` are those of all bins, shape (N,)."""
+    values, roots = scale
+    result = np.empty(len(counts))
+    for i in range(len(counts)):
+        result[i] = _overlap(counts[i], values, totals[i], roots)
+    return result
+
+
 @compiled(types.float64[::1](CELLS, RECTANGLES, SCALE, _COUNTS))
 def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale, counts: Counts) -> Reals:
     """Compare windows one after the other; parameters as for `slide_windows`."""

@@ -1,0 +1,103 @@
+"""Features that count pixels, by the numba kernels: over a region, or window by window."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.joint_colour import JointColour
+from vehicle_pf_tracker.features.kernels.numba_cells import (
+    Cells,
+    joint_cells,
+    marginal_cells,
+    pair_cells,
+    stack_windows,
+)
+from vehicle_pf_tracker.features.kernels.numba_place import Place
+from vehicle_pf_tracker.features.kernels.numba_reference import CellTable, roots_up_to
+from vehicle_pf_tracker.features.kernels.numba_windows import (
+    Counts,
+    Reals,
+    compare_rectangles,
+    slide_windows,
+    window_rectangles,
+)
+from vehicle_pf_tracker.features.rgb_marginals import CHANNEL_BINS, RgbMarginals
+from vehicle_pf_tracker.features.window_feature import WindowFeature, to_grey
+
+# What things cost, roughly in cycles; they decide about the route, and not about the result.
+_PIXEL = 4
+_STEP = 10
+_CELLS_AT_ONCE = 8
+
+
+def compare_pixels(
+    feature: WindowFeature, frame: Frame, place: Place, table: CellTable, counts: Counts
+) -> Reals:
+    """Compare windows from the region that they cover, or apart where that is less work.
+
+    Parameters
+    ----------
+    feature : WindowFeature
+        Joint colours, marginals or co-occurrences.
+    counts : (N or 0, K) array
+        Filled with each window's counts, if it has room.
+
+    Returns
+    -------
+    (N,) array
+        Bhattacharyya coefficients.
+    """
+    left, top, right, bottom = place.covered()
+    area = (place.reach[0] * 2 + 1) * (place.reach[2] * 2 + 1)
+    planes = planes_of(feature)
+    roots = roots_up_to(planes * area)
+    if (right - left) * (bottom - top) > len(place.pixels) * area:
+        return _compare_apart(feature, frame, place, table, counts)
+    cells = _cells(feature, frame[top:bottom, left:right], table)
+    if _work_of_sliding(place, cells, table) > len(place.pixels) * (
+        _PIXEL * planes * area + len(table.values)
+    ):
+        rectangles = place.rectangles((left, top))
+        return compare_rectangles(cells, rectangles, (table.values, roots), counts)
+    return slide_windows(
+        cells, place.pixels, place.extent, (left, top), place.reach, (table.values, roots), counts
+    )
+
+
+def _work_of_sliding(place: Place, cells: Cells, table: CellTable) -> int:
+    x0, y0, x1, y1 = place.extent
+    step = len(table.values) // _CELLS_AT_ONCE
+    each_row = (x1 - x0 + 1) * (step + _STEP) + (2 * place.reach[0] + 1) * step
+    return _PIXEL * cells.size + (y1 - y0 + 1) * each_row
+
+
+def _compare_apart(
+    feature: WindowFeature, frame: Frame, place: Place, table: CellTable, counts: Counts
+) -> Reals:
+    """Compare windows that share few pixels, from a copy of each."""
+    width, height = 2 * place.reach[0] + 1, 2 * place.reach[2] + 1
+    whole = window_rectangles(
+        place.pixels, (place.reach[0], place.reach[0] + 1, place.reach[2]), (0, 0), place.size
+    )
+    stack = stack_windows(frame, whole, width, height)
+    rectangles = place.rectangles((0, 0))
+    rectangles[:, [0, 2]] -= whole[:, :1]
+    rectangles[:, [1, 3]] += (height * np.arange(len(whole)) - whole[:, 1])[:, np.newaxis]
+    roots = roots_up_to(planes_of(feature) * width * height)
+    return compare_rectangles(
+        _cells(feature, stack, table), rectangles, (table.values, roots), counts
+    )
+
+
+def _cells(feature: WindowFeature, pixels: Frame, table: CellTable) -> Cells:
+    if isinstance(feature, JointColour):
+        return joint_cells(pixels, feature.bits, table.cells)
+    if isinstance(feature, RgbMarginals):
+        return marginal_cells(pixels, CHANNEL_BINS, table.cells)
+    return pair_cells(to_grey(pixels), table.cells)
+
+
+def planes_of(feature: WindowFeature) -> int:
+    """Count the bins that each pixel adds to."""
+    return 3 if isinstance(feature, RgbMarginals) else 1
