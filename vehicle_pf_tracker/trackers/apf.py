@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle_pf_tracker.features.colour import Histogram, joint_histogram
+from vehicle_pf_tracker.features.colour import Histogram
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.reference import Reference
@@ -79,7 +79,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         weights = from_log(log_likelihood(rho, settings.likelihood))  # steps 11 and 12
         cloud = Cloud(particles, *weights)
         position = cloud.mean()  # step 13
-        histogram = joint_histogram(frame, position, window, bits)  # step 14
+        at = np.asarray([position])
+        histogram = self.kernels.histograms(feature, frame, at, window)[0]  # step 14
         evidence = _similarity(histogram, self._reference.histogram)
         self._compare_and_learn(settings, histogram)  # steps 15 and 16
         self._follow(settings, position, elapsed, regular=regular)

@@ -8,19 +8,21 @@ import numpy as np
 import numpy.typing as npt
 from numba import types
 
-from vehicle_pf_tracker.features.kernels.numba_cells import RECTANGLES, Rectangles
+from vehicle_pf_tracker.features.kernels.numba_cells import RECTANGLES, Rectangles, Table
 from vehicle_pf_tracker.features.kernels.numba_jit import compiled
 from vehicle_pf_tracker.features.kernels.numba_windows import Counts
 from vehicle_pf_tracker.features.sobel import Strengths
 
 Gradients: TypeAlias = npt.NDArray[np.int16]
 Limits: TypeAlias = npt.NDArray[np.float32]
+Index: TypeAlias = npt.NDArray[np.int32]
 Numbers: TypeAlias = npt.NDArray[np.int64]
 
 _GRADIENTS = types.Array(types.int16, 2, "A", readonly=True)
 _PLANE = types.float32[:, ::1]
 _LIMITS = types.float32[::1]
-_NUMBERS = types.UniTuple(types.int64[::1], 3)
+_NUMBERS = types.int64[::1]
+_INDEX = types.int32[:, ::1]
 
 
 @compiled(_PLANE(_GRADIENTS, _GRADIENTS))
@@ -34,31 +36,32 @@ def gradient_strengths(gx: Gradients, gy: Gradients) -> Strengths:
     return strengths
 
 
-@compiled(_NUMBERS(_PLANE, types.float32))
-def find_points(strengths: Strengths, limit: float) -> tuple[Numbers, Numbers, Numbers]:
+@compiled(types.Tuple((_INDEX, _NUMBERS, _NUMBERS))(_PLANE, types.float32))
+def find_points(strengths: Strengths, limit: float) -> tuple[Index, Numbers, Numbers]:
     """List the pixels of at least this strength, row by row.
 
     Returns
     -------
-    (H + 1,), (M,), (M,) arrays
-        Number of the first point of each row, and of all points; their rows; their columns.
+    (H, W + 1), (M,), (M,) arrays
+        Number of the first point that is not before a pixel; rows and columns of the points.
     """
     height, width = strengths.shape
-    starts = np.zeros(height + 1, np.int64)
+    index = np.empty((height, width + 1), np.int32)
     rows, columns = np.empty(strengths.size, np.int64), np.empty(strengths.size, np.int64)
     count = 0
     for y in range(height):
         for x in range(width):
-            if strengths[y, x] >= limit:
-                rows[count], columns[count] = y, x
-                count += 1
-        starts[y + 1] = count
-    return starts, rows[:count].copy(), columns[:count].copy()
+            index[y, x] = count
+            rows[count], columns[count] = y, x
+            count += strengths[y, x] >= limit
+        index[y, width] = count
+    return index, rows[:count].copy(), columns[:count].copy()
 
 
-@compiled(types.int64[::1](_NUMBERS, _LIMITS, RECTANGLES, _LIMITS, types.int32[:, ::1]))
+@compiled(_NUMBERS(_INDEX, types.uint16[::1], _LIMITS, RECTANGLES, _LIMITS, types.int32[:, ::1]))
 def count_points(
-    points: tuple[Numbers, Numbers, Numbers],
+    index: Index,
+    cells: Table,
     strengths: Limits,
     rectangles: Rectangles,
     limits: Limits,
@@ -68,27 +71,29 @@ def count_points(
 
     Parameters
     ----------
-    points : (H + 1,), (M,), (M,) arrays
-        Number of the first point of each row, and of all points; their columns; their cells.
-    strengths : (M,) array
-        Squared gradients of the points.
+    index : (H, W + 1) array
+        As from `find_points`.
+    cells, strengths : (M,) arrays
+        Cell and squared gradient of each point.
     rectangles, limits : (N, 4) array, (N,) array
         Left, top, right, bottom of each window; least squared gradient that counts in it.
     counts : (N, K + 1 or more) array
-        Zeros, to which the points of each cell are added.
+        Filled with the points of each cell.
 
     Returns
     -------
     (N,) array
         Counts of all cells together.
     """
-    starts, columns, cells = points
     totals = np.zeros(len(rectangles), np.int64)
     for i in range(len(rectangles)):
         left, top, right, bottom = rectangles[i]
-        for point in range(starts[top], starts[bottom]):
-            x = columns[point]
-            passes = (x >= left) & (x < right) & (strengths[point] >= limits[i])
-            counts[i, cells[point]] += passes
-            totals[i] += passes
+        limit, own = limits[i], counts[i]
+        own[:] = 0
+        for y in range(top, bottom):
+            # An unsigned number needs no look at whether it counts from the end.
+            for point in range(np.uint32(index[y, left]), np.uint32(index[y, right])):
+                own[cells[point]] += np.int32(strengths[point] >= limit)
+        for k in range(len(own)):
+            totals[i] += own[k]
     return totals

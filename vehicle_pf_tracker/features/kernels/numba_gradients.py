@@ -43,9 +43,9 @@ def count_directions(
     strengths = gradient_strengths(gx, gy)
     limits = feature.limits(window_peaks(strengths, place.pixels - (left, top), window))
     # Only what passes the least limit of all can be an edge point in any window.
-    starts, y, x = find_points(strengths, limits.min())
+    index, y, x = find_points(strengths, limits.min())
     cells = table.cells[direction_bins(gx[y, x], gy[y, x], signed=feature.signed)]
-    points = starts, x, cells.astype(np.int64)
-    counts = np.zeros((len(limits), len(table.values)), np.int32)
-    totals = count_points(points, strengths[y, x], place.rectangles((left, top)), limits, counts)
+    counts = np.empty((len(limits), len(table.values)), np.int32)
+    rectangles = place.rectangles((left, top))
+    totals = count_points(index, cells, strengths[y, x], rectangles, limits, counts)
     return CellCounts(counts, totals)

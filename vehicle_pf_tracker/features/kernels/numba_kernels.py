@@ -17,7 +17,11 @@ from vehicle_pf_tracker.features.kernels.numba_cells import joint_cells
 from vehicle_pf_tracker.features.kernels.numba_counting import compare_pixels, planes_of
 from vehicle_pf_tracker.features.kernels.numba_gradients import count_directions
 from vehicle_pf_tracker.features.kernels.numba_place import Place, reach_of
-from vehicle_pf_tracker.features.kernels.numba_reference import CellTable, roots_up_to, table_of
+from vehicle_pf_tracker.features.kernels.numba_reference import (
+    roots_up_to,
+    table_for_counting,
+    table_of,
+)
 from vehicle_pf_tracker.features.kernels.numba_windows import Counts, compare_counts, map_windows
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
@@ -49,7 +53,7 @@ class NumbaKernels(Kernels):
         active: npt.NDArray[np.intp],
     ) -> Counted:
         """Count windows; see `Kernels.counts`."""
-        table = CellTable.of(active, feature.bins, np.zeros(len(active)))
+        table = table_for_counting(active, feature.bins)
         if counts_edges(feature):
             place = Place.of(feature, frame, positions, window)
             cells, totals = count_directions(feature, frame, place, window, table)

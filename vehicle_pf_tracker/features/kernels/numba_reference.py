@@ -51,6 +51,11 @@ class CellTable:
         return cls(cells, count, padded, padded.astype(np.float32))
 
 
+def table_for_counting(active: npt.NDArray[np.intp], bins: int) -> CellTable:
+    """Table of the bins `active` without any reference."""
+    return _all_bins(bins) if len(active) == bins else CellTable.of(active, bins, _zeros(active))
+
+
 def table_of(reference: Reference) -> CellTable:
     """Table of a reference, made once."""
     kept = reference.kept.get("cells")
@@ -70,3 +75,13 @@ def _roots(length: int) -> Reals:
     table = np.sqrt(np.arange(length + 1, dtype=np.float64))
     table.flags.writeable = False
     return table
+
+
+@functools.lru_cache(maxsize=8)
+def _all_bins(bins: int) -> CellTable:
+    every = np.arange(bins)
+    return CellTable.of(every, bins, _zeros(every))
+
+
+def _zeros(active: npt.NDArray[np.intp]) -> Histogram:
+    return np.zeros(len(active))
