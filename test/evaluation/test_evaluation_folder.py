@@ -1,5 +1,5 @@
 import pytest
-from evaluation_samples import FRAMES, NO_PEERS, SEEDS, make_evaluation
+from evaluation_samples import FRAMES, NO_PEERS, SEEDS
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     EvaluationFolder,
@@ -10,9 +10,9 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
 from vehicle_pf_tracker.features.errors import InputError
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return make_evaluation(tmp_path_factory.mktemp("made"))
+@pytest.fixture
+def folder(made_evaluation):
+    return made_evaluation
 
 
 def test_the_plan(folder):

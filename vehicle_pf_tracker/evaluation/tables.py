@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -47,12 +47,7 @@ class Table:
 
     def to_markdown(self) -> str:
         """For documents."""
-        rows = [
-            ["", *self.columns],
-            ["---", *("---:" for _ in self.columns)],
-            *self._rows(),
-        ]
-        return "".join(f"| {' | '.join(row)} |\n" for row in rows)
+        return markdown(["", *self.columns], self._rows())
 
     def to_csv(self) -> str:
         """For programs: every digit, and nothing where there is no value."""
@@ -65,6 +60,12 @@ class Table:
     def _rows(self) -> Iterator[list[str]]:
         for line in self.lines:
             yield [_label(line), *(_text(cell, line.decimals) for cell in line.cells)]
+
+
+def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Make a Markdown table: the first column to the left, numbers to the right."""
+    ruled = [header, ["---", *("---:" for _ in header[1:])], *rows]
+    return "".join(f"| {' | '.join(row)} |\n" for row in ruled)
 
 
 def comparison(runs: Mapping[str, Metrics]) -> Table:

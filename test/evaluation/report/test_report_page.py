@@ -1,0 +1,184 @@
+"""The page, read as a browser would."""
+
+import shutil
+from collections import Counter
+from html.parser import HTMLParser
+
+import pytest
+from evaluation_samples import HIDDEN, NO_PEERS, VARIANTS
+
+from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
+
+VOID = {"meta", "link", "img", "br", "line", "path", "use", "rect", "input", "hr"}
+
+
+class Page(HTMLParser):
+    """Every element with its attributes, and the text by the element it stands in."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.elements, self.texts, self.open = [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        if tag not in VOID:
+            assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append((self.open[-1] if self.open else "", data))
+
+    def all(self, tag):
+        return [attributes for name, attributes in self.elements if name == tag]
+
+    def text(self, *tags):
+        return " ".join(data for tag, data in self.texts if not tags or tag in tags)
+
+
+@pytest.fixture(scope="module")
+def written(made_evaluation, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("written") / "evaluation"
+    shutil.copytree(made_evaluation, folder)
+    return folder, write_report(folder)
+
+
+@pytest.fixture(scope="module")
+def text(written):
+    return written[1][0].read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def page(text):
+    return Page(text)
+
+
+def test_what_was_written(written):
+    folder, paths = written
+    names = ["report.html", "summary.md", "summary.csv", "summary.tex", "summary.json"]
+    assert paths == [folder / name for name in names]
+    assert all(path.is_file() for path in paths)
+
+
+def test_the_page_needs_nothing_else(page):
+    for _, attributes in page.elements:
+        for name in ("src", "href", "xlink:href", "action", "data", "poster", "srcset"):
+            assert (attributes.get(name) or "#").startswith(("#", "data:image/jpeg;base64,"))
+    assert not page.all("link") and not page.all("iframe")
+    assert not any("src" in script for script in page.all("script"))
+    styles = page.text("style")
+    assert "url(" not in styles and "@import" not in styles
+    (policy,) = [m["content"] for m in page.all("meta") if "http-equiv" in m]
+    assert policy.startswith("default-src 'none'")
+
+
+def test_every_element_is_closed_and_no_id_is_used_twice(page):
+    assert page.open == []
+    ids = Counter(attributes["id"] for _, attributes in page.elements if "id" in attributes)
+    assert {name for name, count in ids.items() if count > 1} == set()
+
+
+def test_links_lead_somewhere(page):
+    ids = {attributes.get("id") for _, attributes in page.elements}
+    links = [a["href"][1:] for a in page.all("a")]
+    links += [u["xlink:href"][1:] for u in page.all("use")]
+    assert len(links) > 10
+    assert set(links) <= ids
+
+
+def test_pictures_and_tables_can_be_read_out(page):
+    assert all(image["alt"] for image in page.all("img"))
+    figures = [svg for svg in page.all("svg") if svg.get("aria-hidden") != "true"]
+    assert all(svg["role"] == "img" and svg["aria-label"] for svg in figures)
+    assert all(heading.get("scope") for heading in page.all("th"))
+    assert len(page.all("caption")) >= 5
+
+
+def test_it_shows_all_systems_and_recordings(page):
+    assert set(VARIANTS) <= {data for tag, data in page.texts if tag == "span"}
+    assert {data for tag, data in page.texts if tag == "h3"} >= set(HIDDEN)
+    # Three curves, and for each recording and system an error over time.
+    figures = [svg for svg in page.all("svg") if svg.get("role") == "img"]
+    assert len(figures) == 3 + len(HIDDEN) * len(VARIANTS)
+
+
+def test_it_says_how_it_was_made_and_what_failed(page):
+    assert "vehicle-pf-tracker evaluate free -o evaluation" in page.text("code")
+    assert NO_PEERS in page.text("td")
+    assert "under_a_bridge: seed 0, 1; free: seed 0, 1" in page.text("td")
+    assert "4 of 16 cells have no result" in page.text("li")
+    assert "40" in page.text("strong")  # num_particles was set
+
+
+def test_two_recordings_are_too_few_to_rank_by_and_it_says_so(page):
+    assert "2 recordings cannot tell systems apart" in page.text("li")
+    assert "With 2 recordings there are too few samples" in page.text("p")
+
+
+def test_stills_around_the_occlusion_and_at_the_worst(page):
+    captions = page.text("figcaption")
+    for moment in ("before, frame 8", "within, frame 11", "behind it, frame 15", "15 frames on"):
+        assert moment in captions
+    assert len(page.all("img")) == 4 + len(VARIANTS) * len(HIDDEN)
+
+
+def test_colours_come_from_the_scheme(page, text):
+    assert "prefers-color-scheme: dark" in page.text("style")
+    assert "#0a0a0" not in text and "var(--s0)" in text
+
+
+def test_tables_can_be_sorted_by_numbers(page):
+    assert len(page.all("button")) > 20
+    values = [cell["data-value"] for cell in page.all("td") if "data-value" in cell]
+    assert len(values) > 50
+    assert all(float(value) == float(value) for value in values)
+
+
+def test_the_same_folder_gives_the_same_files(written):
+    folder, paths = written
+    before = [path.read_bytes() for path in paths]
+    assert [path.read_bytes() for path in write_report(folder)] == before
+
+
+def test_a_recording_that_is_gone_is_said_and_the_rest_is_there(made_evaluation, tmp_path):
+    folder = tmp_path / "evaluation"
+    shutil.copytree(made_evaluation, folder)
+    plan = (folder / "evaluation.json").read_text()
+    recording = str(made_evaluation.parent / "under_a_bridge")
+    assert recording in plan
+    (folder / "evaluation.json").write_text(plan.replace(recording, str(tmp_path / "gone")))
+    page = Page(write_report(folder)[0].read_text())
+    assert "There are no stills:" in page.text("p") and "gone" in page.text("p")
+    assert len(page.all("img")) == len(VARIANTS)
+
+
+def test_without_images(made_evaluation, tmp_path):
+    folder = tmp_path / "evaluation"
+    shutil.copytree(made_evaluation, folder)
+    page = Page(write_report(folder, ReportOptions(images=False))[0].read_text())
+    assert page.all("img") == []
+
+
+def test_names_are_no_markup(made_evaluation, tmp_path):
+    folder = tmp_path / "evaluation"
+    shutil.copytree(made_evaluation, folder)
+    plan = (folder / "evaluation.json").read_text()
+    (folder / "evaluation.json").write_text(plan.replace('"-o"', '"<script>x</script>"'))
+    page = Page(write_report(folder, ReportOptions(images=False))[0].read_text())
+    assert "<script>x</script>" in page.text("code")
+    assert len(page.all("script")) == 1
+
+
+def test_a_folder_without_any_result_still_has_a_report(made_evaluation, tmp_path):
+    folder = tmp_path / "evaluation"
+    folder.mkdir()
+    shutil.copy(made_evaluation / "evaluation.json", folder)
+    page = Page(write_report(folder)[0].read_text())
+    assert "16 of 16 cells have no result" in page.text("li")
+    assert "No cell of this recording has a result." in page.text("p")

@@ -1,0 +1,121 @@
+"""Stills, overlays and figures, each by itself."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from evaluation_samples import HIDDEN
+from matplotlib.figure import Figure
+
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
+from vehicle_pf_tracker.evaluation.report.figures import stretches
+from vehicle_pf_tracker.evaluation.report.filmstrip import (
+    Shot,
+    longest_occlusions,
+    plan_strips,
+    take_stills,
+)
+from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, colour_of, draw_overlay
+from vehicle_pf_tracker.evaluation.report.panels import LEAST_ERROR, error_panel
+from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
+from vehicle_pf_tracker.evaluation.report.svg import SvgMaker, ink
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
+
+BOX = Box(100, 60, 20, 10)
+
+
+def truths(text):
+    """Truth from frame 1 on, by a letter each: n none, p partial, t total, - unknown."""
+    kinds = {"n": Occlusion.NONE, "p": Occlusion.PARTIAL, "t": Occlusion.TOTAL}
+    return {n: Truth(n, BOX, kinds[c]) for n, c in enumerate(text, start=1) if c != "-"}
+
+
+def test_the_longest_occlusions_in_order():
+    assert longest_occlusions(truths("nnpttpnnpn")) == [(3, 6), (9, 9)]
+    many = truths("nptn" + "npn" * 9)
+    assert longest_occlusions(many)[0] == (2, 3)
+    assert len(longest_occlusions(many)) == 4
+    assert longest_occlusions(truths("nnn")) == []
+
+
+def test_stretches_of_one_kind():
+    assert stretches(truths("npttpn"), Occlusion.TOTAL) == [(3, 4)]
+    assert stretches(truths("npttpn"), Occlusion.PARTIAL) == [(2, 2), (5, 5)]
+
+
+def test_a_view_holds_the_boxes_and_stays_in_the_image():
+    view = View.around([BOX, Box(5, 5, 20, 10)], (320, 240), 280)
+    assert view.left <= 5 and view.top <= 5
+    assert view.left + view.width >= 120 and view.top + view.height >= 70
+    assert view.scale == pytest.approx(280 / view.width)
+    far = View.around([BOX, Box(-900, 5, 20, 10)], (320, 240), 280)
+    assert (far.left, far.top, far.width, far.height) == (0, 0, 320, 240)
+
+
+@pytest.mark.parametrize("size", [(96, 64), (640, 360), (40, 400)])
+def test_views_are_four_to_three_in_every_image(size):
+    view = View.around([Box(10, 10, 8, 8)], size, 280)
+    assert view.width / view.height == pytest.approx(4 / 3, rel=0.05)
+    assert 0 <= view.left <= size[0] - view.width
+    assert 0 <= view.top <= size[1] - view.height
+
+
+def test_an_overlay_has_the_boxes_where_they_are():
+    frame = np.full((240, 320, 3), 128, np.uint8)
+    before = frame.copy()
+    image = draw_overlay(frame, View.whole(frame, 640), BOX, [Mark(Box(200, 100, 40, 40), 1)])
+    assert image.shape == (480, 640, 3)
+    assert tuple(image[240, 400]) == colour_of(1)  # the middle of its left side
+    assert tuple(image[120, 200]) == (255, 255, 255)  # the truth's corner
+    assert tuple(image[130, 220]) == (128, 128, 128)  # and nothing inside
+    assert np.array_equal(frame, before)
+
+
+def test_boxes_far_outside_do_no_harm():
+    frame = np.full((24, 32, 3), 128, np.uint8)
+    marks = [Mark(Box(1e9, -1e9, 5, 5), None), Mark(Box(-50, -50, 1e7, 1e7), 2)]
+    assert draw_overlay(frame, View.whole(frame, 320), None, marks).shape == (240, 320, 3)
+
+
+def test_each_system_is_shown_where_it_was_worst(made_evaluation):
+    evaluation = score_folder(EvaluationFolder(made_evaluation))
+    runs = {label: typical(evaluation.of("under_a_bridge", label)) for label in ("pf", "ms")}
+    *around, worst = plan_strips(evaluation.truths["under_a_bridge"], runs, {"pf": 0})
+    assert len(around) == 1
+    assert all(len(shot.marks) == 1 for shot in around[0].shots)  # ms has no style
+    hidden = {index + 1 for index in HIDDEN["under_a_bridge"]}
+    for shot, run in zip(worst.shots, runs.values(), strict=True):
+        visible = [e for n, e in enumerate(run.errors, start=1) if n not in hidden]
+        assert shot.frame not in hidden
+        assert run.errors[shot.frame - 1] == max(visible)
+        assert shot.marks[0].box == run.boxes[shot.frame - 1]
+
+
+def test_stills_of_other_images_are_refused(made_evaluation):
+    (entry, _) = EvaluationFolder(made_evaluation).recordings
+    shot = Shot(1, "", BOX, ())
+    assert take_stills(entry, [shot])[shot].data.startswith("data:image/jpeg;base64,")
+    with pytest.raises(InputError, match="other images"):
+        take_stills(replace(entry, width=640), [shot])
+
+
+def test_an_error_panel_draws_the_median_within_its_band():
+    errors = [np.array([1.0, 4.0, np.nan]), np.array([3.0, 8.0, np.nan]), np.array([2, 6, np.nan])]
+    axes = error_panel(errors, {"total": [(2, 2)], "partial": []}, 8.0).axes[0]
+    assert axes.lines[0].get_ydata()[:2].tolist() == [2, 6]
+    assert axes.get_ylim()[0] == LEAST_ERROR
+    assert len(axes.patches) == 1  # the occlusion
+
+
+def test_no_two_figures_of_a_page_share_an_id():
+    maker, ids = SvgMaker(), []
+    for _ in range(2):
+        figure = Figure()
+        figure.add_subplot().plot([1, 2], [3, 4], color=ink("s1"))
+        svg = maker.make(figure, 'a "b" & c')
+        assert 'aria-label="a &quot;b&quot; &amp; c"' in svg
+        assert "var(--s1)" in svg and "#0a0a01" not in svg
+        ids += [part.split('"')[0] for part in svg.split(' id="')[1:]]
+    assert len(ids) == len(set(ids)) > 4

@@ -1,0 +1,107 @@
+import csv
+import io
+import json
+import statistics
+
+import pytest
+from evaluation_samples import HIDDEN, SEEDS, VARIANTS
+
+from vehicle_pf_tracker.evaluation.evaluation_folder import (
+    EvaluationFolder,
+    cell_folder,
+    read_document,
+)
+from vehicle_pf_tracker.evaluation.report import summary_files
+from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
+from vehicle_pf_tracker.evaluation.report.columns import COLUMNS
+from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
+
+
+@pytest.fixture(scope="module")
+def evaluation(made_evaluation):
+    return score_folder(EvaluationFolder(made_evaluation))
+
+
+@pytest.fixture(scope="module")
+def aggregates(evaluation):
+    return aggregate(evaluation)
+
+
+def stored(made_evaluation, recording, system, key):
+    folders = (cell_folder(made_evaluation, recording, system, seed) for seed in SEEDS)
+    return [read_document(folder / "metrics.json")[key] for folder in folders]
+
+
+def test_runs_score_as_the_cells_did(evaluation, made_evaluation):
+    for recording in HIDDEN:
+        for system in VARIANTS:
+            runs = evaluation.of(recording, system)
+            for key in ("rmse_px", "success_auc", "occluded_recall", "failures"):
+                values = [getattr(run.metrics, key) for run in runs]
+                assert values == stored(made_evaluation, recording, system, key)
+
+
+def test_means_are_taken_over_seeds_and_then_over_recordings(aggregates, made_evaluation):
+    means = {}
+    for recording in HIDDEN:
+        values = stored(made_evaluation, recording, "pf", "rmse_px")
+        found = aggregates.by_recording[recording, "pf"]["rmse_px"]
+        assert found.mean == pytest.approx(statistics.fmean(values))
+        assert found.spread == pytest.approx(statistics.stdev(values))
+        means[recording] = found.mean
+    assert aggregates.overall["pf"]["rmse_px"].mean == pytest.approx(
+        statistics.fmean(means.values())
+    )
+
+
+def test_the_best_mean_rank_comes_first(aggregates):
+    ranks = [rank.mean_rank for rank in aggregates.rankings["success_auc"].ranks]
+    assert ranks == sorted(ranks)
+    assert aggregates.order == tuple(r.system for r in aggregates.rankings["success_auc"].ranks)
+    assert set(aggregates.order) == set(VARIANTS)  # the peer has no result
+    assert len(aggregates.pairs) == 3
+
+
+def test_csv_has_a_line_for_each_mean(evaluation, aggregates):
+    rows = list(csv.DictReader(io.StringIO(summary_files.summary_csv(evaluation, aggregates))))
+    (one,) = [r for r in rows if (r["recording"], r["system"], r["metric"]) ==
+              ("free", "pf", "rmse_px")]  # fmt: skip
+    found = aggregates.by_recording["free", "pf"]["rmse_px"]
+    assert float(one["mean"]) == found.mean
+    assert (one["unit"], one["count"]) == ("px", str(len(SEEDS)))
+    overall = [r for r in rows if r["recording"] == summary_files.ALL_RECORDINGS]
+    assert {r["system"] for r in overall} == set(VARIANTS)
+    assert {r["metric"] for r in overall} <= {column.key for column in COLUMNS}
+
+
+def test_json_is_json_and_has_everything(evaluation, aggregates):
+    document = summary_files.summary_json(evaluation, aggregates)
+    document = json.loads(json.dumps(document, allow_nan=False))
+    assert document["overall"]["pf"]["rmse_px"]["count"] == len(HIDDEN)
+    assert set(document["recordings"]) == set(HIDDEN)
+    assert document["rankings"]["rmse_px"]["recordings"] == len(HIDDEN)
+    assert len(document["pairs"]["success_auc"]) == 3
+    assert len(document["failed"]) == len(HIDDEN) * len(SEEDS)
+
+
+def test_markdown_has_a_table_for_each_recording_and_every_failed_cell(evaluation, aggregates):
+    text = summary_files.summary_markdown(evaluation, aggregates)
+    assert [line[3:] for line in text.splitlines() if line.startswith("## ")] == [
+        "Means over recordings", "Ranks", *HIDDEN, "Failed cells",
+    ]  # fmt: skip
+    tables = [line for line in text.splitlines() if line.startswith("| pf |")]
+    assert len(tables) == 2 + len(HIDDEN)
+    assert text.count("| peer:csrt |") == len(HIDDEN) * len(SEEDS)
+
+
+def test_latex_escapes_what_it_must(aggregates):
+    text = summary_files.summary_tex(aggregates)
+    assert text.count(r"\\") == 1 + len(VARIANTS)
+    assert r"\begin{tabular}{lrrrrrr}" in text
+    assert "_" not in text.replace(r"\_", "") and "–" not in text
+
+
+def test_the_typical_run_has_the_median_error(evaluation):
+    runs = evaluation.of("free", "pf")
+    assert typical(runs).metrics.rmse_px == min(run.metrics.rmse_px for run in runs)
+    assert typical([]) is None

@@ -1,0 +1,48 @@
+"""`report`: make the report of an evaluation again."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from vehicle_pf_tracker.cli.console import tell_notices
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of this verb."""
+    add = parser.add_argument
+    add("folder", type=Path, metavar="DIR", help="folder of an evaluation; the report goes there")
+    add_report_options(parser)
+
+
+def add_report_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that say what a report is made of."""
+    add = parser.add_argument
+    add(
+        "--no-images", dest="images", action="store_false",
+        help="leave the stills of the recordings out of report.html",
+    )  # fmt: skip
+    add("--video", action="store_true", help="write videos with the boxes to DIR/videos")
+    add(
+        "--recordings", action="store_true",
+        help="write the recordings with truth and all estimates to DIR/estimates, for Foxglove",
+    )  # fmt: skip
+    add(
+        "--trajectories", action="store_true",
+        help="write truth and estimates as TUM files to DIR/trajectories, for evo",
+    )  # fmt: skip
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the report, and say where it is."""
+    write(args.folder, args)
+    return 0
+
+
+def write(folder: Path, args: argparse.Namespace) -> None:
+    """Write the report of `folder` as the options of `add_report_options` say."""
+    from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
+
+    options = ReportOptions(args.images, args.video, args.recordings, args.trajectories)
+    page, *_ = write_report(folder, options, lambda sentence: tell_notices([sentence]))
+    print(f"the report is {page}")

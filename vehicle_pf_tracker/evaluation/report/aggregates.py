@@ -1,0 +1,102 @@
+"""Runs drawn together: over seeds, and over recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.evaluation.report.columns import COLUMNS, RANKED, Column
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
+from vehicle_pf_tracker.evaluation.statistics.intervals import Summary, summarise
+from vehicle_pf_tracker.evaluation.statistics.paired import PairedTest, compare_pairs
+from vehicle_pf_tracker.evaluation.statistics.ranks import Ranking, rank_systems
+from vehicle_pf_tracker.evaluation.statistics.runs import RunKey, recording_means
+
+Summaries = Mapping[str, Summary | None]
+"""By the key of a column."""
+
+
+@dataclass(frozen=True, slots=True)
+class Aggregates:
+    """What the tables show.
+
+    Attributes
+    ----------
+    order : tuple of str
+        Labels of the systems that have a run, the best first.
+    by_recording : mapping of (recording, system) to Summaries
+        Over seeds.
+    overall : mapping of system to Summaries
+        Over the means of the recordings, so that a long recording does not outweigh a short one.
+    rankings : mapping of str to Ranking
+        By the key of a ranked column.
+    pairs : tuple of PairedTest
+        All pairs, by the first ranked column.
+    """
+
+    order: tuple[str, ...]
+    by_recording: Mapping[tuple[str, str], Summaries]
+    overall: Mapping[str, Summaries]
+    rankings: Mapping[str, Ranking]
+    pairs: tuple[PairedTest, ...]
+
+
+def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
+    """Draw all runs together."""
+    labels = [system.label for system in evaluation.systems if evaluation.of(system=system.label)]
+    by_recording = {
+        (recording.name, label): _over_seeds(runs)
+        for recording in evaluation.recordings
+        for label in labels
+        if (runs := evaluation.of(recording.name, label))
+    }
+    rankings = _rankings(evaluation, labels)
+    order = _order(labels, rankings)
+    main = {label: run_values(evaluation, label, RANKED[0]) for label in order}
+    return Aggregates(
+        order=order,
+        by_recording=by_recording,
+        overall={label: _over_recordings(evaluation, label) for label in order},
+        rankings=rankings,
+        pairs=tuple(compare_pairs(main)),
+    )
+
+
+def run_values(evaluation: ScoredEvaluation, system: str, column: Column) -> dict[RunKey, float]:
+    """Return a metric of a system's runs, where they have it."""
+    values = {
+        RunKey(run.recording, run.seed): column.value(run.metrics)
+        for run in evaluation.of(system=system)
+    }
+    return {key: value for key, value in values.items() if value is not None}
+
+
+def _over_seeds(runs: Sequence[ScoredRun]) -> dict[str, Summary | None]:
+    return {
+        column.key: summarise([column.value(run.metrics) for run in runs]) for column in COLUMNS
+    }
+
+
+def _over_recordings(evaluation: ScoredEvaluation, system: str) -> dict[str, Summary | None]:
+    return {
+        column.key: summarise(
+            list(recording_means(run_values(evaluation, system, column)).values())
+        )
+        for column in COLUMNS
+    }
+
+
+def _rankings(evaluation: ScoredEvaluation, labels: Sequence[str]) -> dict[str, Ranking]:
+    rankings = {}
+    for column in RANKED:
+        values = {label: recording_means(run_values(evaluation, label, column)) for label in labels}
+        ranking = rank_systems(values, higher_is_better=bool(column.higher_is_better))
+        if ranking is not None:
+            rankings[column.key] = ranking
+    return rankings
+
+
+def _order(labels: Sequence[str], rankings: Mapping[str, Ranking]) -> tuple[str, ...]:
+    ranking = rankings.get(RANKED[0].key)
+    ranked = [rank.system for rank in ranking.ranks] if ranking else []
+    return (*ranked, *(label for label in labels if label not in ranked))

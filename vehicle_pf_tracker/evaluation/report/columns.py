@@ -1,0 +1,134 @@
+"""Which metrics a report shows, and how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.evaluation.metrics import Metrics
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A metric of a run.
+
+    Attributes
+    ----------
+    key : str
+        Its name in files.
+    group : str
+        What it is about.
+    label, unit : str
+        Its name and unit for people; shares have no unit.
+    decimals : int
+        For people.
+    higher_is_better : bool or None
+        Which end is best; None where neither is.
+    value : callable
+        Takes it from the metrics of a run; None where a run has none.
+    help : str
+        One sentence.
+    by_recording : bool
+        Whether the page shows it for each recording too, and not in its summary and in files alone.
+    """
+
+    key: str
+    group: str
+    label: str
+    unit: str
+    decimals: int
+    higher_is_better: bool | None
+    value: Callable[[Metrics], float | None]
+    help: str
+    by_recording: bool = True
+
+    @property
+    def title(self) -> str:
+        """Label and unit."""
+        return f"{self.label}, {self.unit}" if self.unit else self.label
+
+
+OVERLAP, ERRORS, HIDDEN, CLAIMS, RUN = (
+    "Overlap and precision", "Error of the centre", "Total occlusions", "Claims", "Run"
+)  # fmt: skip
+
+
+def _recovered(metrics: Metrics) -> float | None:
+    judged = [verdict for verdict in metrics.recovered if verdict is not None]
+    return sum(judged) / len(judged) if judged else None
+
+
+def _mean_over_occlusions(name: str) -> Callable[[Metrics], float | None]:
+    def value(metrics: Metrics) -> float | None:
+        known = [getattr(occlusion, name) for occlusion in metrics.occlusions]
+        known = [number for number in known if number is not None]
+        return sum(known) / len(known) if known else None
+
+    return value
+
+
+SUCCESS = Column(
+    "success_auc", OVERLAP, "success", "", 3, True, lambda m: m.success_auc,
+    "Area under the success curve: share of frames whose overlap (intersection over union) is "
+    "above thresholds from 0 to 1.",
+)  # fmt: skip
+PRECISION = Column(
+    "precision_20px", OVERLAP, "precision at 20 px", "", 3, True, lambda m: m.precision_20px,
+    "Share of frames with an error of the centre of at most 20 px.",
+)  # fmt: skip
+RMSE = Column(
+    "rmse_px", ERRORS, "RMSE", "px", 1, False, lambda m: m.rmse_px,
+    "Root of the mean squared error of the centre, all scored frames.",
+)  # fmt: skip
+RECOVERED = Column(
+    "recovered", HIDDEN, "recovered", "", 2, True, _recovered,
+    "Share of the judged total occlusions after which the track was on the vehicle again.", False,
+)  # fmt: skip
+STEP = Column(
+    "step_ms_p50", RUN, "step", "ms", 2, False, lambda m: m.step_ms_p50,
+    "Median time of a step, measured while other cells of the grid may have run beside it.",
+)  # fmt: skip
+
+COLUMNS = (
+    SUCCESS,
+    PRECISION,
+    Column("normalised_precision_auc", OVERLAP, "normalised precision", "", 3, True,
+           lambda m: m.normalised_precision_auc,
+           "Area under the curve of the error in sizes of the true box, from 0 to 0.5.", False),
+    Column("p_error_lt_15px", OVERLAP, "below 15 px", "", 3, True, lambda m: m.p_error_lt_15px,
+           "Share of frames with an error below 15 px."),
+    Column("on_target", OVERLAP, "on target", "", 3, True, lambda m: m.on_target,
+           "Share of visible frames with an error below half the true box's diagonal.", False),
+    RMSE,
+    Column("rmse_visible_px", ERRORS, "RMSE visible", "px", 1, False,
+           lambda m: m.rmse_visible_px,
+           "The same over the frames that are not totally occluded."),
+    Column("median_px", ERRORS, "median", "px", 1, False, lambda m: m.median_px,
+           "Median error of the centre."),
+    Column("p95_px", ERRORS, "95 %", "px", 1, False, lambda m: m.p95_px,
+           "Error of the centre that 95 % of the frames stay below.", False),
+    Column("max_px", ERRORS, "largest", "px", 1, False, lambda m: m.max_px,
+           "Largest error of the centre."),
+    RECOVERED,
+    Column("frames_to_recover", HIDDEN, "return", "frames", 1, False,
+           _mean_over_occlusions("frames_to_recover"),
+           "Frames from the last hidden one until the track stays on the vehicle, where it does.",
+           False),
+    Column("error_at_exit_px", HIDDEN, "error at exit", "px", 1, False,
+           _mean_over_occlusions("error_at_exit_px"),
+           "Error in the first frame after a total occlusion.", False),
+    Column("occluded_precision", CLAIMS, "OCCLUDED precision", "", 2, True,
+           lambda m: m.occluded_precision,
+           "Share of the frames with the mode OCCLUDED that are totally occluded.", False),
+    Column("occluded_recall", CLAIMS, "OCCLUDED recall", "", 2, True, lambda m: m.occluded_recall,
+           "Share of the totally occluded frames with the mode OCCLUDED.", False),
+    Column("lost_visible", CLAIMS, "LOST though visible", "frames", 1, None,
+           lambda m: float(m.lost_visible),
+           "Frames with the mode LOST while the vehicle can be seen."),
+    Column("failures", RUN, "failures", "", 1, False, lambda m: float(m.failures),
+           "Times per run that the estimate came to have no overlap with a visible vehicle."),
+    STEP,
+)  # fmt: skip
+
+RANKED = (SUCCESS, PRECISION, RMSE)
+"""Metrics that systems are ranked by; the first one orders the tables."""

@@ -1,0 +1,201 @@
+"""Stills of a recording: around its occlusions, and where each system was worst."""
+
+from __future__ import annotations
+
+import base64
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.evaluation.evaluation_folder import RecordingEntry
+from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
+from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, draw_overlay
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
+
+MOST_OCCLUSIONS = 4
+"""So many occlusions of a recording are shown, the longest ones."""
+WIDTH = 280
+"""Width of a still in px."""
+_QUALITY = 78
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """A still to take: the number of its frame, what it says, and what is drawn."""
+
+    frame: int
+    caption: str
+    truth: Box
+    marks: tuple[Mark, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Still:
+    """A still that was taken, as the text of a ``data:`` address."""
+
+    caption: str
+    alt: str
+    data: str
+
+
+@dataclass(frozen=True, slots=True)
+class Strip:
+    """Shots that belong together."""
+
+    title: str
+    shots: tuple[Shot, ...]
+
+
+def plan_strips(
+    truths: Mapping[int, Truth], runs: Mapping[str, ScoredRun], slots: Mapping[str, int]
+) -> list[Strip]:
+    """Choose the stills of a recording.
+
+    Parameters
+    ----------
+    truths : mapping of int to Truth
+        By number of the frame.
+    runs : mapping of str to ScoredRun
+        One run for each system, by its label.
+    slots : mapping of str to int
+        Number of the style of those systems that are shown together.
+    """
+    together = {label: run for label, run in runs.items() if label in slots}
+    strips = [
+        Strip(_title(truths, stretch), tuple(_around(truths, stretch, together, slots)))
+        for stretch in longest_occlusions(truths)
+    ]
+    worst = [_worst(truths, label, run, slots) for label, run in runs.items()]
+    shots = tuple(shot for shot in worst if shot is not None)
+    if shots:
+        strips.append(Strip("Where each system was worst while the vehicle could be seen", shots))
+    return strips
+
+
+def longest_occlusions(truths: Mapping[int, Truth]) -> list[tuple[int, int]]:
+    """Return the first and last frames of the longest occlusions, partial ones too, in order."""
+    stretches = []
+    grouped = itertools.groupby(
+        sorted(truths), lambda number: truths[number].occlusion is not Occlusion.NONE
+    )
+    for hidden, group in grouped:
+        numbers = list(group)
+        if hidden:
+            stretches.append((numbers[0], numbers[-1]))
+    longest = sorted(stretches, key=lambda stretch: stretch[0] - stretch[1])[:MOST_OCCLUSIONS]
+    return sorted(longest)
+
+
+def take_stills(entry: RecordingEntry, shots: Iterable[Shot]) -> dict[Shot, Still]:
+    """Read the frames of all shots from the recording in one pass, and draw on them.
+
+    Raises
+    ------
+    InputError
+        If the recording is gone, or its images are not those of the evaluation.
+    """
+    waiting: dict[int, list[Shot]] = {}
+    for shot in shots:
+        waiting.setdefault(shot.frame, []).append(shot)
+    stills: dict[Shot, Still] = {}
+    for number, frame in numbered_frames(entry):
+        for shot in waiting.pop(number, ()):
+            stills[shot] = _still(frame, shot)
+        if not waiting:
+            break
+    return stills
+
+
+def numbered_frames(entry: RecordingEntry) -> Iterator[tuple[int, Frame]]:
+    """Give the images of a recording that can be read, with their numbers from 1.
+
+    Raises
+    ------
+    InputError
+        If the recording is gone, or its images are not those of the evaluation.
+    """
+    recording = Recording(Path(entry.path), entry.topic)
+    for number, stamped in enumerate(recording.frames(), start=1):
+        if stamped.frame is None:
+            continue
+        if frame_size(stamped.frame) != (entry.width, entry.height):
+            raise InputError(f"the recording {entry.path} has other images than were evaluated")
+        yield number, stamped.frame
+
+
+def _title(truths: Mapping[int, Truth], stretch: tuple[int, int]) -> str:
+    first, last = stretch
+    total = [n for n in range(first, last + 1) if _is_total(truths, n)]
+    if not total:
+        return f"Partial occlusion, frames {first} to {last}"
+    return f"Occlusion, frames {first} to {last} (total from {total[0]} to {total[-1]})"
+
+
+def _is_total(truths: Mapping[int, Truth], number: int) -> bool:
+    return number in truths and truths[number].occlusion is Occlusion.TOTAL
+
+
+def _around(
+    truths: Mapping[int, Truth],
+    stretch: tuple[int, int],
+    runs: Mapping[str, ScoredRun],
+    slots: Mapping[str, int],
+) -> Iterator[Shot]:
+    first, last = stretch
+    total = [n for n in range(first, last + 1) if _is_total(truths, n)] or [first, last]
+    moments = {
+        first - 1: "before",
+        (total[0] + total[-1]) // 2: "within",
+        last + 1: "behind it",
+        last + SETTLING_FRAMES: f"{SETTLING_FRAMES} frames on",
+    }
+    for number, moment in moments.items():
+        if number in truths:
+            marks = (
+                Mark(box, slots[label])
+                for label, run in runs.items()
+                if (box := run.boxes[number - 1]) is not None
+            )
+            yield Shot(number, f"{moment}, frame {number}", truths[number].box, tuple(marks))
+
+
+def _worst(
+    truths: Mapping[int, Truth], label: str, run: ScoredRun, slots: Mapping[str, int]
+) -> Shot | None:
+    visible = [number not in truths or not _is_total(truths, number)
+               for number in range(1, len(run.errors) + 1)]  # fmt: skip
+    errors = np.where(visible, np.nan_to_num(run.errors, nan=-1.0), -1.0)
+    if not len(errors) or errors.max() < 0:
+        return None
+    index = int(errors.argmax())
+    box, truth = run.boxes[index], truths.get(index + 1)
+    if box is None or truth is None:
+        return None
+    caption = f"{label}: {errors[index]:.0f} px in frame {index + 1}, {run.modes[index]}"
+    return Shot(index + 1, caption, truth.box, (Mark(box, slots.get(label)),))
+
+
+def _still(frame: Frame, shot: Shot) -> Still:
+    boxes = [shot.truth, *(mark.box for mark in shot.marks)]
+    image = draw_overlay(
+        frame, View.around(boxes, frame_size(frame), WIDTH), shot.truth, shot.marks
+    )
+    quality = [cv2.IMWRITE_JPEG_QUALITY, _QUALITY]
+    _, coded = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), quality)
+    data = base64.b64encode(coded.tobytes()).decode("ascii")
+    alt = f"Frame {shot.frame} with the true box and {len(shot.marks)} estimated"
+    return Still(shot.caption, alt, f"data:image/jpeg;base64,{data}")
+
+
+def stills_of(strip: Strip, taken: Mapping[Shot, Still]) -> Sequence[Still]:
+    """Return the stills of a strip that could be taken."""
+    return [taken[shot] for shot in strip.shots if shot in taken]

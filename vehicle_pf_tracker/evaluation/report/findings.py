@@ -1,0 +1,101 @@
+"""What a report says first, in a few sentences."""
+
+from __future__ import annotations
+
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
+from vehicle_pf_tracker.evaluation.report.columns import (
+    PRECISION,
+    RANKED,
+    RECOVERED,
+    RMSE,
+    STEP,
+    Column,
+)
+from vehicle_pf_tracker.evaluation.report.numbers import counted, interval, listing, mean
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
+from vehicle_pf_tracker.evaluation.statistics.paired import FEWEST_RECORDINGS, smallest_adjusted_p
+
+
+def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
+    """Say who leads, who cannot be told apart from it, and what is missing."""
+    sentences = [*_leader(aggregates)]
+    sentences += [_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED)]
+    sentences.append(_failed(evaluation))
+    return [sentence for sentence in sentences if sentence]
+
+
+def power(aggregates: Aggregates) -> str:
+    """Say what the paired tests can find at best."""
+    tests = [test for test in aggregates.pairs if test.difference is not None]
+    if not tests:
+        return ""
+    recordings = max(test.difference.count for test in tests if test.difference)
+    if recordings < FEWEST_RECORDINGS:
+        return (
+            f"With {counted(recordings, 'recording')} there are too few samples for any test: "
+            f"at least {FEWEST_RECORDINGS} are needed, whatever the number of seeds."
+        )
+    least = smallest_adjusted_p(recordings, len(tests))
+    text = (
+        f"With {counted(recordings, 'recording')} and {counted(len(tests), 'pair')} no adjusted "
+        f"p value can be below {least:.2g}"
+    )
+    if least < 0.05:
+        return f"{text}."
+    return (
+        f"{text}, so that too few recordings are there for any pair to differ significantly: "
+        "add recordings, or compare fewer systems."
+    )
+
+
+def _leader(aggregates: Aggregates) -> list[str]:
+    column = RANKED[0]
+    ranking = aggregates.rankings.get(column.key)
+    if ranking is None:
+        return ["There is no truth to rank the systems by."]
+    leader = ranking.ranks[0]
+    summary = aggregates.overall[leader.system].get(column.key)
+    within = interval(summary, column)
+    text = (
+        f"{leader.system} has the best mean rank by {column.label}: "
+        f"{mean(summary, column)} on average"
+    )
+    sentences = [f"{text} (95 % interval {within})." if within else f"{text}."]
+    if ranking.critical_difference is None and len(ranking.ranks) > 1:
+        sentences.append(
+            f"{counted(ranking.recordings, 'recording')} cannot tell systems apart: "
+            f"ranks need at least {FEWEST_RECORDINGS}."
+        )
+    elif leader.tied:
+        sentences.append(
+            f"{counted(ranking.recordings, 'recording')} cannot tell it apart from "
+            f"{listing(leader.tied)}."
+        )
+    return sentences
+
+
+def _best(aggregates: Aggregates, column: Column) -> str:
+    known = {
+        label: round(summary.mean, column.decimals)
+        for label, summaries in aggregates.overall.items()
+        if (summary := summaries.get(column.key)) is not None
+    }
+    if len(known) < 2:
+        return ""
+    best = max(known.values()) if column.higher_is_better else min(known.values())
+    leaders = [label for label, value in known.items() if value == best]
+    unit = f" {column.unit}" if column.unit else ""
+    end = "Highest" if column.higher_is_better else "Lowest"
+    return f"{end} mean of {column.label}: {listing(leaders)}, {best:.{column.decimals}f}{unit}."
+
+
+def _failed(evaluation: ScoredEvaluation) -> str:
+    cells = len(evaluation.runs) + len(evaluation.failed)
+    if not evaluation.failed:
+        return f"All {counted(cells, 'cell')} of the grid have a result."
+    return f"{len(evaluation.failed)} of {counted(cells, 'cell')} have no result; see Failed cells."
+
+
+def fastest(aggregates: Aggregates) -> str:
+    """Name the system with the shortest step."""
+    return _best(aggregates, STEP)

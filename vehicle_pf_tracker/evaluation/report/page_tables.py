@@ -1,0 +1,190 @@
+"""Tables of the page: what stands in each cell, what it sorts by, and which cells are best."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.evaluation.report import numbers
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, Summaries
+from vehicle_pf_tracker.evaluation.report.columns import COLUMNS, RANKED, Column
+from vehicle_pf_tracker.evaluation.report.occlusion_table import occlusion_cell, occlusions_of
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
+from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
+from vehicle_pf_tracker.evaluation.statistics.paired import ALPHA
+
+Slots = Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """A heading: its text, its unit, one sentence, and how many columns it spans."""
+
+    text: str
+    unit: str = ""
+    note: str = ""
+    span: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class TableCell:
+    """A cell.
+
+    Attributes
+    ----------
+    text : str
+        What stands in it.
+    value : float or None
+        What it sorts by; None goes last.
+    best : bool
+        Whether no other in its column is better.
+    note : str
+        Shown on demand.
+    """
+
+    text: str
+    value: float | None = None
+    best: bool = False
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A system's row, with the number of its style where it has one."""
+
+    label: str
+    slot: int | None
+    cells: tuple[TableCell, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PageTable:
+    """A table; `groups` spans the `headers`, and may be empty."""
+
+    groups: tuple[Header, ...]
+    headers: tuple[Header, ...]
+    rows: tuple[Row, ...]
+
+
+def overall_table(aggregates: Aggregates, slots: Slots) -> PageTable:
+    """Show all metrics, as means over the recordings."""
+    return _metrics_table(aggregates.overall, COLUMNS, slots, numbers.mean)
+
+
+def recording_table(aggregates: Aggregates, recording: str, slots: Slots) -> PageTable:
+    """Show the metrics of one recording, as means and spreads over the seeds."""
+    table = {
+        label: summaries
+        for label in aggregates.order
+        if (summaries := aggregates.by_recording.get((recording, label))) is not None
+    }
+    columns = [column for column in COLUMNS if column.by_recording]
+    return _metrics_table(table, columns, slots, numbers.mean_and_spread)
+
+
+def ranks_table(aggregates: Aggregates, slots: Slots) -> PageTable:
+    """Show places with their ties and mean ranks, by each ranked metric."""
+    ranked = [column for column in RANKED if column.key in aggregates.rankings]
+    cells: dict[str, list[TableCell]] = {label: [] for label in aggregates.order}
+    for column in ranked:
+        ranks = {rank.system: rank for rank in aggregates.rankings[column.key].ranks}
+        for label, row in cells.items():
+            if label not in ranks:
+                row += [TableCell(numbers.NOTHING), TableCell(numbers.NOTHING)]
+                continue
+            rank = ranks[label]
+            note = f"tied with {numbers.listing(rank.tied)}" if rank.tied else ""
+            place = f"{rank.place}{' =' if rank.tied else ''}"
+            row.append(TableCell(place, rank.place, rank.place == 1, note))
+            row.append(TableCell(f"{rank.mean_rank:.2f}", rank.mean_rank))
+    return PageTable(
+        groups=tuple(Header(column.label, span=2) for column in ranked),
+        headers=tuple(itertools.chain(*((Header("place"), Header("mean rank")) for _ in ranked))),
+        rows=tuple(Row(label, slots.get(label), tuple(row)) for label, row in cells.items()),
+    )
+
+
+def pairs_table(aggregates: Aggregates, slots: Slots) -> PageTable:
+    """Show the mean difference of each pair: the row's system less the column's."""
+    column = RANKED[0]
+    found: dict[tuple[str, str], TableCell] = {}
+    for test in aggregates.pairs:
+        for pair, sign in (((test.first, test.second), 1), ((test.second, test.first), -1)):
+            if test.difference is None:
+                found[pair] = TableCell(numbers.NOTHING)
+                continue
+            value = sign * test.difference.mean
+            alone = test.p_value is not None and test.p_value < ALPHA
+            mark = "**" if test.significant else "*" if alone else ""
+            p_values = f"p {numbers.p_value(test.p_value)}"
+            p_values += f", adjusted {numbers.p_value(test.adjusted_p)}"
+            text = f"{value:+.{column.decimals}f}{mark}"
+            found[pair] = TableCell(text, value, test.significant, p_values)
+    itself = TableCell("")
+    rows = (
+        Row(label, slots.get(label), tuple(found.get((label, o), itself) for o in aggregates.order))
+        for label in aggregates.order
+    )
+    return PageTable((), tuple(Header(label) for label in aggregates.order), tuple(rows))
+
+
+def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]], slots: Slots) -> PageTable | None:
+    """Show what became of each system in each total occlusion; None without any."""
+    occlusions = occlusions_of([run for some in runs.values() for run in some])
+    if not occlusions:
+        return None
+    rows = []
+    for label, some in runs.items():
+        cells: list[TableCell] = []
+        for occlusion in occlusions:
+            cell = occlusion_cell(some, occlusion)
+            share = cell.recovered / cell.judged if cell.judged else None
+            text = f"{cell.recovered} of {cell.judged}" if cell.judged else "not judged"
+            cells.append(TableCell(text, share, share == 1))
+            cells.append(TableCell(numbers.number(cell.exit_px, 1), cell.exit_px))
+            note = f"in {numbers.counted(cell.back, 'seed')}"
+            cells.append(TableCell(numbers.number(cell.frames, 0), cell.frames, note=note))
+        rows.append(Row(label, slots.get(label), tuple(cells)))
+    three = (
+        Header("recovered", "seeds", "Seeds after which the track was on the vehicle again."),
+        Header("error at exit", "px", "Mean error in the first frame after it."),
+        Header("return", "frames", "Median frames until the track stays on the vehicle."),
+    )
+    groups = tuple(Header(f"frames {first} to {last}", span=3) for first, last in occlusions)
+    return PageTable(groups, three * len(occlusions), tuple(rows))
+
+
+def _metrics_table(
+    table: Mapping[str, Summaries],
+    columns: Sequence[Column],
+    slots: Slots,
+    text: Callable[[Summary | None, Column], str],
+) -> PageTable:
+    kept = [column for column in columns if any(row.get(column.key) for row in table.values())]
+    best = {column.key: _best(table, column) for column in kept}
+    rows = []
+    for label, summaries in table.items():
+        cells = []
+        for column in kept:
+            summary = summaries.get(column.key)
+            value = summary.mean if summary else None
+            is_best = value is not None and round(value, column.decimals) == best[column.key]
+            within = numbers.interval(summary, column)
+            note = f"95 % interval of the mean: {within}" if within else ""
+            cells.append(TableCell(text(summary, column), value, is_best, note))
+        rows.append(Row(label, slots.get(label), tuple(cells)))
+    grouped = itertools.groupby(kept, lambda column: column.group)
+    return PageTable(
+        groups=tuple(Header(name, span=len(list(group))) for name, group in grouped),
+        headers=tuple(Header(column.label, column.unit, column.help) for column in kept),
+        rows=tuple(rows),
+    )
+
+
+def _best(table: Mapping[str, Summaries], column: Column) -> float | None:
+    """Return the best value as it is shown; None where none is better than all others."""
+    values = {round(s.mean, column.decimals) for row in table.values() if (s := row[column.key])}
+    if column.higher_is_better is None or len(values) < 2:
+        return None
+    return max(values) if column.higher_is_better else min(values)

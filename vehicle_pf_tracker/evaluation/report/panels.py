@@ -1,0 +1,104 @@
+"""The small figures of a report: errors over time, curves, robustness."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
+from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.report.svg import STYLE, ink
+
+FloatArray = NDArray[np.float64]
+Spans = Mapping[str, Sequence[tuple[int, int]]]
+"""First and last frames of the stretches with an occlusion, by ``partial`` and ``total``."""
+
+LEAST_ERROR = 0.5
+"""Errors below this, in px, are drawn at the foot of the logarithmic scale."""
+_SMALL, _CURVE = (3.3, 1.75), (3.6, 2.6)
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line of a figure.
+
+    Attributes
+    ----------
+    label : str
+        What it shows.
+    slot : int or None
+        Number of its style in `STYLES`; None is drawn grey, behind the others.
+    xs, ys : (N,) array
+        Its points.
+    """
+
+    label: str
+    slot: int | None
+    xs: FloatArray
+    ys: FloatArray
+
+
+def error_panel(errors: Sequence[FloatArray], spans: Spans, highest: float) -> Figure:
+    """Draw the error over time of one system on one recording.
+
+    Parameters
+    ----------
+    errors : sequence of (N,) array
+        Error in px by frame, one for each seed; NaN where nothing is scored.
+    spans : Spans
+        The occlusions, which are shaded.
+    highest : float
+        Largest error of any system on this recording, in px, so that panels share their scale.
+    """
+    table = np.maximum(np.stack(list(errors)), LEAST_ERROR)
+    frames = np.arange(1, table.shape[1] + 1)
+    with rc_context(STYLE), warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # frames without truth have no median
+        figure = Figure(figsize=_SMALL, layout="constrained")
+        axes = figure.add_subplot()
+        _shade(axes, spans)
+        low, high = np.nanmin(table, axis=0), np.nanmax(table, axis=0)
+        axes.fill_between(frames, low, high, color=ink("accent"), alpha=0.25, lw=0)
+        axes.plot(frames, np.nanmedian(table, axis=0), color=ink("accent"), lw=1.2)
+        axes.axhline(CLOSE_PX, color=ink("muted"), lw=0.7, ls=(0, (1, 2)))
+        axes.set(yscale="log", ylim=(LEAST_ERROR, max(highest * 1.3, 100.0)), ylabel="error, px")
+        axes.set(xlim=(1, max(len(frames), 2)), xlabel="frame")
+        axes.yaxis.set_major_formatter("{x:g}")
+        axes.tick_params(which="minor", left=False)
+    return figure
+
+
+def curve_panel(lines: Sequence[Line], xlabel: str, ylabel: str) -> Figure:
+    """Draw shares over their thresholds."""
+    with rc_context(STYLE):
+        figure = Figure(figsize=_CURVE, layout="constrained")
+        axes = figure.add_subplot()
+        draw_lines(axes, lines)
+        axes.set(xlabel=xlabel, ylabel=ylabel, ylim=(0, 1))
+        axes.set_xlim(float(lines[0].xs[0]), float(lines[0].xs[-1]))
+        axes.grid(axis="y", alpha=0.6)
+        axes.set_axisbelow(True)
+    return figure
+
+
+def draw_lines(axes: Axes, lines: Sequence[Line]) -> None:
+    """Draw lines, the first of those with a style on top."""
+    for line in reversed(lines):
+        if line.slot is None:
+            axes.plot(line.xs, line.ys, color=ink("muted"), lw=0.7, alpha=0.55)
+            continue
+        dashes = STYLES[line.slot].line
+        axes.plot(line.xs, line.ys, color=ink(f"s{line.slot}"), linestyle=dashes, lw=1.7)
+
+
+def _shade(axes: Axes, spans: Spans) -> None:
+    for name, stretches in spans.items():
+        for first, last in stretches:
+            axes.axvspan(first - 0.5, last + 0.5, color=ink(name), lw=0)

@@ -1,0 +1,183 @@
+"""Every cell of an evaluation, scored anew by its truth."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehicle_pf_tracker.evaluation.association import MAX_DIFF
+from vehicle_pf_tracker.evaluation.curves import (
+    Curve,
+    normalised_precision_curve,
+    precision_curve,
+    success_curve,
+)
+from vehicle_pf_tracker.evaluation.evaluation_folder import (
+    Cell,
+    EvaluationFolder,
+    RecordingEntry,
+    SystemEntry,
+)
+from vehicle_pf_tracker.evaluation.failures import first_failure
+from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
+from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings.truth import Truth
+
+
+@dataclass(frozen=True, slots=True)
+class ScoredRun:
+    """One run, in numbers.
+
+    Attributes
+    ----------
+    recording, system, seed : str, str, int
+        Which cell of the grid it is.
+    metrics : Metrics
+        What it is worth.
+    errors : (N,) array
+        Error of the centre in px by frame of the recording; NaN where nothing is scored.
+    boxes : sequence of Box or None
+        The scored estimate by frame.
+    modes : sequence of str
+        The mode by frame.
+    curves : mapping of str to Curve
+        ``precision``, ``success`` and ``normalised``; empty without truth.
+    first_failure : int or None
+        Number of the frame in which it first failed, see `failures`.
+    """
+
+    recording: str
+    system: str
+    seed: int
+    metrics: Metrics
+    errors: NDArray[np.float64]
+    boxes: Sequence[Box | None]
+    modes: Sequence[str]
+    curves: Mapping[str, Curve]
+    first_failure: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class FailedCell:
+    """A cell without a result, and the reason in one sentence."""
+
+    recording: str
+    system: str
+    seed: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class ScoredEvaluation:
+    """All of an evaluation that its report is made of.
+
+    Attributes
+    ----------
+    folder : EvaluationFolder
+        What it was read from.
+    truths : mapping of str to mapping of int to Truth
+        By recording and number of the frame.
+    runs : tuple of ScoredRun
+        In the order of the plan: recordings, systems, seeds.
+    failed : tuple of FailedCell
+        In the same order.
+    """
+
+    folder: EvaluationFolder
+    truths: Mapping[str, Mapping[int, Truth]]
+    runs: tuple[ScoredRun, ...]
+    failed: tuple[FailedCell, ...]
+
+    @property
+    def recordings(self) -> tuple[RecordingEntry, ...]:
+        """Those of the plan."""
+        return self.folder.recordings
+
+    @property
+    def systems(self) -> tuple[SystemEntry, ...]:
+        """Those of the plan."""
+        return self.folder.systems
+
+    def of(self, recording: str | None = None, system: str | None = None) -> list[ScoredRun]:
+        """Return the runs on a recording, of a system, or both."""
+        return [
+            run
+            for run in self.runs
+            if recording in {None, run.recording} and system in {None, run.system}
+        ]
+
+
+def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
+    """Score all cells; those that cannot be read or scored are failed cells."""
+    truths = {entry.name: folder.truth(entry.name) for entry in folder.recordings}
+    results = list(_results(folder, truths))
+    return ScoredEvaluation(
+        folder,
+        truths,
+        tuple(result for result in results if isinstance(result, ScoredRun)),
+        tuple(result for result in results if isinstance(result, FailedCell)),
+    )
+
+
+def typical(runs: Sequence[ScoredRun]) -> ScoredRun | None:
+    """Return the run with the median error (RMSE) of several seeds, the lower of two."""
+    judged = [run for run in runs if run.metrics.rmse_px is not None]
+    ordered = sorted(judged, key=lambda run: (run.metrics.rmse_px or 0.0, run.seed))
+    return ordered[(len(ordered) - 1) // 2] if ordered else None
+
+
+def _results(
+    folder: EvaluationFolder, truths: Mapping[str, Mapping[int, Truth]]
+) -> Iterator[ScoredRun | FailedCell]:
+    max_diff = float(folder.plan.get("options", {}).get("max_diff", MAX_DIFF))
+    cells = itertools.product(folder.recordings, folder.systems, folder.seeds)
+    for recording, system, seed in cells:
+        key = (recording.name, system.label, seed)
+        try:
+            cell = folder.cell(*key)
+            if cell.rows is None:
+                yield FailedCell(*key, cell.reason)
+            else:
+                yield _score(cell, truths[recording.name], max_diff)
+        except InputError as error:
+            yield FailedCell(*key, str(error))
+
+
+def _score(cell: Cell, truth: Mapping[int, Truth], max_diff: float) -> ScoredRun:
+    scores = score_frames(cell.rows or (), list(truth.values()), max_diff)
+    counted, frames = scores.counted, scores.frames
+    curves = {
+        "precision": precision_curve(counted),
+        "success": success_curve(counted),
+        "normalised": normalised_precision_curve(counted),
+    }
+    failure = first_failure(frames)
+    return ScoredRun(
+        recording=cell.recording,
+        system=cell.system,
+        seed=cell.seed,
+        metrics=measure(scores),
+        errors=np.array([_error(frame) for frame in frames]),
+        boxes=[_box(frame) for frame in frames],
+        modes=[frame.row.mode for frame in frames],
+        curves={name: curve for name, curve in curves.items() if curve is not None},
+        first_failure=None if failure is None else frames[failure].row.frame,
+    )
+
+
+def _error(frame: FrameScore) -> float:
+    error = frame.error if frame.counts else None
+    return float("nan") if error is None else error
+
+
+def _box(frame: FrameScore) -> Box | None:
+    row = frame.scored_row
+    if row is None or row.x is None or row.y is None or frame.waiting:
+        return None
+    return Box.around((row.x, row.y), row.width or 0.0, row.height or 0.0)
