@@ -4,6 +4,7 @@
 PYTHON =
 NOBLE_PYTHON =
 PYTEST_ARGS =
+BENCH_ARGS =
 
 BIN := .venv/bin
 INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
@@ -12,7 +13,7 @@ CORE_AND_NODE := $(wildcard $(addprefix test/,filtering features trackers scenes
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: demo test test-slow test-noble lint types format config colcon peers clean
+.PHONY: demo test test-slow test-noble lint types format config colcon peers bench clean
 
 demo: .venv/installed
 	$(BIN)/vehicle-pf-tracker demo -o results/demo
@@ -32,6 +33,11 @@ colcon: .venv/colcon
 
 # OpenCV's trackers to compare with: two OpenCV packages in one environment overwrite each other.
 peers: .venv-peers/locked
+
+# Writes results/bench/bench.json and docs/performance.md; wants a machine with nothing else to do.
+bench: .venv/installed .venv-peers/locked
+	$(BIN)/python -m benchmarks.bench $(BENCH_ARGS)
+	$(BIN)/python -m benchmarks.bench.performance_page results/bench/bench.json docs
 
 lint: .venv/installed
 	$(BIN)/ruff check .

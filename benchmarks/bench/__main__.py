@@ -29,8 +29,11 @@ def main() -> int:
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
     effort = QUICK if args.quick else FULL
-    words = sys.argv[1:]
-    results = Results(describe(), [" ".join(["python -m benchmarks.bench", *words])])
+    commands = [
+        " ".join(["python -m benchmarks.bench", *sys.argv[1:]]),
+        f"python -m benchmarks.bench.performance_page {args.output} docs",
+    ]
+    results = Results(describe(), commands)
     try:
         _measure(results, lambda name: any(fnmatch(name, one) for one in args.only), effort, args)
     except InputError as error:

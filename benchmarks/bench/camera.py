@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from types import TracebackType
+from typing import Any
 
 import rclpy
 from geometry_msgs.msg import PointStamped
@@ -60,6 +62,11 @@ class Camera:
         there = [image_message(_header(0), frame) for frame in drive().frames]
         self._shown = there + there[-2:0:-1]  # and back, since a vehicle does not jump
         self.sent = dict.fromkeys(nodes, 0)
+
+    def hear(self, outputs: Mapping[str, type[Any]]) -> None:
+        """Listen to more topics, by their types, and do nothing with what comes."""
+        for topic, kind in outputs.items():
+            self._node.create_subscription(kind, topic, lambda _: None, QoSProfile(depth=_DEPTH))
 
     def wait(self) -> None:
         """Wait until every node listens, and has answered an image.

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PolygonStamped, Vector3Stamped
 
 from benchmarks.bench.camera import Camera
 from benchmarks.bench.case import Case
@@ -16,6 +20,9 @@ from benchmarks.bench.processes import NodeProcess, StepMeter, floor_words, trac
 RATE = 30.0
 FLEET = 8
 FLEET_RATE = 15.0
+_OUTPUTS = MappingProxyType(
+    {"mode": DiagnosticArray, "box": PolygonStamped, "velocity": Vector3Stamped}
+)
 
 
 class _Batch(NamedTuple):
@@ -32,16 +39,23 @@ def measure(wanted: Callable[[str], bool], effort: Effort) -> tuple[list[Case], 
     InputError
         If a node does not start or answer.
     """
-    names = "node/apf/without_step", "node/apf/with_step"
+    names = "node/apf/without_step", "node/apf/with_step", "node/apf/all_heard"
     if not any(map(wanted, (*names, "memory/node/apf"))):
         return [], []
     batches, memory = _alternate("apf", effort)
+    heard, _ = _alternate("apf", effort, _OUTPUTS)
     floor = [batch.floor for batch in batches]
-    without = Case.of(names[0], [batch.node - batch.step for batch in batches], floor)
-    return [without, Case.of(names[1], [batch.node for batch in batches], floor)], [memory]
+    cases = [
+        Case.of(names[0], [batch.node - batch.step for batch in batches], floor),
+        Case.of(names[1], [batch.node for batch in batches], floor),
+        Case.of(names[2], [batch.node for batch in heard], [batch.floor for batch in heard]),
+    ]
+    return cases, [memory]
 
 
-def _alternate(variant: str, effort: Effort) -> tuple[list[_Batch], MemoryCase]:
+def _alternate(
+    variant: str, effort: Effort, outputs: Mapping[str, type[Any]] = MappingProxyType({})
+) -> tuple[list[_Batch], MemoryCase]:
     """Give images to the floor and to the node in turns: CPU seconds per image of each turn."""
     meter = StepMeter()
     count = effort.batch_frames
@@ -51,6 +65,7 @@ def _alternate(variant: str, effort: Effort) -> tuple[list[_Batch], MemoryCase]:
         NodeProcess(tracker_words(variant, "/bench/node", meter)) as node,
         Camera(topics) as camera,
     ):
+        camera.hear({f"/{variant}_tracker/{name}": kind for name, kind in outputs.items()})
         camera.wait()
         batches = []
         for _ in range(effort.batches + 1):

@@ -1,0 +1,65 @@
+"""Figures of a run, readable in grey and for colour-blind eyes."""
+
+from __future__ import annotations
+
+import itertools
+
+from matplotlib.figure import Figure
+
+from benchmarks.bench.results import Results
+from benchmarks.bench.targets import STEPS
+from vehicle_pf_tracker.evaluation.plots import STYLES
+
+_ROUTES = {"kernel": "numba", "kernel-opencv": "without numba"}
+
+
+def kernels_figure(results: Results) -> Figure:
+    """Draw how many times faster than naive the 512-bin similarity is, over the particles."""
+    series: dict[str, list[tuple[int, float]]] = {}
+    for case in results.cases:
+        words = case.name.split("/")
+        if words[1] == "joint512" and words[3] == "vga":
+            line = f"{_ROUTES[words[0]]}, {words[2]}"
+            series.setdefault(line, []).append((int(words[4].removeprefix("n")), case.ratio))
+    figure = Figure(figsize=(7, 4), layout="constrained")
+    axes = figure.add_subplot()
+    for (name, points), style in zip(series.items(), itertools.cycle(STYLES), strict=False):
+        axes.plot(
+            *zip(*sorted(points), strict=True),
+            color=style.colour,
+            linestyle=style.line,
+            marker=style.marker,
+            label=name,
+        )
+    axes.axhline(1, color="0.35", lw=0.8)
+    axes.set(xscale="log", yscale="log", xlabel="particles", ylabel="times faster than naive")
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.grid(color="0.9", lw=0.6)
+    if series:
+        axes.legend(frameon=False)
+    return figure
+
+
+def steps_figure(results: Results) -> Figure:
+    """Draw how many times faster than CSRT each variant's step is, and what is wanted."""
+    found = {
+        words[1]: case.ratio
+        for case in results.cases
+        if (words := case.name.split("/"))[0] == "step" and words[2] == "csrt"
+    }
+    names = sorted(found, key=found.__getitem__)
+    figure = Figure(figsize=(7, 0.6 + 0.32 * max(len(names), 1)), layout="constrained")
+    axes = figure.add_subplot()
+    axes.barh(names, [found[name] for name in names], color=STYLES[0].colour, height=0.65)
+    wanted = [(STEPS[name], index) for index, name in enumerate(names) if name in STEPS]
+    if wanted:
+        axes.plot(
+            *zip(*wanted, strict=True), ls="", marker="|", ms=14, mew=2.5, color=STYLES[1].colour,
+            label="wanted",
+        )  # fmt: skip
+        axes.legend(frameon=False, loc="lower right")
+    axes.set(xlabel="times faster than CSRT")
+    axes.grid(axis="x", color="0.9", lw=0.6)
+    axes.set_axisbelow(True)
+    return figure
