@@ -21,6 +21,8 @@ FRAMES = 36
 HIDDEN = {"under_a_bridge": range(8, 14), "free": range(0)}
 VARIANTS = ("pf", "ms", "apf")
 SEEDS = (0, 1)
+ALONE = {"ms": SEEDS[:1]}
+"""Seeds of those that draw nothing."""
 NO_PEERS = "the environment of the peers is not there; make it with `make peers`"
 
 
@@ -33,7 +35,10 @@ def make_evaluation(folder):
         write_truth(made / "recordings" / name / "truth.csv", dict(enumerate(truth, start=1)))
         for seed in SEEDS:
             for variant in VARIANTS:
-                _run(cell_folder(made, name, variant, seed), folder / name, truth, variant, seed)
+                if seed in ALONE.get(variant, SEEDS):
+                    _run(
+                        cell_folder(made, name, variant, seed), folder / name, truth, variant, seed
+                    )
             failed = make_folder(cell_folder(made, name, "peer:csrt", seed)) / "failed.json"
             write_json(failed, {"reason": NO_PEERS})
     write_json(made / "evaluation.json", _plan(folder))
@@ -82,6 +87,7 @@ def _plan(folder):
         {
             "label": name, "variant": name, "parameter_set": "", "overrides": {"num_particles": 40},
             "parameters": to_mapping(_parameters(find_variant(name), 0)),
+            "seeds": ALONE.get(name, SEEDS),
         }
         for name in VARIANTS
     ]  # fmt: skip

@@ -55,6 +55,8 @@ class SystemEntry:
         Where its parameters are from; empty for the defaults.
     overrides, parameters : mapping of str to Any
         What was set apart from that, and everything in effect.
+    seeds : tuple of int or None
+        Its seeds; the first alone for a system that draws nothing. None takes those of the plan.
     """
 
     label: str
@@ -62,6 +64,7 @@ class SystemEntry:
     parameter_set: str
     overrides: Mapping[str, Any]
     parameters: Mapping[str, Any]
+    seeds: tuple[int, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +115,10 @@ class EvaluationFolder:
             self.seeds = tuple(map(int, self.plan["seeds"]))
         except (KeyError, TypeError, ValueError) as error:
             raise InputError(f"the plan {path / PLAN} is broken: {error!r}") from error
+
+    def seeds_of(self, system: SystemEntry) -> tuple[int, ...]:
+        """Return the seeds that a system runs with."""
+        return self.seeds if system.seeds is None else system.seeds
 
     def truth(self, recording: str) -> dict[int, Truth]:
         """Return the truths of a recording by the number of their frame; empty without any."""
@@ -192,4 +199,5 @@ def _system(entry: Mapping[str, Any]) -> SystemEntry:
         parameter_set=str(entry.get("parameter_set") or ""),
         overrides=entry.get("overrides") or {},
         parameters=entry.get("parameters") or {},
+        seeds=tuple(map(int, entry["seeds"])) if "seeds" in entry else None,
     )

@@ -57,7 +57,7 @@ def test_evo_agrees_on_the_rmse_of_the_trajectories(evo, exported, runs):
         estimated = evo.files.read_tum_trajectory_file(place / f"{run.system}_seed-{run.seed}.tum")
         assert true.num_poses == estimated.num_poses == FRAMES
         assert rmse(evo, true, estimated) == pytest.approx(run.metrics.rmse_px, abs=1e-9)
-    assert len(runs) == len(HIDDEN) * len(VARIANTS) * len(SEEDS)
+    assert len(runs) == len(HIDDEN) * (len(VARIANTS) * len(SEEDS) - 1)
 
 
 def test_evo_agrees_on_the_rmse_of_the_recording(evo, exported, runs):

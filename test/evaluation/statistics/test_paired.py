@@ -33,6 +33,19 @@ def test_differences_are_taken_between_the_same_seeds():
     assert paired_differences(first, second) == {"r0": 5, "r1": 0}
 
 
+def test_a_single_run_stands_against_all_seeds_of_the_other():
+    single, several = runs_of([5], [1]), runs_of([1, 2, 6], [1])
+    assert paired_differences(single, several) == {"r0": 2, "r1": 0}
+    assert paired_differences(several, single) == {"r0": -2, "r1": 0}
+
+
+def test_seeds_that_only_one_has_are_left_out():
+    first = {RunKey("r", 0): 4.0, RunKey("r", 1): 8.0}
+    second = {RunKey("r", 1): 1.0, RunKey("r", 2): 50.0}
+    assert paired_differences(first, second) == {"r": 7}
+    assert paired_differences(first, {RunKey("r", 2): 1.0, RunKey("r", 3): 1.0}) == {}
+
+
 def test_holm_by_hand():
     assert holm([0.01, 0.04, 0.03]) == pytest.approx([0.03, 0.06, 0.06])
     assert holm([0.5, 0.6]) == [1, 1]

@@ -68,7 +68,7 @@ def _mean_over_occlusions(name: str) -> Callable[[Metrics], float | None]:
 
 
 SUCCESS = Column(
-    "success_auc", OVERLAP, "success", "", 3, True, lambda m: m.success_auc,
+    "success_auc", OVERLAP, "success AUC", "", 3, True, lambda m: m.success_auc,
     "Area under the success curve: share of frames whose overlap (intersection over union) is "
     "above thresholds from 0 to 1.",
 )  # fmt: skip
@@ -92,7 +92,7 @@ STEP = Column(
 COLUMNS = (
     SUCCESS,
     PRECISION,
-    Column("normalised_precision_auc", OVERLAP, "normalised precision", "", 3, True,
+    Column("normalised_precision_auc", OVERLAP, "normalised precision AUC", "", 3, True,
            lambda m: m.normalised_precision_auc,
            "Area under the curve of the error in sizes of the true box, from 0 to 0.5.", False),
     Column("p_error_lt_15px", OVERLAP, "below 15 px", "", 3, True, lambda m: m.p_error_lt_15px,
@@ -105,7 +105,7 @@ COLUMNS = (
            "The same over the frames that are not totally occluded."),
     Column("median_px", ERRORS, "median", "px", 1, False, lambda m: m.median_px,
            "Median error of the centre."),
-    Column("p95_px", ERRORS, "95 %", "px", 1, False, lambda m: m.p95_px,
+    Column("p95_px", ERRORS, "95\u00a0%", "px", 1, False, lambda m: m.p95_px,
            "Error of the centre that 95 % of the frames stay below.", False),
     Column("max_px", ERRORS, "largest", "px", 1, False, lambda m: m.max_px,
            "Largest error of the centre."),

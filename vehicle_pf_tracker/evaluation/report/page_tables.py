@@ -41,12 +41,15 @@ class TableCell:
         Whether no other in its column is better.
     note : str
         Shown on demand.
+    heat : float
+        From -1 to 1: how strongly it is tinted, and which way.
     """
 
     text: str
     value: float | None = None
     best: bool = False
     note: str = ""
+    heat: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +92,7 @@ def ranks_table(aggregates: Aggregates, slots: Slots) -> PageTable:
     cells: dict[str, list[TableCell]] = {label: [] for label in aggregates.order}
     for column in ranked:
         ranks = {rank.system: rank for rank in aggregates.rankings[column.key].ranks}
+        differ = any(rank.place > 1 for rank in ranks.values())
         for label, row in cells.items():
             if label not in ranks:
                 row += [TableCell(numbers.NOTHING), TableCell(numbers.NOTHING)]
@@ -96,7 +100,7 @@ def ranks_table(aggregates: Aggregates, slots: Slots) -> PageTable:
             rank = ranks[label]
             note = f"tied with {numbers.listing(rank.tied)}" if rank.tied else ""
             place = f"{rank.place}{' =' if rank.tied else ''}"
-            row.append(TableCell(place, rank.place, rank.place == 1, note))
+            row.append(TableCell(place, rank.place, differ and rank.place == 1, note))
             row.append(TableCell(f"{rank.mean_rank:.2f}", rank.mean_rank))
     return PageTable(
         groups=tuple(Header(column.label, span=2) for column in ranked),
@@ -109,6 +113,8 @@ def pairs_table(aggregates: Aggregates, slots: Slots) -> PageTable:
     """Show the mean difference of each pair: the row's system less the column's."""
     column = RANKED[0]
     found: dict[tuple[str, str], TableCell] = {}
+    known = [abs(test.difference.mean) for test in aggregates.pairs if test.difference]
+    largest = max(known, default=0.0) or 1.0
     for test in aggregates.pairs:
         for pair, sign in (((test.first, test.second), 1), ((test.second, test.first), -1)):
             if test.difference is None:
@@ -120,7 +126,7 @@ def pairs_table(aggregates: Aggregates, slots: Slots) -> PageTable:
             p_values = f"p {numbers.p_value(test.p_value)}"
             p_values += f", adjusted {numbers.p_value(test.adjusted_p)}"
             text = f"{value:+.{column.decimals}f}{mark}"
-            found[pair] = TableCell(text, value, test.significant, p_values)
+            found[pair] = TableCell(text, value, test.significant, p_values, value / largest)
     itself = TableCell("")
     rows = (
         Row(label, slots.get(label), tuple(found.get((label, o), itself) for o in aggregates.order))

@@ -132,12 +132,17 @@ def typical(runs: Sequence[ScoredRun]) -> ScoredRun | None:
     return ordered[(len(ordered) - 1) // 2] if ordered else None
 
 
+def _cells(folder: EvaluationFolder) -> Iterator[tuple[RecordingEntry, SystemEntry, int]]:
+    for recording, system in itertools.product(folder.recordings, folder.systems):
+        for seed in folder.seeds_of(system):
+            yield recording, system, seed
+
+
 def _results(
     folder: EvaluationFolder, truths: Mapping[str, Mapping[int, Truth]]
 ) -> Iterator[ScoredRun | FailedCell]:
     max_diff = float(folder.plan.get("options", {}).get("max_diff", MAX_DIFF))
-    cells = itertools.product(folder.recordings, folder.systems, folder.seeds)
-    for recording, system, seed in cells:
+    for recording, system, seed in _cells(folder):
         key = (recording.name, system.label, seed)
         try:
             cell = folder.cell(*key)

@@ -32,6 +32,22 @@ def recording_means(runs: Mapping[RunKey, float]) -> dict[str, float]:
 def paired_differences(
     first: Mapping[RunKey, float], second: Mapping[RunKey, float]
 ) -> dict[str, float]:
-    """Return the mean of first minus second over the seeds that both have, by recording."""
-    common = [key for key in first if key in second]
-    return recording_means({key: first[key] - second[key] for key in common})
+    """Return the mean of first minus second over the seeds that both have, by recording.
+
+    A system with one run on a recording, since it draws nothing, stands against all of the other's.
+    """
+    differences = {}
+    for recording in dict.fromkeys(key.recording for key in first):
+        one, other = _on(first, recording), _on(second, recording)
+        if min(len(one), len(other)) > 1:
+            common = one.keys() & other.keys()
+            one, other = ({seed: runs[seed] for seed in common} for runs in (one, other))
+        if one and other:
+            differences[recording] = statistics.fmean(one.values()) - statistics.fmean(
+                other.values()
+            )
+    return differences
+
+
+def _on(runs: Mapping[RunKey, float], recording: str) -> dict[int, float]:
+    return {key.seed: value for key, value in runs.items() if key.recording == recording}
