@@ -35,7 +35,8 @@ def replay(context: LaunchContext) -> list[Node]:
 
     # Raw images, since that is what the tracker listens for unless its parameters say else.
     arguments = [given("recording"), "--rate", given("rate"), "--wait-for-subscribers"]
-    arguments.append("--decompress")
+    # A node's first start compiles its kernels, for longer than the replay would wait.
+    arguments += ["--timeout", "60", "--decompress"]
     if given("target"):
         arguments += ["--target", given("target")]
     if given("loop").lower() in {"true", "1"}:

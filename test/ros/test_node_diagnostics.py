@@ -38,7 +38,7 @@ def table(status) -> dict[str, str]:
 
 
 def test_a_report_tells_counts_rates_and_mode(bench):
-    rig = Rig(bench, on_target(seed=5))
+    rig = Rig(bench, on_target(seed=5, kernels="opencv"))
     rig.play(road(5))
     rig.show(Image(header=header(5), encoding="rgb8"))
     status = Reports(bench).next()
@@ -50,6 +50,7 @@ def test_a_report_tells_counts_rates_and_mode(bench):
     assert "no pixels" in told["last rejection"]
     assert told["matched publishers"] == "1"
     assert (told["mode"], told["variant"], told["seed"]) == ("REJECTED", "apf", "5")
+    assert told["kernels"] == "opencv"
     assert float(told["step time (ms)"]) > 0
     assert float(told["age of frames (ms)"]) > 0
 

@@ -36,6 +36,13 @@ def test_a_signal_ends_the_node_well(start_node, signals):
     assert "Traceback" not in node.output
 
 
+def test_the_log_names_the_kernels_when_it_is_ready(start_node):
+    node = start_node("pf", "-p", "kernels:=opencv")
+    node.wait_for_output("opencv kernels")
+    assert "ready: " in node.output
+    assert "loading kernels" not in node.output
+
+
 def test_a_second_ctrl_c_does_not_reach_the_clean_up(start_process):
     code = (
         "import os, signal, sys\n"

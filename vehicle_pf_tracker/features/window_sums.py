@@ -7,6 +7,7 @@ whole numbers of 53 bits, so that several planes are integrated as one.
 
 from __future__ import annotations
 
+import functools
 from typing import Any, TypeAlias
 
 import cv2
@@ -94,13 +95,24 @@ def _count(indices: npt.NDArray[Any], active: Bins, bins: int, windows: Bounds) 
     # A lane that holds the whole region's count never carries into the next one.
     lane_bits = int(indices.size).bit_length()
     lanes = max(_EXACT_BITS // lane_bits, 1)
-    order = np.arange(len(active))
-    lookup = np.zeros((bins, -(-len(active) // lanes)))
-    lookup[active, order // lanes] = 2.0 ** (lane_bits * (order % lanes))
+    lookup = _lanes_of_bins(active.tobytes(), bins, lane_bits, lanes)
     sums = _window_sums(lookup.take(indices, axis=0), windows).astype(np.int64)
     shifts = lane_bits * np.arange(lanes)
     counts = (sums[..., np.newaxis] >> shifts) & ((1 << lane_bits) - 1)
     return np.asarray(counts.reshape(len(sums), -1)[:, : len(active)])
+
+
+@functools.lru_cache(maxsize=8)
+def _lanes_of_bins(active: bytes, bins: int, lane_bits: int, lanes: int) -> npt.NDArray[np.float64]:
+    """Tell what a pixel of each bin adds to each plane, shape (bins, planes).
+
+    It is the same for many frames. `active` are the bytes of the active bins' numbers.
+    """
+    chosen = np.frombuffer(active, dtype=np.intp)
+    order = np.arange(len(chosen))
+    lookup = np.zeros((bins, -(-len(chosen) // lanes)))
+    lookup[chosen, order // lanes] = 2.0 ** (lane_bits * (order % lanes))
+    return lookup
 
 
 def _window_sums(planes: npt.NDArray[np.float64], windows: Bounds) -> npt.NDArray[np.float64]:

@@ -62,6 +62,8 @@ class Stream:
         self._outputs = outputs
         self._health = health
         self._configuration = configuration
+        if configuration.tracker.kernels != "opencv":
+            self._log.info("loading kernels; the first start compiles them, for some seconds")
         self._session = Session(variant, configuration.tracker, configuration.session)
         self._asked: Box | None = None
         self.frame_id: str | None = None

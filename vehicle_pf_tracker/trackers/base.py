@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -180,7 +180,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
 
     def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
         box = Box.around(outcome.position, self.target.box.width, self.target.box.height)
-        estimate = Estimate(
+        return Estimate(
             position=outcome.position,
             box=box,
             velocity=outcome.velocity,
@@ -193,8 +193,8 @@ class BaseTracker(ABC, Generic[ParametersT]):
             resampled_particles=outcome.resampled_particles,
             particles=read_only(outcome.cloud.positions),
             weights=read_only(outcome.cloud.weights),
+            duration=time.perf_counter() - began,
         )
-        return replace(estimate, duration=time.perf_counter() - began)
 
 
 class ParticleTracker(BaseTracker[ParticleParametersT]):

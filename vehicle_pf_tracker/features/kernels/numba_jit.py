@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import pickle
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -15,9 +13,6 @@ NOT_KEPT = (
     "compiled kernels cannot be kept on disk ({}); each start compiles them again, for some "
     "seconds: set NUMBA_CACHE_DIR to a folder that can be written"
 )
-
-_NO_PLACE = (RuntimeError, OSError, EOFError, pickle.UnpicklingError)
-"""What numba raises where it has no folder, a full one, or one with torn files."""
 
 _notices: list[str] = []
 
@@ -36,9 +31,9 @@ def compiled(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
     def compile_it(function: FunctionT) -> FunctionT:
         try:
             return _compile(function, list(signatures), keep=True)
-        except _NO_PLACE as error:
+        except Exception as error:  # no folder, a full disk, or what a torn file makes of pickle
             if not _notices:
-                _notices.append(NOT_KEPT.format(str(error).partition(os.linesep)[0]))
+                _notices.append(NOT_KEPT.format(str(error).partition("\n")[0]))
             return _compile(function, list(signatures), keep=False)
 
     return compile_it
