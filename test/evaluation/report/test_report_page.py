@@ -103,9 +103,9 @@ def test_pictures_and_tables_can_be_read_out(page):
 def test_it_shows_all_systems_and_recordings(page):
     assert set(VARIANTS) <= {data for tag, data in page.texts if tag == "span"}
     assert {data for tag, data in page.texts if tag == "h3"} >= set(HIDDEN)
-    # Three curves, and for each recording and system an error over time.
+    # The intervals, three curves, and for each recording and system an error over time.
     figures = [svg for svg in page.all("svg") if svg.get("role") == "img"]
-    assert len(figures) == 3 + len(HIDDEN) * len(VARIANTS)
+    assert len(figures) == 4 + len(HIDDEN) * len(VARIANTS)
 
 
 def test_it_says_how_it_was_made_and_what_failed(page):

@@ -8,11 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
+from vehicle_pf_tracker.evaluation.report.columns import RANKED
 from vehicle_pf_tracker.evaluation.report.panels import (
     FloatArray,
+    Interval,
     Line,
     curve_panel,
     error_panel,
+    intervals_panel,
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker
@@ -53,6 +57,27 @@ def curve_panels(
             svg = maker.make(curve_panel(lines, xlabel, ylabel), f"{title}; areas: {areas}")
             panels.append(Panel(svg, title))
     return panels
+
+
+def main_panel(aggregates: Aggregates, maker: SvgMaker) -> Panel | None:
+    """Draw the first ranked metric of all systems, with intervals; None without any."""
+    column = RANKED[0]
+    rows = []
+    for label in aggregates.order:
+        whole = aggregates.overall[label].get(column.key)
+        if whole is None:
+            continue
+        known = [
+            summary.mean
+            for (_, system), found in aggregates.by_recording.items()
+            if system == label and (summary := found.get(column.key)) is not None
+        ]
+        rows.append(Interval(label, known, whole.mean, whole.low, whole.high))
+    if not rows:
+        return None
+    words = ", ".join(f"{row.label} {row.mean:.{column.decimals}f}" for row in rows)
+    svg = maker.make(intervals_panel(rows, column.title), f"{column.label}: {words}")
+    return Panel(svg, f"{column.label}: mean, 95 % interval, and each recording")
 
 
 def error_panels(

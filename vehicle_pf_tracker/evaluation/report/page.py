@@ -15,7 +15,12 @@ from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report import filmstrip, page_tables
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.columns import RANKED
-from vehicle_pf_tracker.evaluation.report.figures import Panel, curve_panels, error_panels
+from vehicle_pf_tracker.evaluation.report.figures import (
+    Panel,
+    curve_panels,
+    error_panels,
+    main_panel,
+)
 from vehicle_pf_tracker.evaluation.report.filmstrip import Still
 from vehicle_pf_tracker.evaluation.report.findings import findings, power
 from vehicle_pf_tracker.evaluation.report.numbers import counted, p_value
@@ -79,6 +84,7 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         findings=findings(evaluation, aggregates),
         slots=slots,
         overall=page_tables.overall_table(aggregates, slots),
+        main=main_panel(aggregates, maker),
         ranks=page_tables.ranks_table(aggregates, slots),
         rank_notes=list(_rank_notes(aggregates)),
         pairs=page_tables.pairs_table(aggregates, slots),

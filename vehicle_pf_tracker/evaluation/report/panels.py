@@ -23,6 +23,8 @@ Spans = Mapping[str, Sequence[tuple[int, int]]]
 LEAST_ERROR = 0.5
 """Errors below this, in px, are drawn at the foot of the logarithmic scale."""
 _SMALL, _CURVE = (3.3, 1.75), (3.6, 2.6)
+_ROW = 0.19
+"""Height of a system's row in a figure of intervals, in inches."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +86,49 @@ def curve_panel(lines: Sequence[Line], xlabel: str, ylabel: str) -> Figure:
         axes.set(xlabel=xlabel, ylabel=ylabel, ylim=(0, 1))
         axes.set_xlim(float(lines[0].xs[0]), float(lines[0].xs[-1]))
         axes.grid(axis="y", alpha=0.6)
+        axes.set_axisbelow(True)
+    return figure
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A row of a figure of intervals.
+
+    Attributes
+    ----------
+    label : str
+        The system.
+    values : sequence of float
+        Its means on the recordings.
+    mean : float
+        Over them.
+    low, high : float or None
+        The interval of that; None where there is none.
+    """
+
+    label: str
+    values: Sequence[float]
+    mean: float
+    low: float | None
+    high: float | None
+
+
+def intervals_panel(rows: Sequence[Interval], xlabel: str) -> Figure:
+    """Draw means with their intervals, and what they are means of as small dots."""
+    with rc_context(STYLE):
+        figure = Figure(figsize=(4.4, 0.55 + _ROW * len(rows)), layout="constrained")
+        axes = figure.add_subplot()
+        for place, row in enumerate(rows):
+            heights = [place] * len(row.values)
+            axes.plot(row.values, heights, ".", color=ink("muted"), ms=4, alpha=0.8, mew=0)
+            if row.low is not None and row.high is not None:
+                axes.plot([row.low, row.high], [place, place], color=ink("accent"), lw=2.2)
+            axes.plot([row.mean], [place], "D", color=ink("accent"), ms=4.2)
+        axes.set_yticks(range(len(rows)), [row.label for row in rows])
+        axes.set(ylim=(len(rows) - 0.4, -0.6), xlabel=xlabel)
+        axes.tick_params(axis="y", length=0, labelcolor=ink("ink"))
+        axes.grid(axis="x", alpha=0.6)
+        axes.spines["left"].set_visible(False)
         axes.set_axisbelow(True)
     return figure
 
