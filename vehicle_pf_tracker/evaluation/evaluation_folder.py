@@ -6,7 +6,8 @@
     recordings/<recording>/truth.csv
     cells/<recording>/<system>/seed-<n>/estimates.csv    and metrics.json, run.json; or
     cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
-    timings.json, robustness.json                        where they were asked for
+    timings.json                                         of a serial pass, where it was asked for
+    robustness/<kind>/<recording>/<system>/seed-<n>/     where it was asked for
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.truth import Truth
 
 PLAN, FAILED = "evaluation.json", "failed.json"
-TIMINGS, ROBUSTNESS = "timings.json", "robustness.json"
+TIMINGS = "timings.json"
 TRUTH = "truth.csv"
 
 
@@ -140,10 +141,6 @@ class EvaluationFolder:
     def timings(self) -> Mapping[str, Any] | None:
         """Return `timings.json`; None where the speed was not measured."""
         return _optional(self.path / TIMINGS)
-
-    def robustness(self) -> Mapping[str, Any] | None:
-        """Return `robustness.json`; None where it was not asked for."""
-        return _optional(self.path / ROBUSTNESS)
 
 
 def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:

@@ -25,12 +25,14 @@ from vehicle_pf_tracker.evaluation.report.filmstrip import Still
 from vehicle_pf_tracker.evaluation.report.findings import findings, power
 from vehicle_pf_tracker.evaluation.report.numbers import counted, p_value
 from vehicle_pf_tracker.evaluation.report.parameters_section import system_sections
+from vehicle_pf_tracker.evaluation.report.robustness import robustness_sections
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     FailedCell,
     ScoredEvaluation,
     ScoredRun,
     typical,
 )
+from vehicle_pf_tracker.evaluation.report.speed import speed_table
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.truth import Truth
@@ -94,6 +96,8 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
             _section(evaluation, aggregates, entry, slots, maker, images)
             for entry in evaluation.recordings
         ],
+        robustness=robustness_sections(evaluation.folder, aggregates.order, slots),
+        speed=speed_table(evaluation.folder.timings(), aggregates.order, slots),
         systems=system_sections(evaluation.systems),
         seeds=", ".join(map(str, evaluation.folder.seeds)),
         versions=_words(plan.get("versions", {})),

@@ -1,0 +1,78 @@
+"""Robustness and speed, which stand beside the grid."""
+
+import json
+import shutil
+
+import pytest
+
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
+from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
+from vehicle_pf_tracker.evaluation.report.robustness import robustness_sections
+from vehicle_pf_tracker.evaluation.report.speed import speed_table
+
+ORDER = ("pf", "ms")
+
+
+@pytest.fixture
+def folder(made_evaluation, tmp_path):
+    """An evaluation of which all was asked; only pf has results on some recordings."""
+    copy = tmp_path / "evaluation"
+    shutil.copytree(made_evaluation, copy)
+    plan = json.loads((copy / "evaluation.json").read_text())
+    plan["options"] |= {"shifted_starts": True, "start_frames": 2, "restarts": True}
+    (copy / "evaluation.json").write_text(json.dumps(plan))
+    for recording, values in {"free": (0.5, 0.7), "under_a_bridge": (0.1,)}.items():
+        for number, success in enumerate(values):
+            for kind in ("shifted_starts", "start_frames"):
+                place = copy / "robustness" / kind / recording / "pf" / "seed-0" / f"s{number}"
+                metrics = {"success_auc": success, "precision_20px": None, "rmse_px": 8.0}
+                on_target = success + 0.1
+                write_json(make_folder(place) / "metrics.json", {**metrics, "on_target": on_target})
+    place = make_folder(copy / "robustness" / "restarts" / "free" / "pf" / "seed-1")
+    write_json(place / "restarts.json", {"failures": 3, "accuracy": None, "robustness": 0.25})
+    return copy
+
+
+def texts(table):
+    return {row.label: [cell.text for cell in row.cells] for row in table.rows}
+
+
+def test_other_starts_by_hand(folder):
+    evaluation = EvaluationFolder(folder)
+    shifted, frames, restarts = robustness_sections(evaluation, ORDER, {"pf": 0})
+    usual = [
+        json.loads((folder / "cells" / name / "pf" / "seed-0" / "metrics.json").read_text())
+        for name in ("free", "under_a_bridge")
+    ]
+    mean = sum(metrics["success_auc"] for metrics in usual) / 2
+    # 0.6 on one recording, 0.1 on the other; two of two runs were on target, and none of one.
+    expected = [f"{mean:.3f}", "0.350", f"{0.35 - mean:+.3f}", "0.100", "0.50", "3"]
+    assert texts(shifted.table) == {"pf": expected}
+    assert texts(frames.table) == {"pf": ["0.350", "–", "8.0", "3"]}
+    assert texts(restarts.table) == {"pf": ["3.00", "–", "0.250", "1"]}
+
+
+def test_what_was_not_asked_for_is_not_shown(folder):
+    plan = json.loads((folder / "evaluation.json").read_text())
+    plan["options"] = {"shifted_starts": False, "start_frames": 0}
+    (folder / "evaluation.json").write_text(json.dumps(plan))
+    assert robustness_sections(EvaluationFolder(folder), ORDER, {}) == []
+
+
+def test_what_cannot_be_read_is_passed_over(folder):
+    path = next(folder.glob("robustness/restarts/**/restarts.json"))
+    path.write_text("{")
+    titles = [s.title for s in robustness_sections(EvaluationFolder(folder), ORDER, {})]
+    assert titles == ["Shifted and scaled starts", "Other first frames"]
+
+
+def test_speed_by_hand():
+    cells = [
+        {"recording": "a", "system": "pf", "step_ms_p50": 1.0, "step_ms_p95": 3.0},
+        {"recording": "b", "system": "pf", "step_ms_p50": 3.0, "step_ms_p95": None},
+        {"recording": "a", "system": "ms", "step_ms_p50": None},
+    ]
+    assert texts(speed_table({"cells": cells}, ORDER, {})) == {
+        "pf": ["2.00", "3.00", "3.00", "500"]
+    }
+    assert speed_table(None, ORDER, {}) is None
