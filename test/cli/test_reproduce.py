@@ -8,8 +8,8 @@ import time
 import pytest
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.cli.reproduce_progress import telling
-from vehicle_pf_tracker.evaluation.experiments.running import Progress
+from vehicle_pf_tracker.cli.work_progress import telling
+from vehicle_pf_tracker.evaluation.progress import Progress
 
 WORDS = ["--quick", "--seeds", "1", "--first-seed", "100", "--workers", "1"]
 

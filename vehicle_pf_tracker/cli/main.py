@@ -23,6 +23,7 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "run": ("run", "track a recording offline, without ROS, and score it"),
         "report": ("report", "make the report of an evaluation again"),
         "replay": ("replay", "feed a recording to ROS nodes"),
+        "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
         "reproduce": ("reproduce", "make the papers' figures and tables again, with verdicts"),
     }
 )

@@ -58,7 +58,7 @@ def chosen(variant: Variant, args: argparse.Namespace) -> Configuration:
 
     configuration = Configuration.of(variant)
     if args.params is not None:
-        configuration = _with_file(configuration, variant, args.params)
+        configuration = with_file(configuration, variant, args.params)
     # Those of the node alone would change nothing here, so they are refused as unknown.
     table = {**specs(variant.parameters), **specs(type(configuration.session))}
     configuration = configuration.updated(parse_assignments(table, args.assignments))
@@ -74,7 +74,14 @@ def _with_target(configuration: Configuration, box: Box) -> Configuration:
     return configuration.updated(values)
 
 
-def _with_file(configuration: Configuration, variant: Variant, path: Path) -> Configuration:
+def with_file(configuration: Configuration, variant: Variant, path: Path) -> Configuration:
+    """Put the parameters that a file has for the node of `variant` over a configuration.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used, or a name or a value does not fit.
+    """
     values = read_yaml(path, f"{variant.name}_tracker")
     known = configuration.specs()
     problems = [

@@ -7,7 +7,8 @@ import os
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError
-from vehicle_pf_tracker.cli.reproduce_progress import telling
+from vehicle_pf_tracker.cli.whole_numbers import natural, positive
+from vehicle_pf_tracker.cli.work_progress import telling
 from vehicle_pf_tracker.evaluation.experiments.catalogue import ALL, EXPERIMENTS, find_experiments
 from vehicle_pf_tracker.evaluation.experiments.experiment import (
     QUICK_SEEDS,
@@ -34,13 +35,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="folder for the results; what was run there before is not run again "
         "(default: results/reproduce)",
     )  # fmt: skip
-    add("--seeds", type=_positive, metavar="N", help=f"runs of each kind (default: {SEEDS})")
+    add("--seeds", type=positive, metavar="N", help=f"runs of each kind (default: {SEEDS})")
     add(
-        "--first-seed", type=_natural, default=0, metavar="S",
+        "--first-seed", type=natural, default=0, metavar="S",
         help="the first of the seeds; to try things out take others than 0 to 9, from 100 on",
     )  # fmt: skip
     add(
-        "--workers", type=_positive, default=os.cpu_count() or 1, metavar="N",
+        "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
         help="processes; results do not depend on it (default: one per processor)",
     )  # fmt: skip
     add(
@@ -84,17 +85,3 @@ def _reproduce(
     report = experiment.report(results, size)
     write_report(args.output / experiment.name, experiment, report, size)
     return report.verdict.holds
-
-
-def _positive(text: str) -> int:
-    return _at_least(1, text)
-
-
-def _natural(text: str) -> int:
-    return _at_least(0, text)
-
-
-def _at_least(least: int, text: str) -> int:
-    if not text.isascii() or not text.isdigit() or int(text) < least:
-        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {least} on")
-    return int(text)

@@ -143,9 +143,9 @@ class EvaluationFolder:
         return _optional(self.path / TIMINGS)
 
 
-def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:
+def cell_folder(folder: Path, recording: str, system: str, seed: int, cells: str = "cells") -> Path:
     """Return the folder of one cell of the evaluation in `folder`."""
-    return folder / "cells" / recording / safe_name(system) / f"seed-{seed}"
+    return folder / cells / recording / safe_name(system) / f"seed-{seed}"
 
 
 def safe_name(label: str) -> str:

@@ -21,6 +21,7 @@ class CountingCell:
     name: str
     scene: SceneChoice = SCENE
     alone: bool = False
+    variants: tuple[str, ...] = ()
 
     @property
     def label(self):

@@ -2,40 +2,19 @@
 
 from __future__ import annotations
 
-import itertools
-import multiprocessing
-import os
-import signal
-import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeAlias
-
-import cv2
 
 from vehicle_pf_tracker.evaluation.experiments.cells import Cell, Result
 from vehicle_pf_tracker.evaluation.experiments.identity import key
 from vehicle_pf_tracker.evaluation.experiments.store import ResultStore
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.evaluation.processes import run_in_processes
+from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
 
 _LARGEST_BATCH = 48
 """Cells that run together: more share a rendering, fewer are lost by an interruption."""
 
 _Batch: TypeAlias = tuple[Cell, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """Cells done in this call, cells that were to be done, and what is running now."""
-
-    done: int
-    total: int
-    running: tuple[str, ...]
-
-
-OnProgress: TypeAlias = Callable[[Progress], None]
 
 
 def complete(
@@ -111,42 +90,6 @@ def _run(
 def _run_in_processes(
     batches: Sequence[_Batch], workers: int
 ) -> Iterator[tuple[_Batch, list[Result], Sequence[_Batch]]]:
-    waiting = iter(batches)
-    # Fresh processes: forked ones would inherit locks of OpenCV's threads.
-    pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _prepare_worker)
-    others = multiprocessing.active_children()
-    running: dict[Future[list[Result]], _Batch] = {}
-    try:
-        while True:
-            for batch in itertools.islice(waiting, workers - len(running)):
-                running[pool.submit(run_together, batch)] = batch
-            if not running:
-                return
-            yield batches[0], [], list(running.values())
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                batch = running.pop(future)
-                yield batch, future.result(), list(running.values())
-    except BrokenProcessPool as error:
-        raise InputError(
-            "a worker process was ended from outside, for want of memory perhaps; "
-            "run the command again to go on, with fewer --workers"
-        ) from error
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
-        for process in multiprocessing.active_children():
-            if process not in others:
-                process.terminate()
-
-
-def _prepare_worker() -> None:
-    """Compute on one thread, and end at once with Ctrl-C or when the parent is gone."""
-    cv2.setNumThreads(1)
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    parent.join()
-    os._exit(1)
+    for turn in run_in_processes(run_together, batches, workers):
+        batch, results = turn.ended or (batches[0], [])
+        yield batch, results, turn.running

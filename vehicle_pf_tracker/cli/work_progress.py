@@ -1,4 +1,4 @@
-"""Progress of an experiment: what is done, what runs, and how long it may still take."""
+"""Progress of many runs: what is done, what runs, and how long it may still take."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
 from rich.progress import Progress as Bar
 
-from vehicle_pf_tracker.evaluation.experiments.running import OnProgress, Progress
+from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
 
 _LINE_SECONDS = 5.0
 
@@ -21,7 +21,7 @@ _LINE_SECONDS = 5.0
 def telling(
     name: str, stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
 ) -> Iterator[OnProgress]:
-    """Give a function that tells how far the experiment `name` is.
+    """Give a function that tells how far the work `name` is.
 
     Parameters
     ----------

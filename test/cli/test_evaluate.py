@@ -1,0 +1,134 @@
+import json
+
+import pytest
+from small_recordings import frame_folder, record
+
+from vehicle_pf_tracker.cli.main import main
+
+
+@pytest.fixture
+def bags(tmp_path):
+    (tmp_path / "bags").mkdir()
+    for name in ("one", "two"):
+        record(tmp_path / "bags" / name)
+    return tmp_path / "bags"
+
+
+def evaluate(out, *words):
+    return main(["evaluate", *map(str, words), "-o", str(out), "--workers", "1"])
+
+
+QUICK = ["--variants", "pf,ms", "--seeds", "2", "--set", "num_particles=30"]
+
+
+def test_a_folder_of_recordings_is_evaluated(bags, tmp_path, capsys):
+    assert evaluate(tmp_path / "out", bags, *QUICK) == 0
+    out = capsys.readouterr().out
+    assert "RMSE, px" in out
+    assert f"results are in {tmp_path / 'out'}" in out
+    plan = json.loads((tmp_path / "out" / "evaluation.json").read_text())
+    assert [entry["name"] for entry in plan["recordings"]] == ["one", "two"]
+    assert [entry["label"] for entry in plan["systems"]] == ["pf", "ms"]
+    assert plan["systems"][0]["parameters"]["num_particles"] == 30
+    assert plan["command"][:2] == ["vehicle-pf-tracker", "evaluate"]
+    cells = {str(p.relative_to(tmp_path / "out")) for p in (tmp_path / "out").glob("cells/*/*/*")}
+    assert cells == {
+        f"cells/{name}/{cell}"
+        for name in ("one", "two")
+        for cell in ("pf/seed-0", "pf/seed-1", "ms/seed-0")
+    }
+
+
+def test_an_rmse_beyond_the_limit_fails(bags, tmp_path, capsys):
+    assert evaluate(tmp_path / "out", bags, *QUICK, "--max-rmse", "50") == 0
+    assert evaluate(tmp_path / "out", bags, *QUICK, "--max-rmse", "0.01") == 1
+    err = capsys.readouterr().err.splitlines()[-1]
+    assert "larger than --max-rmse 0.01 px: pf " in err
+    assert ", ms " in err
+
+
+def systems(out):
+    plan = json.loads((out / "evaluation.json").read_text())
+    return {entry["label"]: entry for entry in plan["systems"]}
+
+
+def test_parameter_sets_are_systems_of_their_own(bags, tmp_path, capsys):
+    file = tmp_path / "mine.yaml"
+    file.write_text("pf_tracker:\n  ros__parameters:\n    sigma: 3.0\n    queue_depth: 5\n")
+    words = [bags / "one", *QUICK, "--params", f"mine={file}", "--set", "ms@few:iterations=2"]
+    assert evaluate(tmp_path / "out", *words, "--set", "mine:num_particles=20") == 0
+    found = systems(tmp_path / "out")
+    assert list(found) == ["pf", "pf@mine", "ms", "ms@few"]
+    assert found["pf@mine"]["parameters"]["sigma"] == 3.0
+    assert found["pf@mine"]["overrides"] == {"num_particles": 20}
+    assert found["pf@mine"]["parameter_set"] == "mine"
+    assert found["ms@few"]["parameters"]["iterations"] == 2
+    assert "ms is not run with mine" in capsys.readouterr().err
+
+
+def test_defaults_can_be_left_out(bags, tmp_path):
+    words = [bags / "one", *QUICK, "--set", "pf@narrow:sigma=2", "--without-defaults"]
+    assert evaluate(tmp_path / "out", *words) == 0
+    assert list(systems(tmp_path / "out")) == ["pf@narrow", "ms"]
+
+
+def test_a_peer_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_path, capsys):
+    words = ["--variants", "ms,peer:csrt", "--peers-python", tmp_path / "none"]
+    assert evaluate(tmp_path / "out", bags / "one", *words) == 0
+    assert "peer:csrt cannot run: there is no interpreter" in capsys.readouterr().err
+    failed = tmp_path / "out" / "cells" / "one" / "peer_csrt" / "seed-0" / "failed.json"
+    assert "make peers" in json.loads(failed.read_text())["reason"]
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "said"),
+    [
+        (["--variants", "kalman"], 1, "no variant 'kalman'"),
+        (["--variants", ","], 2, "--variants names none"),
+        (["--variants", "peer:boost"], 1, "no peer 'boost'"),
+        (["--set", "sgima=2"], 1, "no parameter 'sgima' (did you mean 'sigma'?)"),
+        (["--set", "seed=2"], 1, "no parameter 'seed'"),
+        (["--set", "target.x=2"], 1, "no parameter 'target.x'"),
+        (["--variants", "pf", "--set", "ms@few:iterations=2"], 1, "not among --variants pf"),
+        (["--set", "pf@a:sigma=wide"], 1, "sigma must be a number"),
+        (["--params", "mine.yaml"], 2, "--params wants LABEL=FILE"),
+        (["--params", "pf@a=none.yaml"], 1, "cannot read the parameter file none.yaml"),
+        (["--params", "@=none.yaml"], 2, "no label of a parameter set"),
+        (["--peer-model", "vit=a"], 2, "--peer-model wants PEER:NAME=FILE"),
+        (["--seeds", "0"], 2, "'0' is no whole number from 1 on"),
+        (["--max-diff", "-1"], 1, "seconds from 0"),
+    ],
+)
+def test_mistakes_are_told_in_one_line(bags, tmp_path, capsys, words, status, said):
+    assert evaluate(tmp_path / "out", bags / "one", *words) == status
+    assert said in capsys.readouterr().err.splitlines()[-1]
+    assert not (tmp_path / "out").exists()
+
+
+def test_things_that_are_no_recordings_say_what_to_do(tmp_path, capsys):
+    (tmp_path / "clip.mp4").touch()
+    (tmp_path / "notes.txt").touch()
+    (tmp_path / "empty").mkdir()
+    frame_folder(tmp_path / "frames")
+    record(tmp_path / "untrue", truths=())
+    for name, said in {
+        "clip.mp4": "is a video; make a recording of it first: `vehicle-pf-tracker import ",
+        "frames": "is a frame folder; make a recording of it first",
+        "notes.txt": "is no recording: give a rosbag2 folder",
+        "empty": "is no recording and has none in it",
+        "none": "there is no recording",
+        "untrue": "has no truth to compare with",
+    }.items():
+        assert evaluate(tmp_path / "out", tmp_path / name, *QUICK) == 1
+        (line,) = capsys.readouterr().err.splitlines()
+        assert str(tmp_path / name) in line
+        assert said in line
+
+
+def test_recordings_of_one_name_are_told_apart(tmp_path):
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        record(tmp_path / name / "bag")
+    words = [tmp_path / "a", tmp_path / "b" / "bag", "--variants", "ms"]
+    assert evaluate(tmp_path / "out", *words) == 0
+    assert sorted(p.name for p in (tmp_path / "out" / "cells").iterdir()) == ["a-bag", "b-bag"]

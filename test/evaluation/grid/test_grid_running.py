@@ -1,0 +1,154 @@
+import json
+
+import pytest
+from grid_samples import (
+    HIDDEN,
+    here,
+    make_plan,
+    results,
+    silent,
+    system,
+    write_recording,
+    write_recordings,
+)
+
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
+from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
+from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem
+
+
+@pytest.fixture(scope="module")
+def recordings(tmp_path_factory):
+    return write_recordings(tmp_path_factory.mktemp("recordings"))
+
+
+@pytest.fixture
+def plan(recordings):
+    return make_plan(recordings)
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "out"
+
+
+def test_every_cell_is_in_the_folder_as_run_writes_it(plan, out):
+    assert complete(plan, out, here, silent) == 6  # ms, which draws nothing, runs one seed
+    folder = EvaluationFolder(out)
+    assert [entry.name for entry in folder.recordings] == list(HIDDEN)
+    assert [entry["deterministic"] for entry in folder.plan["systems"]] == [False, True]
+    assert [entry["seeds"] for entry in folder.plan["systems"]] == [[0, 1], [0]]
+    for recording in HIDDEN:
+        assert len(folder.truth(recording)) == 24
+        for name, seed in (("pf", 0), ("pf", 1), ("ms", 0)):
+            cell = folder.cell(recording, name, seed)
+            assert len(cell.rows) == 24
+            assert cell.run["seed"] == seed
+            assert cell.run["variant"] == name
+    metrics = json.loads((out / "cells" / "free" / "pf" / "seed-1" / "metrics.json").read_text())
+    assert metrics["rmse_px"] < 6
+
+
+def test_results_do_not_depend_on_the_number_of_workers(plan, tmp_path):
+    complete(plan, tmp_path / "here", here, silent)
+    for workers in (1, 2, 4):
+        complete(plan, tmp_path / str(workers), on_this_machine(workers), silent)
+        assert results(tmp_path / str(workers)) == results(tmp_path / "here")
+
+
+class InterruptedHereError(Exception):
+    pass
+
+
+def test_what_was_interrupted_goes_on_and_comes_out_the_same(plan, tmp_path, out):
+    complete(plan, tmp_path / "whole", here, silent)
+
+    def interrupt(progress):
+        if progress.done == 4:
+            raise InterruptedHereError
+
+    with pytest.raises(InterruptedHereError):
+        complete(plan, out, here, interrupt)
+    told = []
+    assert complete(plan, out, here, told.append) == 2
+    assert (told[-1].done, told[-1].total) == (2, 2)
+    assert results(out) == results(tmp_path / "whole")
+
+
+def test_what_is_there_is_not_run_again(plan, out):
+    complete(plan, out, here, silent)
+    before = {path: path.stat().st_mtime_ns for path in out.glob("cells/**/*")}
+    assert complete(plan, out, here, silent) == 0
+    assert {path: path.stat().st_mtime_ns for path in out.glob("cells/**/*")} == before
+
+
+def test_only_what_changed_is_run_anew(recordings, plan, out):
+    complete(plan, out, here, silent)
+    changed = make_plan(recordings, [system("pf", sigma=3.0), system("ms")])
+    assert complete(changed, out, here, silent) == 4
+    assert complete(make_plan(recordings, seeds=(0, 1, 2)), out, here, silent) == 6
+
+
+def test_another_recording_of_the_same_name_is_run_anew(plan, out, tmp_path):
+    complete(plan, out, here, silent)
+    other = write_recording(tmp_path / "free", range(3, 5))
+    told = []
+    complete(make_plan([other]), out, here, told.append)
+    assert told[-1].total == 3
+
+
+def test_a_recording_that_changed_since_it_was_planned_is_no_result(tmp_path, out):
+    path = write_recording(tmp_path / "rec")
+    plan = make_plan([path], [system("ms")])
+    file = next(path.glob("*.mcap"))
+    file.write_bytes(file.read_bytes() + b"\0")
+    complete(plan, out, here, silent)
+    assert (
+        "another one than when it was planned" in EvaluationFolder(out).cell("rec", "ms", 0).reason
+    )
+
+
+@pytest.mark.parametrize("left", ["estimates.csv", "metrics.json", "run.json"])
+def test_a_cell_that_lacks_something_is_run_anew(plan, out, left):
+    complete(plan, out, here, silent)
+    (out / "cells" / "free" / "ms" / "seed-0" / left).unlink()
+    assert complete(plan, out, here, silent) == 1
+
+
+def test_what_a_killed_run_left_half_written_goes(plan, out):
+    half = out / "cells" / "free" / "pf" / ".seed-0.123.partial"
+    half.mkdir(parents=True)
+    complete(plan, out, here, silent)
+    assert not list(out.rglob("*.partial"))
+
+
+def test_what_cannot_run_says_why_and_is_tried_again(recordings, out, tmp_path):
+    plan = make_plan(recordings, [PeerSystem("csrt", str(tmp_path / "none")), system("ms")])
+    assert complete(plan, out, here, silent) == 4
+    folder = EvaluationFolder(out)
+    assert "there is no interpreter" in folder.cell("free", "peer:csrt", 0).reason
+    assert folder.cell("free", "ms", 0).rows is not None
+    assert complete(plan, out, here, silent) == 2
+
+
+def test_a_fault_of_the_program_costs_only_its_cell(plan, out, monkeypatch):
+    def broken(*_):
+        raise ZeroDivisionError("so")
+
+    monkeypatch.setattr("vehicle_pf_tracker.trackers.ms.MsTracker.start", broken)
+    complete(plan, out, here, silent)
+    folder = EvaluationFolder(out)
+    assert "ZeroDivisionError" in folder.cell("free", "ms", 0).reason
+    assert folder.cell("free", "pf", 0).rows is not None
+
+
+def test_a_variant_without_particles_does_not_depend_on_the_seed(recordings, tmp_path):
+    plan = make_plan(recordings[:1], [system("ms")], seeds=(0,))
+    other = make_plan(recordings[:1], [system("ms")], seeds=(7,))
+    complete(plan, tmp_path / "a", here, silent)
+    complete(other, tmp_path / "b", here, silent)
+    rows = [
+        results(tmp_path / name)[f"cells/bridge/ms/seed-{seed}/estimates.csv"]
+        for name, seed in (("a", 0), ("b", 7))
+    ]
+    assert rows[0] == rows[1]

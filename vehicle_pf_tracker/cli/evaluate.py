@@ -1,0 +1,118 @@
+"""`evaluate`: compare systems on recordings with truth, over seeds."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from vehicle_pf_tracker.cli import system_options
+from vehicle_pf_tracker.cli.console import tell_error, tell_notices
+from vehicle_pf_tracker.cli.whole_numbers import natural, positive
+from vehicle_pf_tracker.cli.work_progress import telling
+from vehicle_pf_tracker.evaluation.association import MAX_DIFF
+from vehicle_pf_tracker.evaluation.grid.locations import find_recordings
+from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
+from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
+from vehicle_pf_tracker.evaluation.grid.sources import describe
+from vehicle_pf_tracker.evaluation.grid.summary import SystemSummary, summarise, table
+
+SEEDS = 5
+_WIDE = 200
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of this verb."""
+    add = parser.add_argument
+    add(
+        "recordings", nargs="+", metavar="REC",
+        help="rosbag2 folder or MCAP file with truth, a folder of such, or a URL of one",
+    )  # fmt: skip
+    add(
+        "-o", "--output", type=Path, required=True, metavar="DIR",
+        help="folder of the evaluation; what was run there before is not run again",
+    )  # fmt: skip
+    system_options.add_arguments(parser)
+    add(
+        "--seeds", type=positive, default=SEEDS, metavar="N",
+        help="runs of each system that has randomness (default: %(default)s)",
+    )  # fmt: skip
+    add("--first-seed", type=natural, default=0, metavar="S", help="the first of the seeds")
+    add(
+        "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
+        help="processes; results do not depend on it (default: one per processor)",
+    )  # fmt: skip
+    add("--topic", help="the image topic, where recordings have several")
+    add(
+        "--max-diff", type=float, default=MAX_DIFF, metavar="S",
+        help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
+    )  # fmt: skip
+    add(
+        "--max-rmse", type=float, metavar="PX",
+        help="end with status 1 if a system's RMSE, the mean over its runs, is larger",
+    )  # fmt: skip
+    robust = parser.add_argument_group("robustness, beside the grid")
+    robust.add_argument(
+        "--shifted-starts", action="store_true",
+        help="also start on twelve shifted and scaled boxes, with the first seed",
+    )  # fmt: skip
+    robust.add_argument(
+        "--start-frames", type=natural, default=0, metavar="N",
+        help="also start in N other frames, with the first seed",
+    )  # fmt: skip
+    robust.add_argument(
+        "--restarts", action="store_true",
+        help="also run with a new start after each failure, and count those",
+    )  # fmt: skip
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run what is missing, write the report, and print the table."""
+    plan = _plan(args)
+    try:
+        with telling("evaluate") as on_progress:
+            complete(plan, args.output, on_this_machine(args.workers), on_progress)
+    except KeyboardInterrupt:
+        tell_notices(["interrupted; the same command goes on where this one stopped"])
+        raise
+    summaries = summarise(plan, args.output)
+    _show(summaries)
+    print(f"results are in {args.output}")
+    return _judge(summaries, args.max_rmse)
+
+
+def _plan(args: argparse.Namespace) -> Plan:
+    systems, notes = system_options.chosen(args)
+    recordings = describe(find_recordings(args.recordings), args.topic, args.max_diff)
+    tell_notices(notes)
+    return Plan(
+        dict(recordings),
+        systems,
+        range(args.first_seed, args.first_seed + args.seeds),
+        args.command,
+        args.max_diff,
+        Robustness(args.shifted_starts, args.start_frames, args.restarts),
+    )
+
+
+def _show(summaries: Sequence[SystemSummary]) -> None:
+    from rich.console import Console
+
+    console = Console()
+    (console if console.is_terminal else Console(width=_WIDE)).print(table(summaries))
+    for summary in summaries:
+        for reason in dict.fromkeys(summary.reasons):
+            tell_notices([f"{summary.label} did not run everywhere: {reason}"])
+
+
+def _judge(summaries: Sequence[SystemSummary], limit: float | None) -> int:
+    if limit is None:
+        return 0
+    means = {summary.label: summary.mean("rmse_px") for summary in summaries}
+    beyond = {name: mean for name, mean in means.items() if mean is not None and mean > limit}
+    if not beyond:
+        return 0
+    told = ", ".join(f"{name} {mean:.1f} px" for name, mean in beyond.items())
+    tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {told}")
+    return 1

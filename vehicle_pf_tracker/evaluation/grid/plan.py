@@ -1,0 +1,149 @@
+"""The plan of an evaluation: what is compared on what, and the cells that this makes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from vehicle_pf_tracker.evaluation.association import MAX_DIFF
+from vehicle_pf_tracker.evaluation.evaluation_folder import PLAN, TRUTH, safe_name
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell
+from vehicle_pf_tracker.evaluation.grid.sources import Source
+from vehicle_pf_tracker.evaluation.grid.starts import (
+    RESTARTS,
+    USUAL,
+    Start,
+    shifted_starts,
+    start_frames,
+)
+from vehicle_pf_tracker.evaluation.grid.systems import System, seeds_of
+from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
+from vehicle_pf_tracker.evaluation.run_info import versions
+from vehicle_pf_tracker.evaluation.truth_file import write_truth
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings.truth import Truth
+
+FORMAT = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Robustness:
+    """What is run beside the grid, to see how robust the systems are.
+
+    Attributes
+    ----------
+    shifted_starts : bool
+        Runs from the twelve shifted and scaled boxes of OTB.
+    start_frames : int
+        So many runs from other frames.
+    restarts : bool
+        Runs that are started anew after each failure, as in VOT.
+    """
+
+    shifted_starts: bool = False
+    start_frames: int = 0
+    restarts: bool = False
+
+    def starts(self, truths: Sequence[Truth]) -> list[Start]:
+        """Return the starts on a recording with `truths`."""
+        starts = shifted_starts() if self.shifted_starts else []
+        starts += start_frames(truths, self.start_frames)
+        return starts + ([Start(RESTARTS)] if self.restarts else [])
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What is compared on what.
+
+    Attributes
+    ----------
+    recordings : mapping of Source to truth
+        With each, its truth by the number of the frame.
+    systems : sequence of System
+        Their labels are distinct.
+    seeds : sequence of int
+        Those of systems that have randomness; others run with the first.
+    command : list of str
+        The command line that makes it again.
+    max_diff : float
+        Largest difference of stamps that belong together, in s.
+    robustness : Robustness
+        What is run beside the grid.
+
+    Raises
+    ------
+    InputError
+        If two systems would share a folder.
+    """
+
+    recordings: Mapping[Source, Mapping[int, Truth]]
+    systems: Sequence[System]
+    seeds: Sequence[int]
+    command: list[str]
+    max_diff: float = MAX_DIFF
+    robustness: Robustness = field(default_factory=Robustness)
+
+    def __post_init__(self) -> None:
+        taken: set[str] = set()
+        for system in self.systems:
+            name = safe_name(system.label)
+            if name in taken:
+                raise InputError(f"several systems would be called {system.label}; name them apart")
+            taken.add(name)
+
+    def cells(self) -> list[GridCell]:
+        """Return all cells: the grid first, recording by recording, then what is run beside it."""
+        grid = [cell for source in self.recordings for cell in self._cells(source, [USUAL])]
+        beside = [
+            cell
+            for source, truths in self.recordings.items()
+            for cell in self._cells(source, self.robustness.starts(self._in_order(truths)))
+        ]
+        return grid + beside
+
+    def _cells(self, source: Source, starts: Sequence[Start]) -> Iterator[GridCell]:
+        for start in starts:
+            for system in self.systems:
+                # Other starts are variation enough; failures are counted over all seeds.
+                is_varied = start.kind in {"", RESTARTS}
+                seeds = seeds_of(system, self.seeds if is_varied else self.seeds[:1])
+                for seed in seeds:
+                    yield GridCell(source, system, seed, self.max_diff, start)
+
+    @staticmethod
+    def _in_order(truths: Mapping[int, Truth]) -> list[Truth]:
+        return sorted(truths.values(), key=lambda truth: truth.stamp_ns)
+
+    def write(self, folder: Path) -> None:
+        """Write `evaluation.json` and the truth of every recording.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        for source, truths in self.recordings.items():
+            write_truth(make_folder(folder / "recordings" / source.name) / TRUTH, truths)
+        write_json(folder / PLAN, self.to_json())
+
+    def to_json(self) -> dict[str, Any]:
+        """Everything as plain values."""
+        return {
+            "format": FORMAT,
+            "command": self.command,
+            "recordings": [source.to_json() for source in self.recordings],
+            "systems": [
+                {**system.to_json(), "seeds": list(seeds_of(system, self.seeds))}
+                for system in self.systems
+            ],
+            "seeds": list(self.seeds),
+            "versions": versions(),
+            "options": {
+                "max_diff": self.max_diff,
+                "shifted_starts": self.robustness.shifted_starts,
+                "start_frames": self.robustness.start_frames,
+                "restarts": self.robustness.restarts,
+            },
+        }

@@ -1,0 +1,140 @@
+"""What follows the vehicle: a variant with its parameters, or a peer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from vehicle_pf_tracker.trackers.contract import ParticleParameters
+from vehicle_pf_tracker.trackers.parameters import Value, from_mapping, specs
+from vehicle_pf_tracker.trackers.registry import Variant, find_variant
+from vehicle_pf_tracker.trackers.session import SessionParameters
+
+PEER = "peer:"
+Settings = tuple[tuple[str, Value], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class VariantSystem:
+    """A variant of ours.
+
+    Attributes
+    ----------
+    label : str
+        Its name in all tables.
+    variant : str
+        Its name in the registry.
+    parameter_set : str
+        The name of its parameters; empty for the defaults.
+    overrides : tuple of (str, Value)
+        What was set on the command line.
+    parameters : tuple of (str, Value)
+        Everything in effect but the seed and the target.
+    """
+
+    label: str
+    variant: str
+    parameter_set: str
+    overrides: Settings
+    parameters: Settings
+
+    @property
+    def is_deterministic(self) -> bool:
+        """Whether the seed has no effect: what has no particles draws nothing."""
+        return not issubclass(self._entry.parameters, ParticleParameters)
+
+    @property
+    def _entry(self) -> Variant:
+        return find_variant(self.variant)
+
+    def tracker_parameters(self, seed: int) -> Any:
+        """Make the variant's parameters."""
+        kind = self._entry.parameters
+        return from_mapping(kind, {**self._own(kind), "seed": seed})
+
+    def session_parameters(self) -> SessionParameters:
+        """Make what a stream needs besides."""
+        return from_mapping(SessionParameters, self._own(SessionParameters))
+
+    def _own(self, kind: type[Any]) -> dict[str, Value]:
+        table = specs(kind)
+        return {name: value for name, value in self.parameters if name in table}
+
+    def facts(self, seed: int) -> dict[str, Any]:
+        """Give what decides about its runs, besides the code."""
+        return {"variant": self.variant, "parameters": {**dict(self.parameters), "seed": seed}}
+
+    def to_json(self) -> dict[str, Any]:
+        """Everything as plain values."""
+        return {
+            "label": self.label,
+            "variant": self.variant,
+            "parameter_set": self.parameter_set,
+            "overrides": dict(self.overrides),
+            "parameters": dict(self.parameters),
+            "deterministic": self.is_deterministic,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class PeerSystem:
+    """One of OpenCV's trackers, in an environment of its own.
+
+    A new process repeats a run exactly, so that one run of it is enough.
+
+    Attributes
+    ----------
+    peer : str
+        Its name without ``peer:``.
+    python : str
+        The interpreter that runs it; empty looks where `peers.environment` says.
+    models : tuple of (str, str)
+        Its model files by name.
+    build : str
+        What is known of the interpreter's OpenCV, so that results of another one are not kept.
+    """
+
+    peer: str
+    python: str = ""
+    models: tuple[tuple[str, str], ...] = ()
+    build: str = ""
+
+    @property
+    def label(self) -> str:
+        """Its name in all tables."""
+        return f"{PEER}{self.peer}"
+
+    @property
+    def is_deterministic(self) -> bool:
+        """The seed has no effect."""
+        return True
+
+    def facts(self, seed: int) -> dict[str, Any]:
+        """Give what decides about its runs, besides the code."""
+        return {"peer": self.peer, "models": self.models, "build": self.build, "seed": seed}
+
+    def model_files(self) -> Mapping[str, Path]:
+        """Return its model files."""
+        return {name: Path(path) for name, path in self.models}
+
+    def to_json(self) -> dict[str, Any]:
+        """Everything as plain values."""
+        models: dict[str, Value] = dict(self.models)
+        return {
+            "label": self.label,
+            "peer": self.peer,
+            "parameter_set": "",
+            "overrides": models,
+            "parameters": {**models, "opencv": self.build},
+            "deterministic": True,
+        }
+
+
+System = VariantSystem | PeerSystem
+
+
+def seeds_of(system: System, seeds: Sequence[int]) -> Sequence[int]:
+    """Return the seeds that `system` runs with: the first alone where the seed has no effect."""
+    return seeds[:1] if system.is_deterministic else seeds

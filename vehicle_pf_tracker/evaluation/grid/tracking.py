@@ -1,0 +1,153 @@
+"""Runs a cell of the grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any, Protocol
+
+import cv2
+
+from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell
+from vehicle_pf_tracker.evaluation.grid.restarts import follow_restarted
+from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
+from vehicle_pf_tracker.evaluation.grid.starts import RESTARTS
+from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem, VariantSystem
+from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
+from vehicle_pf_tracker.evaluation.offline import OfflineTracker
+from vehicle_pf_tracker.evaluation.peers.client import Peer
+from vehicle_pf_tracker.evaluation.peers.rows import peer_rows
+from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run, versions
+from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.recordings.truth import Truth
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came out of a cell.
+
+    Attributes
+    ----------
+    rows : tuple of EstimateRow
+        One per frame.
+    run : dict
+        Content of `run.json`.
+    metrics : Metrics or None
+        None where it could not run.
+    reason : str
+        Why it could not run, in a sentence; empty if it did.
+    restarts : dict or None
+        Where it was re-started after failures: how it went.
+    """
+
+    rows: tuple[EstimateRow, ...] = ()
+    run: dict[str, Any] = field(default_factory=dict)
+    metrics: Metrics | None = None
+    reason: str = ""
+    restarts: dict[str, Any] | None = None
+
+
+def run_cell(cell: GridCell) -> Outcome:
+    """Run a cell. What goes wrong is told in the outcome, so that the others go on."""
+    cv2.setNumThreads(1)
+    try:
+        return _run(cell, footage(cell.source))
+    except InputError as error:
+        return Outcome(reason=str(error))
+    except Exception as error:  # a fault of ours must not cost the rest of a long evaluation
+        return Outcome(reason=f"it ended with a fault of the program: {error!r}")
+
+
+def _run(cell: GridCell, at_hand: Footage) -> Outcome:
+    made: list[Follower] = []
+
+    def make(start: Truth) -> Follower:
+        made.append(_follower(cell, start))
+        return made[-1]
+
+    restarts = None
+    if cell.start.kind == RESTARTS:
+        rows, restarts = follow_restarted(at_hand, make, cell.max_diff)
+    else:
+        rows = list(make(cell.start.on(at_hand.truth)).rows(at_hand.frames()))
+    metrics = measure(score_frames(rows, at_hand.truth, cell.max_diff))
+    return Outcome(tuple(rows), made[0].describe(at_hand.notices), metrics, "", restarts)
+
+
+class Follower(Protocol):
+    """A system at work on one recording, from one start on."""
+
+    def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]:
+        """Follow through (stamp in ns, frame) pairs, a row for each."""
+        ...
+
+    def describe(self, notices: list[str]) -> dict[str, Any]:
+        """Make the content of `run.json`; `notices` are about the recording."""
+        ...
+
+
+def _follower(cell: GridCell, start: Truth) -> Follower:
+    if isinstance(cell.system, VariantSystem):
+        return _VariantFollower(cell, cell.system, start)
+    return _PeerFollower(cell, cell.system, start)
+
+
+class _VariantFollower:
+    def __init__(self, cell: GridCell, system: VariantSystem, start: Truth) -> None:
+        self._cell = cell
+        self._tracker = OfflineTracker(
+            find_variant(system.variant),
+            system.tracker_parameters(cell.seed),
+            system.session_parameters(),
+            first_truth=start,
+            max_diff=cell.max_diff,
+        )
+
+    def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]:
+        return self._tracker.rows(frames)
+
+    def describe(self, notices: list[str]) -> dict[str, Any]:
+        source = self._cell.source
+        told = [*notices, *self._tracker.notices]
+        info = RunInfo([], source.path, source.topic, self._tracker.start_frame, told)
+        return describe_run(info, self._tracker.session)
+
+
+class _PeerFollower:
+    def __init__(self, cell: GridCell, system: PeerSystem, start: Truth) -> None:
+        self._cell = cell
+        self._system = system
+        self._start = start
+        self._start_frame: int | None = None
+        self._opencv = ""
+
+    def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]:
+        python = Path(self._system.python) if self._system.python else None
+        with Peer(self._system.peer, python, self._system.model_files()) as peer:
+            self._opencv = peer.opencv
+            for row in peer_rows(peer, frames, self._start):
+                if self._start_frame is None and row.mode not in {WAITING, REJECTED}:
+                    self._start_frame = row.frame
+                yield row
+
+    def describe(self, notices: list[str]) -> dict[str, Any]:
+        source, box = self._cell.source, self._start.box
+        return {
+            "command": [],
+            "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+            "recording": source.path,
+            "image_topic": source.topic,
+            "peer": self._system.peer,
+            "seed": self._cell.seed,
+            "target": [box.x, box.y, box.width, box.height],
+            "start_frame": self._start_frame,
+            "parameters": dict(self._system.models),
+            "versions": {**versions(), "opencv": self._opencv},
+            "notices": notices,
+        }

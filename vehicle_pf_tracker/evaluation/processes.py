@@ -1,0 +1,89 @@
+"""Work in several processes of this machine."""
+
+from __future__ import annotations
+
+import itertools
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import cv2
+
+from vehicle_pf_tracker.features.errors import InputError
+
+TaskT = TypeVar("TaskT")
+ResultT = TypeVar("ResultT")
+
+
+@dataclass(frozen=True, slots=True)
+class Turn(Generic[TaskT, ResultT]):
+    """What happened: a task came to its end, or (None) new ones began; and those that run now."""
+
+    ended: tuple[TaskT, ResultT] | None
+    running: tuple[TaskT, ...]
+
+
+def run_in_processes(
+    function: Callable[[TaskT], ResultT], tasks: Sequence[TaskT], workers: int
+) -> Iterator[Turn[TaskT, ResultT]]:
+    """Call `function` with each task, and give every result as soon as it is there.
+
+    Parameters
+    ----------
+    function : callable
+        Of a module, so that a process can find it.
+    tasks : sequence
+        Begun in this order.
+    workers : int
+        Processes.
+
+    Raises
+    ------
+    InputError
+        If a process is ended from outside.
+    """
+    waiting = iter(tasks)
+    # Fresh processes: forked ones would inherit locks of OpenCV's threads.
+    pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _prepare)
+    others = multiprocessing.active_children()
+    running: dict[Future[ResultT], TaskT] = {}
+    try:
+        while True:
+            for task in itertools.islice(waiting, workers - len(running)):
+                running[pool.submit(function, task)] = task
+            if not running:
+                return
+            yield Turn(None, tuple(running.values()))
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                task = running.pop(future)
+                yield Turn((task, future.result()), tuple(running.values()))
+    except BrokenProcessPool as error:
+        raise InputError(
+            "a worker process was ended from outside, for want of memory perhaps; "
+            "run the command again to go on, with fewer --workers"
+        ) from error
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in multiprocessing.active_children():
+            if process not in others:
+                process.terminate()
+
+
+def _prepare() -> None:
+    """Compute on one thread, and end at once with Ctrl-C or when the parent is gone."""
+    cv2.setNumThreads(1)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
