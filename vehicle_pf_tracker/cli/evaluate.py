@@ -7,7 +7,7 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle_pf_tracker.cli import system_options
+from vehicle_pf_tracker.cli import report, system_options
 from vehicle_pf_tracker.cli.console import tell_error, tell_notices
 from vehicle_pf_tracker.cli.whole_numbers import natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of this verb."""
     add = parser.add_argument
     add(
-        "recordings", nargs="+", metavar="REC",
+        "sources", nargs="+", metavar="REC",
         help="rosbag2 folder or MCAP file with truth, a folder of such, or a URL of one",
     )  # fmt: skip
     add(
@@ -52,6 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-rmse", type=float, metavar="PX",
         help="end with status 1 if a system's RMSE, the mean over its runs, is larger",
     )  # fmt: skip
+    report.add_report_options(parser)
     robust = parser.add_argument_group("robustness, beside the grid")
     robust.add_argument(
         "--shifted-starts", action="store_true",
@@ -78,13 +79,13 @@ def run(args: argparse.Namespace) -> int:
         raise
     summaries = summarise(plan, args.output)
     _show(summaries)
-    print(f"results are in {args.output}")
+    report.write(args.output, args)
     return _judge(summaries, args.max_rmse)
 
 
 def _plan(args: argparse.Namespace) -> Plan:
     systems, notes = system_options.chosen(args)
-    recordings = describe(find_recordings(args.recordings), args.topic, args.max_diff)
+    recordings = describe(find_recordings(args.sources), args.topic, args.max_diff)
     tell_notices(notes)
     return Plan(
         dict(recordings),

@@ -21,9 +21,9 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "synth": ("synth", "make a recording of a synthetic scene, with exact truth"),
         "params": ("params", "print the commented default parameters of a variant"),
         "run": ("run", "track a recording offline, without ROS, and score it"),
+        "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
         "report": ("report", "make the report of an evaluation again"),
         "replay": ("replay", "feed a recording to ROS nodes"),
-        "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
         "reproduce": ("reproduce", "make the papers' figures and tables again, with verdicts"),
     }
 )
