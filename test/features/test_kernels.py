@@ -12,6 +12,7 @@ from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.kernels.choice import load_kernels
 from vehicle_pf_tracker.features.kernels.interface import PixelRange
 from vehicle_pf_tracker.features.lbp import BinaryPatterns
+from vehicle_pf_tracker.features.mean_shift import kernel_histogram
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
 from vehicle_pf_tracker.features.window import Window
@@ -127,6 +128,28 @@ def test_nothing_is_like_an_empty_reference(request, name):
         assert np.array_equal(similarity, np.zeros(20))
     reference = Reference(np.zeros(512))
     assert not kernels.similarity_map(JointColour(3), frame, window, reference).any()
+
+
+@settings(max_examples=80, deadline=None)
+@given(data=st.data(), frame=scenes, window=windows, bits=st.sampled_from([1, 3, 5]))
+def test_mean_shift_agrees(numba, data, frame, window, bits):
+    positions = data.draw(clouds(frame))
+    target = tuple(data.draw(clouds(frame))[0])
+    reference = Reference(kernel_histogram(frame, target, window, bits))
+    arguments = JointColour(bits), frame, positions, window, reference
+    similarities = numba.kernel_similarity(*arguments)
+    assert np.abs(similarities - OPENCV.kernel_similarity(*arguments)).max() < 1e-9
+    moved = numba.mean_shift(*arguments)
+    assert np.abs(moved - OPENCV.mean_shift(*arguments)).max() < 1e-9
+    assert np.array_equal(moved, numba.mean_shift(*arguments))
+
+
+def test_mean_shift_stays_where_there_is_no_colour_of_the_reference(numba):
+    frame = np.zeros((30, 30, 3), np.uint8)
+    positions = np.array([[12.3, 9.7], [29.0, 29.0]])
+    reference = Reference(np.eye(512)[511])
+    moved = numba.mean_shift(JointColour(3), frame, positions, Window(4, 4), reference)
+    assert np.array_equal(moved, positions)
 
 
 @pytest.mark.parametrize("spread", [3.0, 500.0])

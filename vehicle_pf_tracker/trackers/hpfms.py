@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.features.mean_shift import kernel_histogram, kernel_similarity, mean_shift
+from vehicle_pf_tracker.features.joint_colour import JointColour
+from vehicle_pf_tracker.features.mean_shift import kernel_histogram
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
@@ -100,9 +101,9 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         return doubt * max(settings.sigma, transition.speed_share * speed)
 
     def _similarity(self, frame: Frame, positions: Array) -> Array:
-        bits = self.parameters.histogram_bits
-        return kernel_similarity(frame, positions, self.window, self._reference.histogram, bits)
+        feature, window = JointColour(self.parameters.histogram_bits), self.window
+        return self.kernels.kernel_similarity(feature, frame, positions, window, self._reference)
 
     def _shift(self, frame: Frame, positions: Array) -> Array:
-        bits = self.parameters.histogram_bits
-        return mean_shift(frame, positions, self.window, self._reference.histogram, bits)
+        feature, window = JointColour(self.parameters.histogram_bits), self.window
+        return self.kernels.mean_shift(feature, frame, positions, window, self._reference)

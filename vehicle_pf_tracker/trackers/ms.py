@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.features.colour import Histogram
 from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.features.mean_shift import kernel_histogram, kernel_similarity, mean_shift
+from vehicle_pf_tracker.features.joint_colour import JointColour
+from vehicle_pf_tracker.features.mean_shift import kernel_histogram
+from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import hellinger_distance
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
 from vehicle_pf_tracker.trackers.colour_tracker import VELOCITY_WINDOW
@@ -61,23 +62,26 @@ class MsTracker(BaseTracker[MsParameters]):
 
     def __init__(self, parameters: MsParameters) -> None:
         super().__init__(parameters)
-        self._reference: Histogram = np.zeros(0)
+        self._reference = Reference(np.zeros(0))
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
 
     def _learn(self) -> None:
-        self._reference = kernel_histogram(
+        histogram = kernel_histogram(
             self.target.patch, self.target.centre, self.window, self.parameters.histogram_bits
         )
+        self._reference = Reference(histogram)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
         return np.asarray([centre])
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        before, bits = self._cloud.mean(), self.parameters.histogram_bits
+        before, feature = self._cloud.mean(), JointColour(self.parameters.histogram_bits)
         cloud = Cloud.uniform(self._climb(frame, self._cloud.positions))
         position = cloud.mean()
-        rho = kernel_similarity(frame, cloud.positions, self.window, self._reference, bits)
+        rho = self.kernels.kernel_similarity(
+            feature, frame, cloud.positions, self.window, self._reference
+        )
         similarity = float(1.0 - hellinger_distance(rho)[0])
         self._velocity.add(before, position, elapsed)
         return Outcome(
@@ -86,12 +90,11 @@ class MsTracker(BaseTracker[MsParameters]):
 
     def _climb(self, frame: Frame, position: Array) -> Array:
         """Step until a step is short."""
-        settings = self.parameters
+        settings, window = self.parameters, self.window
+        feature = JointColour(settings.histogram_bits)
         for _ in range(settings.iterations):
             before = position
-            position = mean_shift(
-                frame, before, self.window, self._reference, settings.histogram_bits
-            )
+            position = self.kernels.mean_shift(feature, frame, before, window, self._reference)
             if np.hypot(*(position - before)[0]) < settings.shortest_step:
                 break
         return position

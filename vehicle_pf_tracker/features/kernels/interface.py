@@ -134,3 +134,25 @@ class Kernels(ABC):
         (bottom - top, right - left) array of float32
             Bhattacharyya coefficients, 0 to 1.
         """
+
+    @abstractmethod
+    def kernel_similarity(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Coefficients:
+        """Compare kernel-weighted histograms with a reference; see `features.mean_shift`."""
+
+    @abstractmethod
+    def mean_shift(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Positions:
+        """Move every position one mean-shift step; see `features.mean_shift`."""

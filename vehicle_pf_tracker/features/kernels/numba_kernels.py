@@ -13,11 +13,17 @@ from vehicle_pf_tracker.features.gradients import GradientDirections
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.kernels import numba_jit
 from vehicle_pf_tracker.features.kernels.interface import Kernels, PixelRange, SimilarityMap
-from vehicle_pf_tracker.features.kernels.numba_cells import joint_cells
+from vehicle_pf_tracker.features.kernels.numba_cells import Cells, joint_cells
 from vehicle_pf_tracker.features.kernels.numba_counting import compare_pixels, planes_of
 from vehicle_pf_tracker.features.kernels.numba_gradients import count_directions
+from vehicle_pf_tracker.features.kernels.numba_mean_shift import (
+    compare_kernels,
+    ellipse,
+    shift_kernels,
+)
 from vehicle_pf_tracker.features.kernels.numba_place import Place, reach_of
 from vehicle_pf_tracker.features.kernels.numba_reference import (
+    CellTable,
     roots_up_to,
     table_for_counting,
     table_of,
@@ -103,6 +109,42 @@ class NumbaKernels(Kernels):
         cells = joint_cells(region, feature.bits, table.cells)
         extent = left - x, top - y, right - x, bottom - y
         return map_windows(cells, extent, reach_of(feature, window), table.single)
+
+    def kernel_similarity(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Coefficients:
+        """Compare; see `Kernels.kernel_similarity`."""
+        offsets, profile = ellipse(window)
+        place, table = Place.of(feature, frame, positions, window), table_of(reference)
+        cells, origin = _covered_cells(feature, frame, place, table)
+        return compare_kernels(cells, place.pixels, origin, offsets, (profile, table.values))
+
+    def mean_shift(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Positions:
+        """Move; see `Kernels.mean_shift`."""
+        offsets, profile = ellipse(window)
+        place, table = Place.of(feature, frame, positions, window), table_of(reference)
+        cells, origin = _covered_cells(feature, frame, place, table)
+        steps = shift_kernels(cells, place.pixels, origin, offsets, (profile, table.values))
+        return np.where(np.isnan(steps), positions, place.pixels + 0.5 + steps)
+
+
+def _covered_cells(
+    feature: JointColour, frame: Frame, place: Place, table: CellTable
+) -> tuple[Cells, tuple[int, int]]:
+    left, top, right, bottom = place.covered()
+    return joint_cells(frame[top:bottom, left:right], feature.bits, table.cells), (left, top)
 
 
 def counts_pixels(feature: WindowFeature) -> bool:

@@ -12,6 +12,7 @@ from vehicle_pf_tracker.features.colour import bin_indices
 from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.kernels.interface import Kernels, PixelRange, SimilarityMap
+from vehicle_pf_tracker.features.mean_shift import kernel_similarity, mean_shift
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.window import Positions, Window
 from vehicle_pf_tracker.features.window_feature import (
@@ -76,6 +77,29 @@ class OpenCvKernels(Kernels):
         areas = _box_sums(np.ones(overlap.shape, np.uint8), window)
         rho = np.minimum(overlap / np.sqrt(areas), 1.0)
         return np.asarray(rho[top - y : bottom - y, left - x : right - x], np.float32)
+
+    def kernel_similarity(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Coefficients:
+        """Compare; see `Kernels.kernel_similarity`."""
+        histogram = reference.histogram
+        return kernel_similarity(frame, positions, window, histogram, feature.bits)
+
+    def mean_shift(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Positions:
+        """Move; see `Kernels.mean_shift`."""
+        return mean_shift(frame, positions, window, reference.histogram, feature.bits)
 
 
 def _overlaps(
