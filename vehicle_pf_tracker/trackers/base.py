@@ -94,6 +94,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         self._rng = np.random.default_rng(self._seed)
         self.kernels = load_kernels(parameters.kernels)
         self._target: Target | None = None
+        self._window: Window | None = None
         self._judge = EvidenceJudge()
         self._cloud = Cloud.uniform(np.zeros((1, 2)))
 
@@ -118,14 +119,14 @@ class BaseTracker(ABC, Generic[ParametersT]):
     @property
     def window(self) -> Window:
         """The window that features are taken from."""
-        wanted = self.parameters.window
-        return self.target.window(wanted.width, wanted.height)
+        return self._window or self.target.window(self.parameters.window)
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `Tracker.start`."""
         began = time.perf_counter()
         check_target(box, *frame_size(check_frame(frame)))
         self._target = Target(frame, box)
+        self._window = self._target.window(self.parameters.window)
         self._rng = np.random.default_rng(self._seed)
         self._judge = EvidenceJudge()
         self._cloud = Cloud.uniform(keep_inside(frame, self._scatter(box.centre)))
@@ -158,6 +159,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
             self._seed = _draw_seed(parameters.seed)
             self._rng = np.random.default_rng(self._seed)
         if self._target is not None and "relearns" in changed:
+            self._window = self._target.window(parameters.window)
             self._learn()
 
     @abstractmethod

@@ -8,6 +8,7 @@ from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.colour import Histogram, joint_histogram
 from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.features.window import Window
+from vehicle_pf_tracker.trackers.contract import WindowParameters
 
 _MARGIN = 64
 """Least margin kept around the target, in px, so that a wider window can still be measured."""
@@ -38,9 +39,9 @@ class Target:
         self.patch: Frame = frame[top:bottom, left:right].copy()
         self.centre = box.centre[0] - left, box.centre[1] - top
 
-    def window(self, width: float, height: float) -> Window:
-        """Window of the given size in px; 0 takes the target's own."""
-        return Window.of_size(width or self.box.width, height or self.box.height)
+    def window(self, wanted: WindowParameters) -> Window:
+        """Window of the given size; where that is 0, of the target's own."""
+        return Window.of_size(wanted.width or self.box.width, wanted.height or self.box.height)
 
     def joint_histogram(self, window: Window, bits: int) -> Histogram:
         """Joint RGB histogram of the target as first seen."""
