@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -24,20 +23,16 @@ class Reference:
 
     Attributes
     ----------
+    active : (K,) array
+        Numbers of the bins that are not zero, ascending.
+    values : (K,) array
+        The histogram there.
     kept : dict
         What kernels made of it, by a key of their own.
     """
 
     def __init__(self, histogram: Histogram) -> None:
         self.histogram = np.asarray(histogram, dtype=np.float64)
+        self.active = np.flatnonzero(self.histogram)
+        self.values: Histogram = self.histogram[self.active]
         self.kept: dict[object, object] = {}
-
-    @cached_property
-    def active(self) -> npt.NDArray[np.intp]:
-        """Numbers of the K bins that are not zero, ascending."""
-        return np.flatnonzero(self.histogram)
-
-    @cached_property
-    def values(self) -> Histogram:
-        """The histogram at the active bins, shape (K,)."""
-        return np.asarray(self.histogram[self.active])

@@ -9,6 +9,7 @@ radii are per nominal frame period, so that all of them scale with the elapsed t
 
 from __future__ import annotations
 
+import statistics
 from abc import abstractmethod
 from collections.abc import Mapping
 from typing import TypeVar
@@ -123,7 +124,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             self._velocity.value,
             "prediction" if fusion.full_occlusion else "estimation",
             # The majority counts: one feature that fails, or is fooled, does not decide.
-            float(np.median(similarities)),
+            statistics.median(similarities.tolist()),
             self._report(fusion),
             resampling_passes=int(resample),
             resampled_particles=len(particles) if resample else 0,

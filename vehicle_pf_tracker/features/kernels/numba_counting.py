@@ -100,4 +100,4 @@ def _cells(feature: WindowFeature, pixels: Frame, table: CellTable) -> Cells:
 
 def planes_of(feature: WindowFeature) -> int:
     """Count the bins that each pixel adds to."""
-    return 3 if isinstance(feature, RgbMarginals) else 1
+    return 3 if type(feature) is RgbMarginals else 1

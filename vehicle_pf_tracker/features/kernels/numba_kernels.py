@@ -39,6 +39,7 @@ from vehicle_pf_tracker.features.window_feature import (
     WindowFeature,
 )
 
+_OF_PIXELS = {JointColour, RgbMarginals, Cooccurrence}
 _NO_COUNTS: Counts = np.zeros((0, 0), np.int32)
 
 
@@ -108,7 +109,9 @@ class NumbaKernels(Kernels):
         table = table_of(reference)
         cells = joint_cells(region, feature.bits, table.cells)
         extent = left - x, top - y, right - x, bottom - y
-        return map_windows(cells, extent, reach_of(feature, window), table.single)
+        return map_windows(
+            cells, extent, reach_of(feature, window), table.values.astype(np.float32)
+        )
 
     def kernel_similarity(
         self,
@@ -149,9 +152,9 @@ def _covered_cells(
 
 def counts_pixels(feature: WindowFeature) -> bool:
     """Whether every pixel counts alike in all windows."""
-    return isinstance(feature, JointColour | RgbMarginals | Cooccurrence)
+    return type(feature) in _OF_PIXELS
 
 
 def counts_edges(feature: WindowFeature) -> TypeGuard[GradientDirections]:
     """Whether edge points of the frame's own gradient are counted."""
-    return isinstance(feature, GradientDirections) and feature.in_frame
+    return type(feature) is GradientDirections and feature.in_frame

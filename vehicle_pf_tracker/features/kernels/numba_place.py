@@ -66,5 +66,5 @@ class Place(NamedTuple):
 
 def reach_of(feature: WindowFeature, window: Window) -> Reach:
     """Reach of a feature's windows; pairs of pixels end one column earlier."""
-    right = window.half_width + (0 if isinstance(feature, Cooccurrence) else 1)
+    right = window.half_width + (0 if type(feature) is Cooccurrence else 1)
     return window.half_width, right, window.half_height

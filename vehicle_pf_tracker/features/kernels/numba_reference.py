@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.features.kernels.numba_cells import Table
-from vehicle_pf_tracker.features.kernels.numba_windows import Map, Reals
+from vehicle_pf_tracker.features.kernels.numba_windows import Reals
 from vehicle_pf_tracker.features.reference import Histogram, Reference
 
 _LANES = 16
@@ -30,14 +30,11 @@ class CellTable:
         K.
     values : (K + 1 or more,) array
         Square roots of the reference at the active bins, followed by zeros.
-    single : array
-        The same in single precision.
     """
 
     cells: Table
     active: int
     values: Reals
-    single: Map
 
     @classmethod
     def of(cls, active: npt.NDArray[np.intp], bins: int, values: Histogram) -> CellTable:
@@ -48,7 +45,7 @@ class CellTable:
         padded = np.zeros(-(-(count + 1) // _LANES) * _LANES)
         np.sqrt(values, out=padded[:count])
         padded.flags.writeable = False
-        return cls(cells, count, padded, padded.astype(np.float32))
+        return cls(cells, count, padded)
 
 
 def table_for_counting(active: npt.NDArray[np.intp], bins: int) -> CellTable:
