@@ -1,21 +1,25 @@
 """The executor of the tracker nodes: while messages flow, it waits for little else.
 
-For each callback, rclpy puts every entity of the node into a new wait set, and does it once more
-afterwards: a managed node has over a dozen services and two dozen event handlers. That takes longer
-than all that a tracker node does with an image besides tracking.
+For each callback, rclpy puts every entity of the node into a new wait set, and then into another,
+since a callback wakes its executor: a managed node has over a dozen services and two dozen event
+handlers. That takes longer than all that a tracker node does with an image besides tracking.
 """
 
 from __future__ import annotations
 
+import contextlib
 import time
+from collections.abc import Callable
 from typing import Any
 
 from rclpy.context import Context
 from rclpy.executors import ShutdownException, SingleThreadedExecutor, TimeoutException
+from rclpy.node import Node
 from rclpy.subscription import Subscription
+from rclpy.task import Task
 from rclpy.timer import Timer
 
-LOOK_EVERY = 0.1
+LOOK_EVERY = 0.2
 """Longest time in s that a service or an event waits while messages flow."""
 
 _ALWAYS = (Subscription, Timer)
@@ -25,7 +29,8 @@ class ImageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
     """A single thread that waits for messages and timers alone while messages keep coming.
 
     Every `LOOK_EVERY` s it serves whatever else is ready. When no message came for so long, it
-    waits for everything, as its base class always does.
+    waits for everything, as its base class always does. The callbacks of subscriptions have to be
+    plain functions, no coroutines.
 
     Parameters
     ----------
@@ -65,6 +70,28 @@ class ImageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
         except (ShutdownException, TimeoutException):
             return None
         task()
-        if task.exception() is not None:
+        if isinstance(task, Task) and task.exception() is not None:
             raise task.exception()
         return entity
+
+    def _make_handler(self, entity: Any, node: Node, take: Callable[[Any], Any]) -> Any:
+        # rclpy's task triggers the executor's guard condition, for other threads that there are
+        # none of here, and the next wait ends at once for it.
+        if not isinstance(entity, Subscription):
+            return super()._make_handler(entity, node, take)
+        entity._executor_event = True
+        return lambda: _handle(entity, take)
+
+
+def _handle(subscription: Subscription, take: Callable[[Any], Any]) -> None:
+    """Take a message and run its callback."""
+    subscription._executor_event = False
+    if not subscription.callback_group.beginning_execution(subscription):
+        return
+    try:
+        execute = take(subscription)
+        if execute is not None:
+            with contextlib.suppress(StopIteration):  # how a coroutine that never waits ends
+                execute().send(None)
+    finally:
+        subscription.callback_group.ending_execution(subscription)
