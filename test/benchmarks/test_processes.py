@@ -1,0 +1,34 @@
+"""What the nodes that are measured are started with."""
+
+import ast
+from pathlib import Path
+
+from benchmarks.bench.metered_node import METER
+from benchmarks.bench.processes import ALLOCATOR, StepMeter, tracker_words
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_nodes_have_the_allocator_settings_of_the_launch_files():
+    tree = ast.parse((ROOT / "launch" / "tracker.launch.py").read_text())
+    found = [
+        ast.literal_eval(node.value)
+        for node in tree.body
+        if isinstance(node, ast.Assign) and node.targets[0].id == "ALLOCATOR"
+    ]
+    assert found == [ALLOCATOR]
+
+
+def test_a_metered_node_gets_target_image_and_parameters():
+    meter = StepMeter()
+    words = tracker_words("pf", "/camera", meter, queue_depth=10, publish__box=False)
+    assert words[:4] == ["-m", "benchmarks.bench.metered_node", meter.path, "pf"]
+    assert {"target.x:=20.0", "target.width:=40.0", "queue_depth:=10"} <= set(words)
+    assert {"publish.box:=False", "image:=/camera"} <= set(words)
+
+
+def test_the_meter_reads_what_a_node_writes():
+    meter = StepMeter()
+    assert meter.cpu_seconds == 0
+    Path(meter.path).write_bytes(METER.pack(1.5, 3))
+    assert meter.cpu_seconds == 1.5
