@@ -31,7 +31,8 @@ _KERNELS = """## Windows measured at once
 The naive peer takes one crop, one `cv2.calcHist` of 8x8x8 bins (or P2's three features in OpenCV
 and numpy) and one coefficient for each particle. The particles are spread around the vehicle by
 8 px, and every call sees another frame and another cloud. `kernel` is the route with numba,
-`kernel-opencv` the one without; `1080p-over-vga` compares the two image sizes with each other.
+`kernel-opencv` the one without; `1080p-over-vga` compares the two image sizes with each other, and
+`map512` the similarities of all pixels of an image by the two routes.
 """
 _STEPS = f"""## A frame's whole step
 
@@ -84,6 +85,7 @@ def page(results: Results) -> str:
         _cases(results, "cost/"),
         _NODES,
         _cases(results, "node/", "startup/"),
+        _numba_share(results),
         _deliveries(results),
         _memory(results),
     ]
@@ -138,6 +140,14 @@ def _steps(results: Results) -> str:
         rows.append((f"{peer} itself", f"{times[peer]:.4g}", *[""] * len(peers), share))
     head = ("step", "ms", *(f"over {peer}" for peer in peers), "on the vehicle")
     return table(head, rows)
+
+
+def _numba_share(results: Results) -> str:
+    case = results.case("startup/apf/numba")
+    if case is None:
+        return ""
+    share = case.ours_ms - case.peer_ms
+    return f"Of a warm start's {case.ours_ms:.0f} ms, numba and its kernels take {share:.0f} ms.\n"
 
 
 def _deliveries(results: Results) -> str:

@@ -12,7 +12,7 @@ from vehicle_pf_tracker.features.glcm import Cooccurrence
 from vehicle_pf_tracker.features.gradients import GradientDirections
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.kernels.choice import load_kernels
-from vehicle_pf_tracker.features.kernels.interface import Kernels
+from vehicle_pf_tracker.features.kernels.interface import Kernels, SimilarityMap
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
 from vehicle_pf_tracker.features.similarity import Array
@@ -32,6 +32,10 @@ class Route(NamedTuple):
     ) -> Array:
         """Similarity of the 512-bin histograms, shape (N,)."""
         return self.kernels.similarity(JointColour(3), frame, positions, window, reference)
+
+    def map(self, frame: Frame, window: Window, reference: Reference) -> SimilarityMap:
+        """Similarity of the windows around all pixels, shape (H, W)."""
+        return self.kernels.similarity_map(JointColour(3), frame, window, reference)
 
     def three(
         self, frame: Frame, positions: Positions, window: Window, references: list[Reference]

@@ -18,6 +18,7 @@ def results():
             Case("step/apf/kcf", 0.5, 1.5, 3.0, 0.2),
             Case("node/apf/without_step", 1.2, 1.0, 0.833, 0.02),
             Case("startup/apf/warm", 900.0, 200.0, 0.222, 0.02),
+            Case("startup/apf/numba", 900.0, 420.0, 0.467, 0.02),
         ],
         memory=[MemoryCase("memory/node/apf", 240.0, 76.0)],
         deliveries=[Delivery("fleet/apf/8x640x480", 8, 15.0, 3600, 2, 1.9)],

@@ -43,6 +43,10 @@ def test_steps_are_a_line_for_each_tracker(text):
     assert line(text, "| kcf itself |") == "| kcf itself | 1.5 |  |  | 50 % |"
 
 
+def test_the_share_of_numba_is_told(text):
+    assert "Of a warm start's 900 ms, numba and its kernels take 480 ms." in text
+
+
 def test_environment_and_commands_are_told(text):
     assert "| load average | 0.1 |" in text
     assert "\n    python -m benchmarks.bench\n" in text
