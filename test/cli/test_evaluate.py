@@ -4,6 +4,8 @@ import pytest
 from small_recordings import frame_folder, record
 
 from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.evaluation.grid.tracking import run_cell
+from vehicle_pf_tracker.evaluation.processes import Turn
 
 
 @pytest.fixture
@@ -12,6 +14,19 @@ def bags(tmp_path):
     for name in ("one", "two"):
         record(tmp_path / "bags" / name)
     return tmp_path / "bags"
+
+
+def in_this_process(cells):
+    for cell in cells:
+        yield Turn((cell, run_cell(cell)), ())
+
+
+@pytest.fixture(autouse=True)
+def _quick(request, monkeypatch):
+    """Start no processes, but in the test that is about them."""
+    if request.function is not test_a_folder_of_recordings_is_evaluated:
+        name = "vehicle_pf_tracker.cli.evaluate.on_this_machine"
+        monkeypatch.setattr(name, lambda workers: in_this_process)
 
 
 def evaluate(out, *words):

@@ -14,11 +14,13 @@ from vehicle_pf_tracker.cli.work_progress import telling
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 from vehicle_pf_tracker.evaluation.grid.locations import find_recordings
 from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
-from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
+from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe
 from vehicle_pf_tracker.evaluation.grid.summary import SystemSummary, summarise, table
+from vehicle_pf_tracker.evaluation.grid.timing import time_systems
 
 SEEDS = 5
+TIMING_FRAMES = 200
 _WIDE = 200
 
 
@@ -43,6 +45,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
         help="processes; results do not depend on it (default: one per processor)",
     )  # fmt: skip
+    add(
+        "--scheduler", metavar="URL",
+        help="run on the Dask cluster of this scheduler, as tcp://host:8786; the workers read the "
+        "recordings at the same paths or URLs",
+    )  # fmt: skip
     add("--topic", help="the image topic, where recordings have several")
     add(
         "--max-diff", type=float, default=MAX_DIFF, metavar="S",
@@ -50,7 +57,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     add(
         "--max-rmse", type=float, metavar="PX",
-        help="end with status 1 if a system's RMSE, the mean over its runs, is larger",
+        help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
+    )  # fmt: skip
+    add(
+        "--timing", action="store_true",
+        help="then measure the speed of all systems, one after the other; let nothing run beside",
+    )  # fmt: skip
+    add(
+        "--timing-frames", type=positive, default=TIMING_FRAMES, metavar="N",
+        help="frames of each recording to measure it on (default: %(default)s)",
     )  # fmt: skip
     report.add_report_options(parser)
     robust = parser.add_argument_group("robustness, beside the grid")
@@ -73,10 +88,13 @@ def run(args: argparse.Namespace) -> int:
     plan = _plan(args)
     try:
         with telling("evaluate") as on_progress:
-            complete(plan, args.output, on_this_machine(args.workers), on_progress)
+            complete(plan, args.output, _runner(args), on_progress)
     except KeyboardInterrupt:
         tell_notices(["interrupted; the same command goes on where this one stopped"])
         raise
+    if args.timing:
+        with telling("timing") as on_progress:
+            time_systems(plan, args.output, args.timing_frames, on_progress)
     summaries = summarise(plan, args.output)
     _show(summaries)
     report.write(args.output, args)
@@ -95,6 +113,14 @@ def _plan(args: argparse.Namespace) -> Plan:
         args.max_diff,
         Robustness(args.shifted_starts, args.start_frames, args.restarts),
     )
+
+
+def _runner(args: argparse.Namespace) -> Runner:
+    if args.scheduler is None:
+        return on_this_machine(args.workers)
+    from vehicle_pf_tracker.evaluation.grid.cluster import on_cluster
+
+    return on_cluster(args.scheduler)
 
 
 def _show(summaries: Sequence[SystemSummary]) -> None:

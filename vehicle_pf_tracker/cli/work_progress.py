@@ -15,6 +15,7 @@ from rich.progress import Progress as Bar
 from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
 
 _LINE_SECONDS = 5.0
+_SHOWN = 4
 
 
 @contextmanager
@@ -47,7 +48,7 @@ def telling(
         task = bar.add_task(name, total=None, more="")
 
         def show(progress: Progress) -> None:
-            more = f"{_left(progress, clock() - began)}  {', '.join(progress.running)}"
+            more = f"{_left(progress, clock() - began)}  {_running(progress)}"
             bar.update(task, completed=progress.done, total=progress.total, more=more)
 
         yield show
@@ -67,12 +68,18 @@ class _Lines:
         if now - self._said < _LINE_SECONDS:
             return
         self._said = now
-        running = f"; running {', '.join(progress.running)}" if progress.running else ""
+        running = f"; running {_running(progress)}" if progress.running else ""
         left = _left(progress, now - self._began)
         print(
             f"{self._name}: {progress.done} of {progress.total} runs done, {left}{running}",
             file=self._stream, flush=True,
         )  # fmt: skip
+
+
+def _running(progress: Progress) -> str:
+    beyond = len(progress.running) - _SHOWN
+    more = [f"{beyond} more"] if beyond > 0 else []
+    return ", ".join([*progress.running[:_SHOWN], *more])
 
 
 def _left(progress: Progress, seconds: float) -> str:

@@ -12,6 +12,9 @@ from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem
 from vehicle_pf_tracker.evaluation.identity import result_key, variant_modules
 from vehicle_pf_tracker.trackers.registry import find_variant
 
+BESIDE = "robustness"
+"""Folder of what is run beside the grid."""
+
 _PACKAGE = "vehicle_pf_tracker"
 _SHARED = frozenset({f"{_PACKAGE}.recordings.reader"})
 _OURS = frozenset({f"{_PACKAGE}.evaluation.offline"})
@@ -65,7 +68,7 @@ class GridCell:
         names = self.source.name, self.system.label, self.seed
         if not self.start.kind:
             return cell_folder(evaluation, *names)
-        below = cell_folder(evaluation / "robustness" / self.start.kind, *names, cells="")
+        below = cell_folder(evaluation / BESIDE / self.start.kind, *names, cells="")
         return below / safe_name(self.start.name) if self.start.name else below
 
     def _modules(self) -> frozenset[str]:

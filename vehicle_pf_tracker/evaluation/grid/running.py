@@ -44,7 +44,9 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
     """
     store = CellStore(folder)
     plan.write(folder)
-    missing = [cell for cell in plan.cells() if not store.has(cell)]
+    cells = plan.cells()
+    store.drop_others(cells)
+    missing = [cell for cell in cells if not store.has(cell)]
     done = 0
     for turn in runner(missing):
         if turn.ended is not None:

@@ -11,7 +11,7 @@ from typing import Any
 
 from vehicle_pf_tracker.evaluation.association import associate
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
-from vehicle_pf_tracker.evaluation.grid.locations import at_hand
+from vehicle_pf_tracker.evaluation.grid.locations import at_hand, is_url
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
@@ -151,7 +151,8 @@ def _describe(
         )
     width, height = _size(recording)
     digest = _digest(path)
-    source = Source(name, location, recording.image_topic, len(stamps), width, height, digest)
+    found = location if is_url(location) else str(Path(location).absolute())
+    source = Source(name, found, recording.image_topic, len(stamps), width, height, digest)
     return source, {index + 1: truth[place] for index, place in pairs.items()}
 
 
@@ -185,6 +186,6 @@ def _names(locations: Sequence[str]) -> Mapping[str, str]:
 
 
 def _name(location: str, parts: int) -> str:
-    path = PurePosixPath(location if "://" in location else Path(location).absolute().as_posix())
+    path = PurePosixPath(location if is_url(location) else Path(location).absolute().as_posix())
     words = [*path.parts[-parts:-1], path.name.removesuffix(".mcap")]
     return safe_name("-".join(words))

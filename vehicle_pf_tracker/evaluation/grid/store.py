@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import shutil
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
-from vehicle_pf_tracker.evaluation.grid.cells import GridCell
+from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, GridCell
 from vehicle_pf_tracker.evaluation.grid.tracking import Outcome
 from vehicle_pf_tracker.evaluation.identity import code_digest
 from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, write_json
@@ -54,6 +55,15 @@ class CellStore:
         except InputError:
             return False
         return run.get("key") == cell.key() and run.get("scored_by") == self._scoring
+
+    def drop_others(self, cells: Iterable[GridCell]) -> None:
+        """Remove what is beside the grid and not among `cells`: the report shows all it finds."""
+        wanted = {cell.folder(self._folder) for cell in cells}
+        with output_errors(self._folder):
+            for name in (METRICS, FAILED):
+                for path in list((self._folder / BESIDE).glob(f"**/{name}")):
+                    if path.parent not in wanted:
+                        shutil.rmtree(path.parent)
 
     def add(self, cell: GridCell, outcome: Outcome, command: list[str]) -> None:
         """Keep what came out of a cell, in place of what an earlier run of it left."""

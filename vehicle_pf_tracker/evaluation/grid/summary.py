@@ -27,24 +27,33 @@ class SystemSummary:
     ----------
     label : str
         Of the system.
-    metrics : tuple of mapping
-        `metrics.json` of every cell that ran.
+    metrics : mapping of str to list of mapping
+        `metrics.json` of every cell that ran, by recording.
     reasons : tuple of str
         Why others did not.
     """
 
     label: str
-    metrics: tuple[Document, ...]
+    metrics: Mapping[str, Sequence[Document]]
     reasons: tuple[str, ...]
 
     def mean(self, name: str) -> float | None:
-        """Mean of a metric over the cells that have it; None where none does."""
-        values = [m[name] for m in self.metrics if m[name] is not None]
-        return statistics.fmean(values) if values else None
+        """Mean over the recordings of the mean over their runs; None where there is none."""
+        means = []
+        for runs in self.metrics.values():
+            known = [run[name] for run in runs if run[name] is not None]
+            if known:
+                means.append(statistics.fmean(known))
+        return statistics.fmean(means) if means else None
+
+    @property
+    def runs(self) -> list[Document]:
+        """All that ran."""
+        return [run for runs in self.metrics.values() for run in runs]
 
     def recovered(self) -> tuple[int, int]:
         """Total occlusions recovered from, and judged."""
-        judged = [r for m in self.metrics for r in m["recovered"] if r is not None]
+        judged = [r for run in self.runs for r in run["recovered"] if r is not None]
         return sum(judged), len(judged)
 
 
@@ -58,14 +67,19 @@ def summarise(plan: Plan, folder: Path) -> list[SystemSummary]:
 
 
 def _summary(label: str, cells: Sequence[GridCell], folder: Path) -> SystemSummary:
-    folders = [cell.folder(folder) for cell in cells]
-    metrics = [read_document(path / METRICS) for path in folders if (path / METRICS).is_file()]
-    failed = [read_document(path / FAILED) for path in folders if (path / FAILED).is_file()]
-    return SystemSummary(label, tuple(metrics), tuple(str(f.get("reason")) for f in failed))
+    metrics: dict[str, list[Document]] = {}
+    reasons = []
+    for cell in cells:
+        path = cell.folder(folder)
+        if (path / METRICS).is_file():
+            metrics.setdefault(cell.source.name, []).append(read_document(path / METRICS))
+        elif (path / FAILED).is_file():
+            reasons.append(str(read_document(path / FAILED).get("reason")))
+    return SystemSummary(label, metrics, tuple(reasons))
 
 
 def table(summaries: Sequence[SystemSummary]) -> Table:
-    """For a terminal: means over recordings and seeds, the best system first."""
+    """For a terminal: means over seeds and then recordings, the best system first."""
     columns: dict[str, Callable[[SystemSummary], str]] = {
         "RMSE, px": lambda s: _number(s.mean("rmse_px"), 1),
         "median error, px": lambda s: _number(s.mean("median_px"), 1),
@@ -73,7 +87,7 @@ def table(summaries: Sequence[SystemSummary]) -> Table:
         "success AUC": lambda s: _number(s.mean("success_auc"), 3),
         "recovered": lambda s: "{} of {}".format(*s.recovered()),
         "failures": lambda s: _number(s.mean("failures"), 1),
-        "runs": lambda s: str(len(s.metrics)) + (f" ({len(s.reasons)} failed)" * bool(s.reasons)),
+        "runs": lambda s: str(len(s.runs)) + (f" ({len(s.reasons)} failed)" * bool(s.reasons)),
     }
     made = Table("")
     for name in columns:

@@ -1,0 +1,81 @@
+"""The grid on a cluster of this machine, of two worker processes."""
+
+import os
+import signal
+
+import pytest
+from grid_samples import here, make_plan, results, silent, system, write_recordings
+
+from vehicle_pf_tracker.evaluation.grid.cluster import on_cluster, run_checked
+from vehicle_pf_tracker.evaluation.grid.running import complete
+from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem
+from vehicle_pf_tracker.features.errors import InputError
+
+distributed = pytest.importorskip("distributed")
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
+    ) as made:
+        yield made
+
+
+@pytest.fixture
+def plan(tmp_path):
+    paths = [f"file://{path}" for path in write_recordings(tmp_path / "recordings")]
+    return make_plan(paths, seeds=range(8))
+
+
+def test_a_worker_killed_halfway_costs_nothing_and_gives_nothing_twice(cluster, plan, tmp_path):
+    with distributed.Client(cluster.scheduler_address, set_as_default=False) as client:
+        pids = list(client.run(os.getpid).values())
+    ended = []
+
+    def kill_one(cells):
+        for turn in on_cluster(cluster.scheduler_address)(cells):
+            if turn.ended is not None:
+                ended.append(turn.ended[0])
+                if len(ended) == len(cells) // 2:
+                    os.kill(pids[0], signal.SIGKILL)
+            yield turn
+
+    complete(plan, tmp_path / "cluster", kill_one, silent)
+    assert len(ended) == len(set(ended)) == len(plan.cells()) == 18
+    complete(plan, tmp_path / "here", here, silent)
+    assert results(tmp_path / "cluster") == results(tmp_path / "here")
+    assert complete(plan, tmp_path / "cluster", on_cluster("tcp://not.asked:1"), silent) == 0
+
+
+def test_what_cannot_run_there_says_why(cluster, tmp_path):
+    paths = write_recordings(tmp_path / "recordings")[:1]
+    plan = make_plan(paths, [PeerSystem("mil", str(tmp_path / "none"))])
+    reasons = []
+
+    def listening(cells):
+        for turn in on_cluster(cluster.scheduler_address)(cells):
+            reasons.extend([turn.ended[1].reason] if turn.ended else [])
+            yield turn
+
+    complete(plan, tmp_path / "out", listening, silent)
+    assert ["there is no interpreter" in reason for reason in reasons] == [True]
+
+
+def test_a_worker_with_other_versions_refuses(tmp_path):
+    (cell,) = make_plan(write_recordings(tmp_path)[:1], [system("ms")]).cells()
+    assert "other versions" in run_checked(cell, "0").reason
+    assert run_checked(cell, cell.key()).metrics is not None
+
+
+def test_a_scheduler_that_does_not_answer_is_named(plan, tmp_path):
+    with pytest.raises(InputError, match="cannot reach a Dask scheduler at tcp:"):
+        complete(plan, tmp_path, on_cluster("tcp://127.0.0.1:1", seconds=0.5), silent)
+
+
+def test_a_cluster_without_workers_is_named(plan, tmp_path):
+    with (
+        distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=":0") as empty,
+        pytest.raises(InputError, match="has no workers; start `dask worker`"),
+    ):
+        complete(plan, tmp_path, on_cluster(empty.scheduler_address), silent)

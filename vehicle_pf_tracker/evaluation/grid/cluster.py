@@ -1,0 +1,98 @@
+"""The grid on a Dask cluster, whose workers have this package and can read the recordings."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell
+from vehicle_pf_tracker.evaluation.grid.running import Runner
+from vehicle_pf_tracker.evaluation.grid.tracking import Outcome, run_cell
+from vehicle_pf_tracker.evaluation.processes import Turn
+from vehicle_pf_tracker.features.errors import InputError
+
+
+def on_cluster(address: str, seconds: float = 10.0) -> Runner:
+    """Return what runs cells on the cluster of a scheduler.
+
+    A cell whose worker dies is run again on another one. Each result is given once.
+
+    Parameters
+    ----------
+    address : str
+        Of the scheduler, as ``tcp://host:8786``.
+    seconds : float
+        How long to wait for it.
+
+    Raises
+    ------
+    InputError
+        From the runner, if the scheduler cannot be reached or has no worker.
+    """
+    return partial(_run, address, seconds)
+
+
+def run_checked(cell: GridCell, key: str) -> Outcome:
+    """Run a cell on a worker whose code and libraries are those that it was planned with."""
+    if cell.key() == key:
+        return run_cell(cell)
+    return Outcome(
+        reason=f"the worker on {socket.gethostname()} has other code or other versions of Python, "
+        "NumPy, OpenCV or numba than the machine that evaluates; install the same everywhere"
+    )
+
+
+def _run(
+    address: str, seconds: float, cells: Sequence[GridCell]
+) -> Iterator[Turn[GridCell, Outcome]]:
+    if not cells:
+        return
+    client = _connected(address, seconds)
+    try:
+        yield from _results(client, cells)
+    finally:
+        client.close()
+
+
+def _connected(address: str, seconds: float) -> Any:
+    try:
+        from distributed import Client  # noqa: PLC0415 - an extra
+    except ModuleNotFoundError:
+        raise InputError(
+            "a Dask cluster needs the extra [cluster]: `pip install 'vehicle_pf_tracker[cluster]'`"
+        ) from None
+    try:
+        client = Client(address, timeout=seconds, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:  # a TimeoutError is an OSError
+        raise InputError(f"cannot reach a Dask scheduler at {address}") from error
+    if not client.scheduler_info(n_workers=-1)["workers"]:
+        client.close()
+        raise InputError(f"the Dask scheduler at {address} has no workers; start `dask worker`")
+    return client
+
+
+def _results(client: Any, cells: Sequence[GridCell]) -> Iterator[Turn[GridCell, Outcome]]:
+    from distributed import as_completed  # noqa: PLC0415 - an extra
+
+    by_key = {f"{cell.label}-{cell.key()}".replace(" ", "-"): cell for cell in cells}
+    futures = [client.submit(run_checked, cell, cell.key(), key=k) for k, cell in by_key.items()]
+    yield Turn(None, _running(client, by_key))
+    waiting = as_completed(futures, loop=client.loop)
+    futures.clear()  # so that each result can go once it is here
+    for future in waiting:
+        yield Turn((by_key[future.key], _outcome(future)), _running(client, by_key))
+
+
+def _outcome(future: Any) -> Outcome:
+    error = future.exception()
+    if error is None:
+        outcome: Outcome = future.result()
+        return outcome
+    return Outcome(reason=f"the cluster gave it up: {' '.join(str(error).split())}")
+
+
+def _running(client: Any, by_key: Mapping[str, GridCell]) -> tuple[GridCell, ...]:
+    keys = [key for processed in client.processing().values() for key in processed]
+    return tuple(by_key[key] for key in keys if key in by_key)

@@ -1,0 +1,155 @@
+"""The speed of all systems, in a serial pass of its own.
+
+Each frame is given to all systems before the next one is, so that whatever slows the machine down
+for a while slows all of them alike, and nothing of ours runs beside. What counts is the processor
+time of the thread that tracks; decoding and the way to a peer's process are left out.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import platform
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import Any, Protocol
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.evaluation.association import max_diff_ns
+from vehicle_pf_tracker.evaluation.evaluation_folder import TIMINGS
+from vehicle_pf_tracker.evaluation.grid.plan import Plan
+from vehicle_pf_tracker.evaluation.grid.sources import Footage, Source, footage
+from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem
+from vehicle_pf_tracker.evaluation.offline import with_target
+from vehicle_pf_tracker.evaluation.output_files import write_json
+from vehicle_pf_tracker.evaluation.peers.client import Peer
+from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
+from vehicle_pf_tracker.evaluation.run_info import versions
+from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.trackers.registry import find_variant
+from vehicle_pf_tracker.trackers.session import Session
+
+WARM_UP = 2
+"""First steps that are left out: they find caches cold."""
+
+
+def time_systems(plan: Plan, folder: Path, frames: int, on_progress: OnProgress) -> None:
+    """Measure every step of the first seed's run, and write `timings.json`.
+
+    Parameters
+    ----------
+    plan : Plan
+        Says what to measure on what.
+    folder : Path
+        Of the evaluation.
+    frames : int
+        At most so many of each recording, from the first true box on.
+    on_progress : callable
+        Is told after every recording.
+
+    Raises
+    ------
+    InputError
+        If a recording cannot be read, or the file not be written.
+    """
+    cv2.setNumThreads(1)
+    cells: list[dict[str, Any]] = []
+    for done, source in enumerate(plan.recordings):
+        on_progress(Progress(done, len(plan.recordings), (source.name,)))
+        times = _time_on(source, plan, frames)
+        cells += [_cell(source, system, times.get(system.label, [])) for system in plan.systems]
+    write_json(
+        folder / TIMINGS,
+        {
+            "clock": "processor time of the tracking thread, ms per step",
+            "frames": frames,
+            "cells": cells,
+            "versions": versions(),
+            "processor": [platform.processor() or platform.machine(), os.cpu_count()],
+        },
+    )
+
+
+def _cell(source: Source, system: System, steps: Sequence[float]) -> dict[str, Any]:
+    kept = steps[WARM_UP:]
+    median, late = map(float, np.quantile(kept, (0.5, 0.95))) if kept else (None, None)
+    return {
+        "recording": source.name,
+        "system": system.label,
+        "steps": len(kept),
+        "step_ms_p50": median,
+        "step_ms_p95": late,
+    }
+
+
+def _time_on(source: Source, plan: Plan, count: int) -> dict[str, list[float]]:
+    """Return the times (ms) of the steps of all systems that can run."""
+    at_hand = footage(source)
+    stamped = _frames(at_hand, plan.max_diff)
+    first = next(stamped)
+    box = at_hand.truth[0].box
+    with ExitStack() as stack:
+        running: dict[str, _Timed] = {}
+        for system in plan.systems:
+            with suppress(InputError):  # the grid says why it cannot run
+                running[system.label] = _start(system, plan.seeds[0], box, first, stack)
+        times: dict[str, list[float]] = {label: [] for label in running}
+        for shown in itertools.islice(stamped, count - 1):
+            for label, timed in running.items():
+                with suppress(InputError):  # a frame that is refused takes no time
+                    times[label].append(1e3 * timed.step(*shown))
+    return times
+
+
+def _frames(at_hand: Footage, max_diff: float) -> Iterator[tuple[int, Frame]]:
+    """Give the frames that can be read, from that of the first truth on."""
+    limit = max_diff_ns(max_diff)
+    first = at_hand.truth[0].stamp_ns
+    for stamp, frame in at_hand.frames():
+        if frame is not None and stamp >= first - limit:
+            yield stamp, frame
+
+
+class _Timed(Protocol):
+    def step(self, stamp_ns: int, frame: Frame) -> float:
+        """Return the processor time of the step in s."""
+        ...
+
+
+class _TimedVariant:
+    def __init__(self, system: VariantSystem, seed: int, box: Box) -> None:
+        settings = with_target(system.session_parameters(), box)
+        variant = find_variant(system.variant)
+        self._session = Session(variant, system.tracker_parameters(seed), settings)
+
+    def step(self, stamp_ns: int, frame: Frame) -> float:
+        began = time.thread_time()
+        self._session.feed(frame, stamp_ns)
+        return time.thread_time() - began
+
+
+class _TimedPeer:
+    def __init__(self, peer: Peer) -> None:
+        self._peer = peer
+
+    def step(self, stamp_ns: int, frame: Frame) -> float:
+        return self._peer.step(frame).seconds
+
+
+def _start(
+    system: System, seed: int, box: Box, first: tuple[int, Frame], stack: ExitStack
+) -> _Timed:
+    if isinstance(system, VariantSystem):
+        timed = _TimedVariant(system, seed, box)
+        timed.step(*first)
+        return timed
+    python = Path(system.python) if system.python else None
+    peer = stack.enter_context(Peer(system.peer, python, system.model_files()))
+    peer.start(first[1], box)
+    return _TimedPeer(peer)
