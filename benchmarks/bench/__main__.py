@@ -54,7 +54,15 @@ def _measure(
     results.memory += memory.measure(wanted)
     if find_spec("rclpy") is None:
         print("no rclpy here: the nodes are left out", file=sys.stderr)
-        return
+    else:
+        _measure_nodes(results, wanted, effort)
+    for one in results.memory:
+        print(f"{one.name:48} {one.ours_mb:10.1f} MB {one.peer_mb:10.1f} MB")
+    for delivery in results.deliveries:
+        print(f"{delivery.name:48} {delivery.lost} of {delivery.sent} lost")
+
+
+def _measure_nodes(results: Results, wanted: Callable[[str], bool], effort: Effort) -> None:
     from benchmarks.bench import nodes, startup  # noqa: PLC0415 - they need ROS
 
     results.cases += _told(startup.measure(wanted, effort))
@@ -62,10 +70,6 @@ def _measure(
     results.cases += _told(of_nodes)
     results.memory += resident
     results.deliveries += nodes.fleet(wanted, effort)
-    for one in results.memory:
-        print(f"{one.name:48} {one.ours_mb:10.1f} MB {one.peer_mb:10.1f} MB")
-    for delivery in results.deliveries:
-        print(f"{delivery.name:48} {delivery.lost} of {delivery.sent} lost")
 
 
 def _told(cases: Iterable[Case]) -> Iterator[Case]:

@@ -17,7 +17,7 @@ from sensor_msgs.msg import Image
 from vehicle_pf_tracker.ros.allocator import keep_image_memory
 
 
-class FloorNode(Node):
+class FloorNode(Node):  # type: ignore[misc]
     """Answers every image with its header."""
 
     def __init__(self) -> None:

@@ -32,7 +32,7 @@ def meter_steps(path: Path) -> None:
         shared[:] = METER.pack(seconds + time.thread_time() - before, steps + 1)
         return estimate
 
-    BaseTracker.step = step  # type: ignore[method-assign]
+    BaseTracker.step = step  # type: ignore[method-assign, assignment]
 
 
 if __name__ == "__main__":
