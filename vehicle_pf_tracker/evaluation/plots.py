@@ -58,8 +58,27 @@ def error_figure(runs: Mapping[str, Scores], title: str = "") -> Figure:
         Stands over the figure.
     """
     figure = Figure(figsize=(9, 4), layout="constrained")
-    _draw_errors(figure.add_subplot(), runs, title)
+    axes = figure.add_subplot()
+    draw_errors(axes, runs, title)
+    _add_legend(axes)
     return figure
+
+
+def draw_errors(axes: Axes, runs: Mapping[str, Scores], title: str) -> None:
+    """Draw the error over time, with the occlusions shaded and without a legend."""
+    for scores in itertools.islice(runs.values(), 1):
+        shade_occlusions(axes, scores)
+    for (name, scores), style in zip(runs.items(), itertools.cycle(STYLES), strict=False):
+        drawn = [(f.row.frame, f.error) for f in scores.counted]
+        errors = [float("nan") if e is None else max(e, _LEAST_ERROR) for _, e in drawn]
+        frames = [number for number, _ in drawn]
+        axes.plot(frames, errors, color=style.colour, linestyle=style.line, lw=1.6, label=name)
+    axes.axhline(CLOSE_PX, color="0.35", lw=0.8, ls=(0, (1, 2)), label=f"{CLOSE_PX:g} px")
+    axes.set(xlabel="frame", ylabel="error of the centre, px", yscale="log", title=title)
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.margins(x=0.01)
+    axes.grid(axis="y", color="0.88", lw=0.6)
+    axes.set_axisbelow(True)
 
 
 def path_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Figure:
@@ -87,7 +106,9 @@ def overview_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -
     ratios = (9 * height / width + 0.8, 3.7)
     rows = figure.subfigures(2, 1, squeeze=False, height_ratios=ratios)[:, 0]
     _draw_paths(rows[0].add_subplot(), frame, runs, title)
-    _draw_errors(rows[1].add_subplot(), runs, "")
+    axes = rows[1].add_subplot()
+    draw_errors(axes, runs, "")
+    _add_legend(axes)
     return figure
 
 
@@ -104,23 +125,6 @@ def save(figure: Figure, path: Path) -> None:
     metadata = {"Date": None} if path.suffix == ".svg" else {}
     with replacing(path) as partial, rc_context({"svg.hashsalt": "vehicle_pf_tracker"}):
         figure.savefig(partial, dpi=_DPI, metadata=metadata)
-
-
-def _draw_errors(axes: Axes, runs: Mapping[str, Scores], title: str) -> None:
-    for scores in itertools.islice(runs.values(), 1):
-        shade_occlusions(axes, scores)
-    for (name, scores), style in zip(runs.items(), itertools.cycle(STYLES), strict=False):
-        drawn = [(f.row.frame, f.error) for f in scores.counted]
-        errors = [float("nan") if e is None else max(e, _LEAST_ERROR) for _, e in drawn]
-        frames = [number for number, _ in drawn]
-        axes.plot(frames, errors, color=style.colour, linestyle=style.line, lw=1.6, label=name)
-    axes.axhline(CLOSE_PX, color="0.35", lw=0.8, ls=(0, (1, 2)), label=f"{CLOSE_PX:g} px")
-    axes.set(xlabel="frame", ylabel="error of the centre, px", yscale="log", title=title)
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.margins(x=0.01)
-    axes.grid(axis="y", color="0.88", lw=0.6)
-    axes.set_axisbelow(True)
-    _add_legend(axes)
 
 
 def _draw_paths(axes: Axes, frame: Frame, runs: Mapping[str, Scores], title: str) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import functools
+
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
-from vehicle_pf_tracker.evaluation.experiments.cells import Result, RunCell
+from vehicle_pf_tracker.evaluation.experiments.cells import Result, RunCell, SceneChoice
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
+from vehicle_pf_tracker.recordings.truth import Truth
 
 PATH = ("x", "y", "width", "height", "mode")
 """What a cell has to record for `scores`."""
@@ -20,7 +23,7 @@ def scores(cell: RunCell, result: Result) -> Scores:
     result : Result
         What came out of it.
     """
-    truths = cell.scene.truths()
+    truths = _truths(cell.scene)
     columns = (result["trace"][name] for name in PATH)
     rows = [
         EstimateRow(number, truth.stamp_ns, x, y, width, height, mode, None, None, None)
@@ -29,3 +32,9 @@ def scores(cell: RunCell, result: Result) -> Scores:
         )
     ]
     return score_frames(rows, truths)
+
+
+@functools.lru_cache(maxsize=512)
+def _truths(scene: SceneChoice) -> list[Truth]:
+    """Give the truth, which many trackers and figures share and which takes time to make."""
+    return scene.truths()
