@@ -15,12 +15,26 @@ from vehicle_pf_tracker.evaluation.experiments import (
     apf_fig7,
     apf_table2,
     apf_timing,
+    mfpf_errors,
+    mfpf_frames,
+    mfpf_histograms,
+    mfpf_similarities,
+    mfpf_table1,
+    mfpf_table2,
+    mfpf_table3,
+    resampling_cost,
+    resampling_fig4,
+    resampling_fig5,
+    resampling_frames,
 )
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment
 from vehicle_pf_tracker.features.errors import InputError
 
 _MODULES = (
     apf_fig1, apf_fig2, apf_fig3, apf_fig4, apf_fig5, apf_fig6, apf_fig7, apf_table2, apf_timing,
+    mfpf_table1, mfpf_table2, mfpf_table3, mfpf_similarities, mfpf_errors, mfpf_frames,
+    mfpf_histograms,
+    resampling_fig4, resampling_fig5, resampling_frames, resampling_cost,
 )  # fmt: skip
 
 EXPERIMENTS: Mapping[str, Experiment] = MappingProxyType(

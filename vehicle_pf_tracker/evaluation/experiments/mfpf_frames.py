@@ -36,8 +36,8 @@ def report(results: Results, size: Size) -> Report:
         Verdict(
             (Claim("the six cases show what the paper's do", "section V, figures 4 to 14",
                    (_finding(results, size),)),),
-            f"{mfpf.setting(size)} The picture shows the first seed, in grey, cut to the rows "
-            "around the vehicle's path.",
+            f"{mfpf.setting(size)} The picture shows the first seed, in grey, cut to what "
+            "is around the true position; an arrow points to a filter that is elsewhere.",
         ),
     )  # fmt: skip
 

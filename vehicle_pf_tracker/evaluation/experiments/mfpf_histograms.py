@@ -13,7 +13,13 @@ from matplotlib.figure import Figure
 from vehicle_pf_tracker.evaluation.experiments.cells import Probe, Result, SceneChoice
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
-from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import FEATURES, OURS, PRINTED, READINGS
+from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import (
+    FEATURES,
+    MFPF,
+    OURS,
+    READINGS,
+    read_as,
+)
 from vehicle_pf_tracker.evaluation.experiments.numbers import mean_and_spread
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.features.frame import Frame
@@ -98,7 +104,7 @@ class _Histograms:
 
 def features(reading: str) -> dict[str, WindowFeature]:
     """Make the three features as `mfpf` has them under a reading."""
-    settings = MfpfParameters(as_printed=reading == PRINTED).effective()
+    settings: MfpfParameters = read_as(MFPF, reading).parameters(0).effective()
     return {
         "color": RgbMarginals(),
         "edge": edge_feature(settings.edges),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -27,11 +28,23 @@ MFPF = System.of("MFPF", "mfpf")
 SINGLES = (COLOR, EDGE, TEXTURE)
 FOUR = (*SINGLES, MFPF)
 
-OURS, PRINTED = "our reading", "as printed"
-READINGS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
-    {OURS: {}, PRINTED: {"as_printed": True}}
+OURS, DEFAULTS, PRINTED = "our reading", "defaults", "as printed"
+_STEADY: Mapping[str, Value] = MappingProxyType(
+    {
+        "dispersion.radius": 4.0,
+        "likelihood.sigma_v": 0.15,
+        "velocity_window": 25,
+        "confidence.best_share": 0.02,
+        "confidence.threshold": 0.8,
+        "reference_weight": 0.8,
+    }
 )
-"""Settings that every filter gets, by reading."""
+"""For a camera that stands still and vehicles that keep their speed, as in all six cases."""
+_EDGES: Mapping[str, Value] = MappingProxyType({"edges.threshold": 0.2, "edges.floor": 60.0})
+READINGS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
+    {OURS: _STEADY, DEFAULTS: {}, PRINTED: {"as_printed": True, "dispersion.radius": 4.0}}
+)
+"""Settings that every filter gets, by reading; the paper prints no radius, so it gets ours."""
 
 CASES = tuple(f"case{number}" for number in range(1, 7))
 QUICK_CASES = "case2", "case6"
@@ -44,11 +57,12 @@ LAST_FRAMES = 20
 
 
 def read_as(system: System, reading: str) -> System:
-    """Give the settings of `reading` to a filter, under its own name."""
-    if reading == OURS:
-        return system
-    changed = system.but(READINGS[reading])
-    return System(f"{system.label} as printed", changed.variant, changed.settings)
+    """Give the settings of `reading` to a filter, under a name of its own."""
+    settings = dict(READINGS[reading])
+    if reading == OURS and system.variant in ("mfpf", "sfpf_edge"):
+        settings |= _EDGES
+    label = system.label if reading == OURS else f"{system.label}, {reading}"
+    return replace(system.but(settings), label=label)
 
 
 def cases(size: Size) -> tuple[str, ...]:
@@ -106,7 +120,7 @@ def per_seed(
 
 def threshold(reading: str) -> float:
     """Return the share of its first average similarity below which a feature drops out."""
-    settings = MfpfParameters(as_printed=reading == PRINTED).effective()
+    settings: MfpfParameters = read_as(MFPF, reading).parameters(0).effective()
     return settings.confidence.threshold
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from statistics import median
 
 import numpy as np
@@ -71,17 +72,20 @@ def _cell(seed: int) -> TimingCell:
 
 
 def _figure(means: dict[str, list[float]]) -> Figure:
-    figure = Figure(figsize=(9, 4), layout="constrained")
+    figure = Figure(figsize=(10, 4.4), layout="constrained")
     axes = figure.add_subplot()
     places = np.arange(len(READINGS))
     looks = ("0.75", "//"), ("#0072B2", "")
-    for which, (name, (colour, hatch)) in enumerate(zip(("conventional", "adaptive"), looks, strict=True)):
+    for which, (name, (colour, hatch)) in enumerate(
+        zip(("conventional", "adaptive"), looks, strict=True)
+    ):
         found = [means[pair[which].label] for pair in READINGS.values()]
         at = places + (which - 0.5) * 0.4
-        axes.bar(at, [median(f) for f in found], 0.38, ec="black", label=name,
-                 color=colour, hatch=hatch)
+        axes.bar(
+            at, [median(f) for f in found], 0.38, ec="black", label=name, color=colour, hatch=hatch
+        )
         axes.vlines(at, [min(f) for f in found], [max(f) for f in found], color="black", lw=1.5)
-    axes.set_xticks(places, [name.replace(" told", "\ntold") for name in READINGS])
+    axes.set_xticks(places, [textwrap.fill(name, 14) for name in READINGS])
     axes.set(ylabel="processor time, ms per frame")
     axes.legend(frameon=False)
     return figure

@@ -80,7 +80,7 @@ def _figure(results: Results, size: Size) -> Figure:
         for row, scalar in enumerate(("resampling_passes", "resampled_particles")):
             ax = axes[row, column]
             shade_occlusions(ax, resampling.run_scores(results, CONVENTIONAL, size.seeds[0]))
-            for system, style in zip(pair, (STYLES[1], STYLES[0]), strict=True):
+            for system, style in zip(reversed(pair), (STYLES[0], STYLES[1]), strict=True):
                 _draw(ax, results, size, system, scalar, style)
         axes[0, column].set(title=reading)
         axes[1, column].set(xlabel="frame")

@@ -49,7 +49,8 @@ def report(results: Results, size: Size) -> Report:
                 ),
             ),
             f"{resampling.SETTING} {len(size.seeds)} seeds, judged in the middle frame of each "
-            "phase and in the last frame of all; the picture shows the first seed.",
+            "phase and in the last frame of all; the picture shows the first seed, cut "
+            "to what is around the true position; an arrow points to a filter that is elsewhere.",
         ),
     )
 

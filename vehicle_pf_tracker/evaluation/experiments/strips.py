@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 
 import cv2
@@ -10,14 +11,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.patheffects import Normal, Stroke
 
 from vehicle_pf_tracker.evaluation.experiments.cells import SceneChoice
-from vehicle_pf_tracker.evaluation.plots import OUTLINE, STYLES
+from vehicle_pf_tracker.evaluation.plots import STYLES, Style
 from vehicle_pf_tracker.evaluation.scores import Scores
+from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.frame import Frame
 
-_WIDTH = 320
-"""Columns of a picture in the figure, so that its file stays small."""
+_VIEW = 260, 150
+"""Width and height in px of what is shown around the true position."""
+_RIM = (Stroke(linewidth=3.6, foreground="black"), Normal())
 
 
 def telling_frames(scored: Scores, count: int) -> list[int]:
@@ -44,29 +48,25 @@ def telling_frames(scored: Scores, count: int) -> list[int]:
 
 def strip_figure(
     rows: Mapping[str, tuple[SceneChoice, Mapping[str, Scores], Sequence[int]]],
-    particles: Mapping[str, Mapping[int, Sequence[Sequence[float]]]] | None = None,
 ) -> Figure:
-    """Draw a row of frames for each entry, cut to the rows of the image that the boxes are in.
+    """Draw a row of frames for each entry, cut to what is around the true position.
+
+    A box that lies outside is told by an arrow of its colour that points to it.
 
     Parameters
     ----------
     rows : mapping of str to (SceneChoice, mapping of str to Scores, sequence of int)
         By the title of the row: the scene, the runs on it by name, and the frames to show.
-    particles : mapping, optional
-        By title and frame number: (x, y) of particles to be shown as dots.
     """
     columns = max(len(numbers) for _, _, numbers in rows.values())
-    figure = Figure(figsize=(11, 1.75 * len(rows) + 0.4), layout="constrained")
+    height = 11 / columns * _VIEW[1] / _VIEW[0] + 0.25
+    figure = Figure(figsize=(11, height * len(rows) + 0.4), layout="constrained")
     grid = figure.subplots(len(rows), columns, squeeze=False)
     for axes, (title, (choice, runs, numbers)) in zip(grid, rows.items(), strict=True):
         frames = _frames(choice, set(numbers))
-        span = _rows_of_interest(runs, next(iter(frames.values())).shape[0])
         for ax, number in zip(axes, numbers, strict=True):
-            dots = (particles or {}).get(title, {}).get(number, ())
-            _draw(ax, frames[number], runs, number, span)
-            if len(dots):
-                ax.plot(*np.asarray(dots).T, ls="", marker=".", ms=1.5, color="yellow")
-            ax.set_title(f"frame {number}", fontsize="small")
+            _draw(ax, frames[number], runs, number)
+            ax.set_title(f"frame {number}", fontsize="small", pad=2)
         axes[0].set_ylabel(title, fontsize="medium")
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False)
@@ -79,38 +79,51 @@ def _frames(choice: SceneChoice, numbers: set[int]) -> dict[int, Frame]:
     return {number: scene_frame.frame for number, scene_frame in wanted if number in numbers}
 
 
-def _rows_of_interest(runs: Mapping[str, Scores], height: int) -> tuple[int, int]:
-    """Rows of the image around the true path."""
-    scored = next(iter(runs.values()))
-    ys = [f.truth.box.centre[1] for f in scored.frames if f.truth is not None]
-    middle, half = (min(ys) + max(ys)) / 2, max((max(ys) - min(ys)) / 2 + 60, 110)
-    top = min(max(int(middle - half), 0), height - int(2 * half))
-    return max(top, 0), min(max(top, 0) + int(2 * half), height)
-
-
-def _draw(
-    axes: Axes, frame: Frame, runs: Mapping[str, Scores], number: int, span: tuple[int, int]
-) -> None:
-    top, bottom = span
-    # In grey, so that the boxes stand out; smaller, so that the file does.
-    grey = cv2.cvtColor(frame[top:bottom], cv2.COLOR_RGB2GRAY)
-    height, width = grey.shape
-    small = cv2.resize(grey, (_WIDTH, round(height * _WIDTH / width)), interpolation=cv2.INTER_AREA)
-    axes.imshow(small, cmap="gray", vmin=0, vmax=255, extent=(0, width, bottom, top))
+def _draw(axes: Axes, frame: Frame, runs: Mapping[str, Scores], number: int) -> None:
     truth = next(iter(runs.values())).frames[number - 1].truth
-    if truth is not None:
-        box = truth.box
-        axes.add_patch(
-            Rectangle((box.x, box.y), box.width, box.height, fill=False, ec="white", lw=2.6)
-        )
-        axes.plot([], [], color="white", lw=2.6, label="truth", path_effects=OUTLINE)
+    assert truth is not None
+    left, top = _corner(truth.box, frame)
+    right, bottom = left + _VIEW[0], top + _VIEW[1]
+    # In grey, so that the boxes stand out.
+    grey = cv2.cvtColor(np.ascontiguousarray(frame[top:bottom, left:right]), cv2.COLOR_RGB2GRAY)
+    axes.imshow(grey, cmap="gray", vmin=0, vmax=255, extent=(left, right, bottom, top))
+    axes.set(xlim=(left, right), ylim=(bottom, top), xticks=[], yticks=[])
+    _add_box(axes, truth.box, Style("black", "-", ""), 3.6)
+    _add_box(axes, truth.box, Style("white", "-", ""), 2.0)
+    axes.plot([], [], color="white", lw=2.0, label="truth", path_effects=_RIM)
     for (label, scored), style in zip(runs.items(), itertools.cycle(STYLES), strict=False):
         row = scored.frames[number - 1].row
         if row.x is not None and row.y is not None and row.width and row.height:
-            corner = row.x - row.width / 2, row.y - row.height / 2
-            axes.add_patch(
-                Rectangle(corner, row.width, row.height, fill=False, ec=style.colour,
-                          ls=style.line, lw=1.5)
-            )  # fmt: skip
-        axes.plot([], [], color=style.colour, ls=style.line, lw=1.5, label=label)
-    axes.set(xlim=(0, width), ylim=(bottom, top), xticks=[], yticks=[])
+            box = Box.around((row.x, row.y), row.width, row.height)
+            if left < row.x < right and top < row.y < bottom:
+                _add_box(axes, box, style, 1.8)
+            else:
+                _point_to(axes, box.centre, style)
+        axes.plot([], [], color=style.colour, ls=style.line, lw=1.8, label=label)
+
+
+def _corner(box: Box, frame: Frame) -> tuple[int, int]:
+    """Return the top left corner of the view, which stays in the frame."""
+    height, width = frame.shape[:2]
+    x, y = box.centre
+    left = min(max(round(x - _VIEW[0] / 2), 0), width - _VIEW[0])
+    return left, min(max(round(y - _VIEW[1] / 2), 0), height - _VIEW[1])
+
+
+def _add_box(axes: Axes, box: Box, style: Style, width: float) -> None:
+    axes.add_patch(
+        Rectangle((box.x, box.y), box.width, box.height, fill=False, ec=style.colour,
+                  ls=style.line, lw=width)
+    )  # fmt: skip
+
+
+def _point_to(axes: Axes, place: tuple[float, float], style: Style) -> None:
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    x = min(max(place[0], left + 12), right - 12)
+    y = min(max(place[1], top + 12), bottom - 12)
+    dx, dy = place[0] - x, place[1] - y
+    size = max(math.hypot(dx, dy), 1e-9)
+    axes.annotate(
+        "", (x + 10 * dx / size, y + 10 * dy / size), (x - 16 * dx / size, y - 16 * dy / size),
+        arrowprops={"arrowstyle": "-|>", "color": style.colour, "lw": 1.8, "ls": style.line},
+    )  # fmt: skip
