@@ -34,9 +34,9 @@ def report(results: Results, size: Size) -> Report:
         _figure(results, size),
         Verdict(
             _claims(results, size),
-            f"{mfpf.setting(size)} Curves are those of the first seed under our reading; lines "
-            "without marks are the similarities, those in the same colour and style, but thin and "
-            "level, their thresholds. At the foot of each plot a bar shows prediction mode.",
+            f"{mfpf.setting(size)} Curves are those of the first seed under our reading; thin "
+            "level lines in the style of a curve are its threshold. Marks at the foot of each plot "
+            "are frames in prediction mode.",
         ),
     )
 

@@ -66,11 +66,11 @@ SETTING = (
     "hides its lower half and a parked coach that hides all of it; 15 frames per second. Each seed "
     "draws the scene anew and seeds the filters. Both filters have the same criterion (0.7 of 200 "
     "particles; as printed all of them, which no filter can reach), sigma, random walk and seeds, "
-    "and at most 20 passes a frame, as in the paper. The paper does not say which weights are low: below the mean "
-    "one, but where half of it is named. The scheme is multinomial but where another "
-    'is named. "Before" is until something hides the vehicle for the first time, "full" is '
-    'while less than a tenth of it is seen, "after" follows the last such frame, "partial" is '
-    "what remains."
+    "and at most 20 passes a frame, as in the paper. The paper does not say which "
+    "weights are low: those below the mean one, but where half of it is named. The scheme is "
+    'multinomial but where another is named. "Before" is until something hides the vehicle for '
+    'the first time, "full" is while less than a tenth of it is seen, "after" follows the last '
+    'such frame, "partial" is what remains.'
 )
 
 
