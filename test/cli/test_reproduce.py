@@ -45,7 +45,10 @@ def test_the_page_has_what_was_made_before_too_and_a_second_time_nothing_changes
     reproduce(out, "apf-fig4")
     reproduce(out, "apf-fig2", "--docs", str(docs))
     page = (docs / "reproduction.md").read_text()
-    assert page.index("## apf-fig2") < page.index("## apf-fig4")
+    assert (
+        page.index("\n## Scharcanski") < page.index("\n### apf-fig2") < page.index("\n### apf-fig4")
+    )
+    assert "Khong" not in page  # nothing of it was made
     files = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     reproduce(out, "apf-fig2", "apf-fig4", "--docs", str(docs))
     assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == files

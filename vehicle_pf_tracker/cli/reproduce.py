@@ -9,7 +9,12 @@ from pathlib import Path
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError
 from vehicle_pf_tracker.cli.whole_numbers import natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
-from vehicle_pf_tracker.evaluation.experiments.catalogue import ALL, EXPERIMENTS, find_experiments
+from vehicle_pf_tracker.evaluation.experiments.catalogue import (
+    ALL,
+    EXPERIMENTS,
+    PAPERS,
+    find_experiments,
+)
 from vehicle_pf_tracker.evaluation.experiments.experiment import (
     QUICK_SEEDS,
     SEEDS,
@@ -72,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
     print(f"results are in {args.output}")
     if args.docs is not None:
         command = f"{PROGRAM} reproduce {ALL} --docs {args.docs}"
-        page = write_document(args.docs, args.output, list(EXPERIMENTS.values()), command)
+        page = write_document(args.docs, args.output, PAPERS, command)
         print(f"the page is {page}")
     return 0
 

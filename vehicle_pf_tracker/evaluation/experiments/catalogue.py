@@ -30,15 +30,25 @@ from vehicle_pf_tracker.evaluation.experiments import (
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment
 from vehicle_pf_tracker.features.errors import InputError
 
-_MODULES = (
+_APF = (
     apf_fig1, apf_fig2, apf_fig3, apf_fig4, apf_fig5, apf_fig6, apf_fig7, apf_table2, apf_timing,
+)  # fmt: skip
+_MFPF = (
     mfpf_table1, mfpf_table2, mfpf_table3, mfpf_similarities, mfpf_errors, mfpf_frames,
     mfpf_histograms,
-    resampling_fig4, resampling_fig5, resampling_frames, resampling_cost,
 )  # fmt: skip
+_RESAMPLING = resampling_fig4, resampling_fig5, resampling_frames, resampling_cost
 
+PAPERS: Mapping[str, tuple[Experiment, ...]] = MappingProxyType(
+    {
+        "Scharcanski et al. 2011: APF": tuple(module.EXPERIMENT for module in _APF),
+        "Abdulla et al. 2022: MFPF": tuple(module.EXPERIMENT for module in _MFPF),
+        "Khong et al.: adaptive resampling": tuple(module.EXPERIMENT for module in _RESAMPLING),
+    }
+)
+"""The experiments of each paper."""
 EXPERIMENTS: Mapping[str, Experiment] = MappingProxyType(
-    {module.EXPERIMENT.name: module.EXPERIMENT for module in _MODULES}
+    {experiment.name: experiment for of_paper in PAPERS.values() for experiment in of_paper}
 )
 """By name."""
 ALL = "all"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from vehicle_pf_tracker.evaluation.experiments.experiment import (
@@ -61,9 +61,18 @@ def write_report(folder: Path, experiment: Experiment, report: Report, size: Siz
 
 
 def write_document(
-    folder: Path, results: Path, experiments: Sequence[Experiment], command: str
+    folder: Path, results: Path, papers: Mapping[str, Sequence[Experiment]], command: str
 ) -> Path:
     """Join the verdicts that are in `results` to a page in `folder`, with the figures beside it.
+
+    Parameters
+    ----------
+    folder, results : Path
+        Of the page, and of the experiments' own folders.
+    papers : mapping of str to sequence of Experiment
+        The experiments by paper, whose name heads their sections.
+    command : str
+        Makes everything on the page.
 
     Raises
     ------
@@ -71,21 +80,35 @@ def write_document(
         If it cannot be written.
     """
     pictures = make_folder(folder / _PICTURES)
-    made = [e for e in experiments if (results / e.name / f"{VERDICT}.md").exists()]
-    overview = ["| figure | what | verdict |", "|---|---|---|"]
-    sections = []
-    for experiment in made:
-        text = (results / experiment.name / f"{VERDICT}.md").read_text(encoding="utf-8")
-        picture = _copy_smallest(results / experiment.name, pictures, experiment.name)
-        sections.append(text.replace(f"({FIGURE}.png)", f"({_PICTURES}/{picture})"))
-        verdict = json.loads((results / experiment.name / f"{VERDICT}.json").read_text("utf-8"))
-        word = verdict["holds"]
-        overview.append(
-            f"| [`{experiment.name}`](#{experiment.name}) | {experiment.title} | {word} |"
-        )
-    head = _HEAD.format(command=command, overview="\n".join(overview))
+    overview, sections = [], []
+    for paper, experiments in papers.items():
+        made = [e for e in experiments if (results / e.name / f"{VERDICT}.md").exists()]
+        if made:
+            overview.append("\n".join([f"**{paper}**", "", *_overview(results, made)]))
+            sections.append(f"## {paper}\n")
+            sections += [_shown_section(results, pictures, experiment) for experiment in made]
+    head = _HEAD.format(command=command, overview="\n\n".join(overview))
     write_text(folder / "reproduction.md", "\n".join([head, *sections]))
     return folder / "reproduction.md"
+
+
+def _overview(results: Path, made: Sequence[Experiment]) -> list[str]:
+    """Make a table of the experiments with their verdicts."""
+    lines = ["| figure | what | verdict |", "|---|---|---|"]
+    for experiment in made:
+        verdict = json.loads((results / experiment.name / f"{VERDICT}.json").read_text("utf-8"))
+        lines.append(
+            f"| [`{experiment.name}`](#{experiment.name}) | {experiment.title} | "
+            f"{verdict['holds']} |"
+        )
+    return lines
+
+
+def _shown_section(results: Path, pictures: Path, experiment: Experiment) -> str:
+    """Take over an experiment's own page, one heading lower, and its figure."""
+    text = (results / experiment.name / f"{VERDICT}.md").read_text(encoding="utf-8")
+    picture = _copy_smallest(results / experiment.name, pictures, experiment.name)
+    return "#" + text.replace(f"({FIGURE}.png)", f"({_PICTURES}/{picture})")
 
 
 def _section(experiment: Experiment, report: Report, size: Size) -> str:
