@@ -72,7 +72,7 @@ def _figure(results: Results, size: Size) -> Figure:
     figure = Figure(figsize=(9, 4.2), layout="constrained")
     axes = figure.add_subplot()
     shade_occlusions(axes, resampling.run_scores(results, CONVENTIONAL, size.seeds[0]))
-    for system, style in zip(BOTH, (STYLES[1], STYLES[0]), strict=True):
+    for system, style in zip(reversed(BOTH), STYLES, strict=False):
         runs = [
             [max(frame.error or 0.0, 0.5) for frame in scored.frames]
             for scored in (resampling.run_scores(results, system, s) for s in size.seeds)
