@@ -28,6 +28,7 @@ from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient, he
 from vehicle_pf_tracker.features.window_feature import WindowFeature
 from vehicle_pf_tracker.recordings.truth import Occlusion
 from vehicle_pf_tracker.scenes.scene import SceneFrame
+from vehicle_pf_tracker.trackers.contract import WindowParameters
 from vehicle_pf_tracker.trackers.mfpf import edge_feature
 from vehicle_pf_tracker.trackers.mfpf_parameters import TEXTURES, MfpfParameters
 from vehicle_pf_tracker.trackers.target import Target
@@ -114,7 +115,7 @@ def features(reading: str) -> dict[str, WindowFeature]:
 
 def histograms(made: dict[str, WindowFeature], target: Target, shown: SceneFrame) -> dict[str, Any]:
     """Describe the true window of a frame by every feature."""
-    at, window = np.asarray([shown.truth.box.centre]), target.window(0, 0)
+    at, window = np.asarray([shown.truth.box.centre]), target.window(WindowParameters())
     return {name: f.histograms(shown.frame, at, window)[0] for name, f in made.items()}
 
 
