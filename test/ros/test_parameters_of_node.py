@@ -24,6 +24,7 @@ from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.ros.configuration import Configuration
 from vehicle_pf_tracker.ros.node import TrackerNode
 from vehicle_pf_tracker.ros.node_parameters import NodeParameters
+from vehicle_pf_tracker.trackers.parameter_files import to_yaml
 from vehicle_pf_tracker.trackers.parameters import specs
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 from vehicle_pf_tracker.trackers.session import SessionParameters
@@ -190,6 +191,18 @@ def test_qos_can_be_overridden(make):
         *("-p", "qos_overrides./image.subscription.depth:=7"),
     )
     assert str(node._diagnostics.source) == "/image (raw, reliable, keep last 7)"
+
+
+def test_what_tuning_writes_is_taken_as_it_is(make, tmp_path, log):
+    variant = find_variant("mfpf")
+    tuned = Configuration.of(variant).updated(
+        {"dispersion.radius": 21.37, "velocity_window": 9, "resampling": "residual"}
+    )
+    path = tmp_path / "best.yaml"
+    path.write_text(to_yaml(tuned.specs(), tuned.to_mapping(), "mfpf: tuned."))
+    node = make("--params-file", str(path), variant="mfpf")
+    assert {name: value(node, name) for name in tuned.specs()} == tuned.to_mapping()
+    assert log.warnings == []
 
 
 # At run time

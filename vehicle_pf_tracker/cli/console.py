@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rich.table import Table as RichTable
+
     from vehicle_pf_tracker.evaluation.tables import Table
 
 PROGRAM = "vehicle-pf-tracker"
@@ -31,9 +33,14 @@ def tell_notices(sentences: Iterable[str]) -> None:
 
 def show(table: Table) -> None:
     """Print a table on stdout."""
+    print_table(table.to_rich())
+
+
+def print_table(table: RichTable) -> None:
+    """Print a table on stdout; as wide as it is where that is no terminal."""
     from rich.console import Console
 
     console = Console()
     if not console.is_terminal:
         console = Console(width=_WIDE)
-    console.print(table.to_rich())
+    console.print(table)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from vehicle_pf_tracker.cli import report, system_options
-from vehicle_pf_tracker.cli.console import tell_error, tell_notices
+from vehicle_pf_tracker.cli.console import print_table, tell_error, tell_notices
 from vehicle_pf_tracker.cli.whole_numbers import natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
@@ -21,7 +21,6 @@ from vehicle_pf_tracker.evaluation.grid.timing import time_systems
 
 SEEDS = 5
 TIMING_FRAMES = 200
-_WIDE = 200
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -124,10 +123,7 @@ def _runner(args: argparse.Namespace) -> Runner:
 
 
 def _show(summaries: Sequence[SystemSummary]) -> None:
-    from rich.console import Console
-
-    console = Console()
-    (console if console.is_terminal else Console(width=_WIDE)).print(table(summaries))
+    print_table(table(summaries))
     for summary in summaries:
         for reason in dict.fromkeys(summary.reasons):
             tell_notices([f"{summary.label} did not run everywhere: {reason}"])

@@ -22,6 +22,7 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "params": ("params", "print the commented default parameters of a variant"),
         "run": ("run", "track a recording offline, without ROS, and score it"),
         "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
+        "tune": ("tune", "search a variant's parameters on recordings, and try them on others"),
         "report": ("report", "make the report of an evaluation again"),
         "replay": ("replay", "feed a recording to ROS nodes"),
         "reproduce": ("reproduce", "make the papers' figures and tables again, with verdicts"),

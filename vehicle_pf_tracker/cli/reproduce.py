@@ -23,8 +23,8 @@ from vehicle_pf_tracker.evaluation.experiments.experiment import (
 )
 from vehicle_pf_tracker.evaluation.experiments.output import write_document, write_report
 from vehicle_pf_tracker.evaluation.experiments.running import complete
-from vehicle_pf_tracker.evaluation.experiments.store import ResultStore
 from vehicle_pf_tracker.evaluation.experiments.verdict import Holds
+from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
 CELLS = "cells.jsonl"
 """File in the output folder with what was run so far."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +15,7 @@ from vehicle_pf_tracker.evaluation.peers.client import MODELS, Peer
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.parameters import (
     ParameterSpec,
+    Value,
     parse_assignments,
     specs,
     to_mapping,
@@ -147,7 +148,7 @@ def _check_sets(
                 f"the parameter set {each.variant}@{each.name} is for a variant that is not among "
                 f"--variants {','.join(names)}"
             )
-    known = {name for variant in variants for name in _table(variant)}
+    known = {name for variant in variants for name in settable(variant)}
     for word in everywhere:
         name = word.partition("=")[0]
         if name not in known:
@@ -175,21 +176,36 @@ def _own_sets(
 def _variant_system(
     variant: Variant, parameter_set: ParameterSet, everywhere: Iterable[str]
 ) -> VariantSystem:
-    configuration = _configuration(variant, parameter_set)
-    table = _table(variant)
+    table = settable(variant)
     fitting = [word for word in everywhere if word.partition("=")[0] in table]
     overrides = parse_assignments(table, [*fitting, *parameter_set.assignments])
-    configuration = configuration.updated(overrides)
+    configuration = _configuration(variant, parameter_set).updated(overrides)
+    return make_system(variant, parameter_set.name, configuration, overrides)
+
+
+def make_system(
+    variant: Variant,
+    parameter_set: str,
+    configuration: Configuration,
+    overrides: Mapping[str, Value],
+) -> VariantSystem:
+    """Make the system of a variant with all that decides about it in `configuration`.
+
+    Raises
+    ------
+    InputError
+        If a target is configured.
+    """
     if configuration.session.target.box is not None:
         raise InputError(
-            f"the parameters {parameter_set.name} set target.*; an evaluation starts on the first "
-            "true box of each recording"
+            f"the parameters {parameter_set} set target.*; an evaluation starts on the first true "
+            "box of each recording"
         )
     values = {**to_mapping(configuration.tracker), **to_mapping(configuration.session)}
-    label = f"{variant.name}@{parameter_set.name}" if parameter_set.name else variant.name
+    label = f"{variant.name}@{parameter_set}" if parameter_set else variant.name
     return VariantSystem(
-        label, variant.name, parameter_set.name, tuple(overrides.items()),
-        tuple((name, value) for name, value in values.items() if name in table),
+        label, variant.name, parameter_set, tuple(overrides.items()),
+        tuple((name, values[name]) for name in settable(variant)),
     )  # fmt: skip
 
 
@@ -199,11 +215,11 @@ def _configuration(variant: Variant, parameter_set: ParameterSet) -> Configurati
     configuration = Configuration.of(variant)
     for file in parameter_set.files:
         configuration = parameter_options.with_file(configuration, variant, file)
-    values = parse_assignments(_table(variant), parameter_set.assignments)
+    values = parse_assignments(settable(variant), parameter_set.assignments)
     return configuration.updated(values)
 
 
-def _table(variant: Variant) -> dict[str, ParameterSpec]:
+def settable(variant: Variant) -> dict[str, ParameterSpec]:
     """Everything that may differ between systems: not the seed, nor where the vehicle is."""
     table = {**specs(variant.parameters), **specs(SessionParameters)}
     return {n: s for n, s in table.items() if n != "seed" and not n.startswith("target.")}

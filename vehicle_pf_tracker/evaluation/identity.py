@@ -31,3 +31,8 @@ def variant_modules(variant: Variant) -> set[str]:
 def code_digest(modules: frozenset[str]) -> str:
     """Digest the code of `modules`, and of all that they import from the package."""
     return source_digest(modules)
+
+
+def scoring_digest() -> str:
+    """Digest the code that makes metrics of estimates."""
+    return code_digest(frozenset({"vehicle_pf_tracker.evaluation.metrics"}))

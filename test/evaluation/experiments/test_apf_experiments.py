@@ -11,8 +11,8 @@ from vehicle_pf_tracker.evaluation.experiments.cells import SceneChoice
 from vehicle_pf_tracker.evaluation.experiments.experiment import Size
 from vehicle_pf_tracker.evaluation.experiments.output import write_report
 from vehicle_pf_tracker.evaluation.experiments.running import complete
-from vehicle_pf_tracker.evaluation.experiments.store import ResultStore
 from vehicle_pf_tracker.evaluation.experiments.verdict import Holds
+from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.scenes.videos import VIDEOS
 

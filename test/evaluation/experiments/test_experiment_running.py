@@ -4,7 +4,7 @@ import pytest
 from experiment_samples import SCENE, CountingCell, run_cells
 
 from vehicle_pf_tracker.evaluation.experiments.running import complete
-from vehicle_pf_tracker.evaluation.experiments.store import ResultStore
+from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.features.errors import InputError
 
 

@@ -7,9 +7,9 @@ from typing import TypeAlias
 
 from vehicle_pf_tracker.evaluation.experiments.cells import Cell, Result
 from vehicle_pf_tracker.evaluation.experiments.identity import key
-from vehicle_pf_tracker.evaluation.experiments.store import ResultStore
 from vehicle_pf_tracker.evaluation.processes import run_in_processes
 from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
+from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
 _LARGEST_BATCH = 48
 """Cells that run together: more share a rendering, fewer are lost by an interruption."""

@@ -11,14 +11,13 @@ from typing import Any
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, GridCell
 from vehicle_pf_tracker.evaluation.grid.tracking import Outcome
-from vehicle_pf_tracker.evaluation.identity import code_digest
+from vehicle_pf_tracker.evaluation.identity import scoring_digest
 from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, write_json
 from vehicle_pf_tracker.evaluation.results import ESTIMATES, METRICS, RUN, ResultFolder
 from vehicle_pf_tracker.features.errors import InputError
 
 RESTARTS = "restarts.json"
 _PARTIAL = ".partial"
-_SCORING = frozenset({"vehicle_pf_tracker.evaluation.metrics"})
 
 
 class CellStore:
@@ -40,7 +39,7 @@ class CellStore:
 
     def __init__(self, folder: Path) -> None:
         self._folder = make_folder(folder)
-        self._scoring = code_digest(_SCORING)
+        self._scoring = scoring_digest()
         with output_errors(folder):
             for left in folder.glob(f"**/*{_PARTIAL}"):
                 shutil.rmtree(left, ignore_errors=True)

@@ -54,6 +54,23 @@ class VariantSystem:
         kind = self._entry.parameters
         return from_mapping(kind, {**self._own(kind), "seed": seed})
 
+    def changed(self, name: str, values: Mapping[str, Value]) -> VariantSystem:
+        """Return the same variant with `values`, as the parameter set `name`.
+
+        Raises
+        ------
+        InputError
+            If a value does not fit, alone or together with others.
+        """
+        kinds = {**specs(self._entry.parameters), **specs(SessionParameters)}
+        checked = {key: kinds[key].check(value) for key, value in values.items()}
+        changed = VariantSystem(
+            f"{self.variant}@{name}", self.variant, name, tuple(sorted(checked.items())),
+            tuple({**dict(self.parameters), **checked}.items()),
+        )  # fmt: skip
+        changed.tracker_parameters(0)
+        return changed
+
     def session_parameters(self) -> SessionParameters:
         """Make what a stream needs besides."""
         return from_mapping(SessionParameters, self._own(SessionParameters))

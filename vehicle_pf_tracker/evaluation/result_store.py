@@ -1,13 +1,16 @@
-"""Results on disk, added one by one, so that an interrupted experiment continues."""
+"""Results on disk, added one by one, so that interrupted work continues."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any, TypeAlias
 
-from vehicle_pf_tracker.evaluation.experiments.cells import Result
 from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors
+
+Result: TypeAlias = dict[str, Any]
+"""Plain values that JSON knows."""
 
 
 class ResultStore:

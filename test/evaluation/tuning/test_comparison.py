@@ -1,0 +1,41 @@
+import pytest
+
+from vehicle_pf_tracker.evaluation.tuning.comparison import (
+    HELD_OUT,
+    TUNED,
+    Line,
+    to_markdown,
+    verdict,
+)
+from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES
+
+UP, DOWN = OBJECTIVES["success_auc"], OBJECTIVES["rmse_px"]
+
+
+def lines(metric, tuned, held_out):
+    found = [Line(TUNED, "a", metric, 1.0, 1.0), Line(TUNED, "mean of 1", metric, *tuned)]
+    return found + ([Line(HELD_OUT, "mean of 2", metric, *held_out)] if held_out else [])
+
+
+@pytest.mark.parametrize(
+    ("objective", "tuned", "held_out", "said"),
+    [
+        (UP, (0.5, 0.7), (0.5, 0.6), "50% of the gain is left"),
+        (UP, (0.5, 0.7), (0.5, 0.4), "over-fitted"),
+        (UP, (0.5, 0.5), (0.5, 0.9), "no better than those before"),
+        (UP, (0.5, 0.7), None, "Without --held-out"),
+        (UP, (0.5, 0.7), (0.5, None), "over-fitted"),
+        (DOWN, (20.0, 10.0), (20.0, 12.0), "80% of the gain is left"),
+        (DOWN, (20.0, 30.0), (20.0, 12.0), "no better than those before"),
+    ],
+)
+def test_the_verdict_says_whether_the_gain_holds(objective, tuned, held_out, said):
+    assert said in verdict(lines(objective.metric, tuned, held_out), objective)
+
+
+def test_the_table_shows_spread_and_change():
+    line = Line(TUNED, "road", "rmse_px", 12.0, 10.5, 1.0, 0.25)
+    assert (
+        "| tuned on | road | rmse_px | 12.000 ± 1.000 | 10.500 ± 0.250 | -1.500 |"
+        in to_markdown([line])
+    )

@@ -1,0 +1,84 @@
+import pytest
+
+from vehicle_pf_tracker.evaluation.tuning.search_space import SEARCHED, Dimension, search_space
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.trackers.parameters import specs, to_mapping
+from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
+
+
+def space_of(name, *words, **changed):
+    variant = find_variant(name)
+    return search_space(variant, {**to_mapping(variant.parameters()), **changed}, words)
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_every_variant_has_a_space_that_holds_its_defaults_and_keeps_to_the_bounds(name):
+    space = space_of(name)
+    assert len(space) >= 2
+    table = specs(find_variant(name).parameters)
+    for dimension in space:
+        spec = table[dimension.name]
+        assert dimension.covers(spec.default)
+        if not dimension.choices:
+            assert dimension.low < dimension.high
+            for end in (dimension.low, dimension.high):
+                spec.check(int(end) if spec.kind is int else end)
+
+
+def test_what_is_named_for_a_variant_is_there():
+    assert set(SEARCHED) <= set(VARIANTS)
+
+
+@pytest.mark.parametrize(
+    ("name", "word", "expected"),
+    [
+        ("pf", "sigma", Dimension("sigma", float, 2.0, 32.0, logarithmic=True)),
+        ("pf", "num_particles", Dimension("num_particles", int, 50, 800, logarithmic=True)),
+        ("pf", "histogram_bits", Dimension("histogram_bits", int, 1, 5, logarithmic=True)),
+        ("apf", "occlusion.tau", Dimension("occlusion.tau", float, 0.0, 1.0)),
+        ("apf", "as_printed", Dimension("as_printed", bool, choices=(False, True))),
+        ("mfpf", "estimate", Dimension("estimate", str, choices=("mean", "best"))),
+        ("pf", "sigma=3:5", Dimension("sigma", float, 3.0, 5.0)),
+        ("pf", "sigma=1:50", Dimension("sigma", float, 1.0, 50.0, logarithmic=True)),
+        ("apf", "velocity.window=0:20", Dimension("velocity.window", int, 0.0, 20.0)),
+    ],
+)
+def test_ranges_come_from_the_table_or_the_user(name, word, expected):
+    assert space_of(name, word) == [expected]
+
+
+def test_ranges_are_around_where_the_search_begins():
+    (dimension,) = space_of("pf", "sigma", sigma=4.0)
+    assert (dimension.low, dimension.high) == (1.0, 16.0)
+
+
+@pytest.mark.parametrize(
+    ("word", "said"),
+    [
+        ("sgima", "did you mean 'sigma'"),
+        ("seed", "no parameter 'seed'"),
+        ("sigma=5", "NAME=LOW:HIGH, got sigma=5"),
+        ("sigma=5:2", "range of sigma is empty"),
+        ("sigma=0:2", r"sigma must be from 0.01 to 1000, got 0.0"),
+        ("sigma=a:2", "sigma must be a number, got 'a'"),
+        ("resampling=a:b", "NAME=LOW:HIGH, got resampling=a:b"),
+        ("window.width", "gives no range: --search window.width=LOW:HIGH"),
+    ],
+)
+def test_mistakes_are_told(word, said):
+    with pytest.raises(InputError, match=said):
+        space_of("pf", word)
+
+
+def test_a_name_twice_is_told():
+    with pytest.raises(InputError, match="names sigma twice"):
+        space_of("pf", "sigma", "sigma=1:2")
+
+
+def test_numbers_are_tidied_and_stay_in_range():
+    dimension = Dimension("sigma", float, 0.5, 1.23444)
+    assert dimension.tidy(0.7654321) == 0.7654
+    assert dimension.tidy(0.5) == 0.5
+    assert dimension.tidy(1.23444) == 1.234
+    assert Dimension("sigma", float, 0.5, 1.23456).tidy(1.23456) == 1.23456
+    assert Dimension("n", int, 1, 5).tidy(3) == 3

@@ -1,0 +1,183 @@
+"""`tune`: search a variant's parameters on recordings, and try the best on others."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vehicle_pf_tracker.cli import parameter_options, system_options
+from vehicle_pf_tracker.cli.console import print_table, tell_notices
+from vehicle_pf_tracker.cli.whole_numbers import natural, positive
+from vehicle_pf_tracker.cli.work_progress import telling
+from vehicle_pf_tracker.evaluation.association import MAX_DIFF
+from vehicle_pf_tracker.evaluation.grid.locations import find_recordings
+from vehicle_pf_tracker.evaluation.grid.plan import Plan
+from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
+from vehicle_pf_tracker.evaluation.grid.sources import Source, describe
+from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
+from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.evaluation.report import write_report
+from vehicle_pf_tracker.evaluation.result_store import ResultStore
+from vehicle_pf_tracker.evaluation.tuning import comparison
+from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES
+from vehicle_pf_tracker.evaluation.tuning.search_space import SEARCHED, search_space
+from vehicle_pf_tracker.evaluation.tuning.searching import Search, Trial, best_of, search
+from vehicle_pf_tracker.evaluation.tuning.trial_table import to_csv
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.recordings.truth import Truth
+from vehicle_pf_tracker.trackers.parameter_files import to_yaml
+from vehicle_pf_tracker.trackers.parameters import parse_assignments
+from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.ros.configuration import Configuration
+
+TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100
+BEST = "best"
+
+Recordings = Sequence[tuple[Source, dict[int, Truth]]]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of this verb."""
+    add = parser.add_argument
+    add("sources", nargs="+", metavar="REC", help="recordings with truth to tune on, or a folder")
+    add("--variant", required=True, metavar="NAME", help=f"one of: {', '.join(VARIANTS)}")
+    add(
+        "-o", "--output", type=Path, required=True, metavar="DIR",
+        help="folder for best.yaml and the rest; what was run there before is not run again",
+    )  # fmt: skip
+    add(
+        "--held-out", nargs="+", default=[], metavar="REC",
+        help="recordings that the search does not see; they show whether its gain is real",
+    )  # fmt: skip
+    add(
+        "--search", action="append", default=[], metavar="NAME[=LOW:HIGH],…",
+        help="what to search (default: what matters most for the variant, "
+        f"{', '.join(SEARCHED['apf'])} for apf)",
+    )  # fmt: skip
+    add(
+        "--trials", type=positive, default=TRIALS, metavar="N",
+        help="sets of parameters to try (default: %(default)s)",
+    )  # fmt: skip
+    add(
+        "--seeds", type=positive, default=SEEDS, metavar="N",
+        help=f"runs of each on each recording (default: %(default)s); the search takes seeds from "
+        f"{SEARCH_SEED} on, the comparison others",
+    )  # fmt: skip
+    add(
+        "--objective", default="success_auc", choices=OBJECTIVES, metavar="METRIC",
+        help=f"what to improve, of {', '.join(OBJECTIVES)} (default: %(default)s): its mean over "
+        "the runs of a recording and then over the recordings",
+    )  # fmt: skip
+    add("--sampler-seed", type=natural, default=0, metavar="S", help="seed of the search itself")
+    add("--params", type=Path, metavar="FILE", help="parameter file to begin with")
+    add(
+        "--set", action="append", default=[], metavar="NAME=VALUE", dest="assignments",
+        help="begin with this value, over the file; repeatable",
+    )  # fmt: skip
+    add(
+        "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
+        help="processes; results do not depend on it (default: one per processor)",
+    )  # fmt: skip
+    add("--topic", help="the image topic, where recordings have several")
+    add(
+        "--max-diff", type=float, default=MAX_DIFF, metavar="S",
+        help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
+    )  # fmt: skip
+
+
+def run(args: argparse.Namespace) -> int:
+    """Search, compare, write everything, and print the comparison."""
+    variant = find_variant(args.variant)
+    configuration = _configuration(variant, args)
+    base = system_options.make_system(variant, "", configuration, {})
+    what, recordings = _search(variant, base, args)
+    output = make_folder(args.output)
+    try:
+        best = _find_best(what, output, args)
+        lines = _compare(what, best, recordings, output / "evaluation", args)
+    except KeyboardInterrupt:
+        tell_notices(["interrupted; the same command goes on where this one stopped"])
+        raise
+    told = comparison.verdict(lines, what.objective)
+    file = _write_best(configuration.updated(best.values), variant, what, output)
+    head = f"# {variant.name}, tuned for {what.objective.told}\n\n"
+    write_text(output / "tuning.md", f"{head}{comparison.to_markdown(lines)}\n{told}\n")
+    document = {
+        "command": args.command,
+        "variant": variant.name,
+        "objective": what.objective.metric,
+        "searched": [str(dimension) for dimension in what.space],
+        "best_trial": best.number,
+        "best": dict(best.values),
+        "comparison": [line.to_json() for line in lines],
+        "verdict": told,
+    }
+    write_json(output / "tuning.json", document)
+    print_table(comparison.to_rich(lines))
+    print(f"{told}\nthe parameters are {file}")
+    return 0
+
+
+def _configuration(variant: Variant, args: argparse.Namespace) -> Configuration:
+    from vehicle_pf_tracker.ros.configuration import Configuration
+
+    configuration = Configuration.of(variant)
+    if args.params is not None:
+        configuration = parameter_options.with_file(configuration, variant, args.params)
+    values = parse_assignments(system_options.settable(variant), args.assignments)
+    return configuration.updated(values)
+
+
+def _search(
+    variant: Variant, base: VariantSystem, args: argparse.Namespace
+) -> tuple[Search, Recordings]:
+    words = [word for text in args.search for word in text.split(",") if word]
+    space = search_space(variant, dict(base.parameters), words)
+    tuned = find_recordings(args.sources)
+    held_out = find_recordings(args.held_out)
+    recordings = describe([*tuned, *held_out], args.topic, args.max_diff)
+    sources = [source for source, _ in recordings]
+    seen = {source.digest for source in sources[: len(tuned)]}
+    for source in sources[len(tuned) :]:
+        if source.digest in seen:
+            raise InputError(f"{source.path} is held out and tuned on; it can only be one of both")
+    seeds = range(SEARCH_SEED, SEARCH_SEED + args.seeds)
+    objective = OBJECTIVES[args.objective]
+    what = Search(
+        base, space, sources[: len(tuned)], seeds, objective, args.max_diff, args.sampler_seed
+    )
+    return what, recordings
+
+
+def _find_best(what: Search, output: Path, args: argparse.Namespace) -> Trial:
+    store = ResultStore(output / "runs.jsonl")
+    with telling("tune") as on_progress:
+        trials = search(what, args.trials, store, on_this_machine(args.workers), on_progress)
+    write_text(output / "trials.csv", to_csv(trials, what.objective))
+    return best_of(trials, what.objective)
+
+
+def _compare(
+    what: Search, best: Trial, recordings: Recordings, folder: Path, args: argparse.Namespace
+) -> list[comparison.Line]:
+    systems = [what.base, what.base.changed(BEST, best.values)]
+    plan = Plan(dict(recordings), systems, range(args.seeds), args.command, args.max_diff)
+    with telling("compare") as on_progress:
+        complete(plan, folder, on_this_machine(args.workers), on_progress)
+    write_report(folder)
+    held_out = [source.name for source, _ in recordings if source not in what.sources]
+    metrics = dict.fromkeys([what.objective.metric, "rmse_px"])
+    return comparison.compare(plan, folder, held_out, list(metrics))
+
+
+def _write_best(configuration: Configuration, variant: Variant, what: Search, output: Path) -> Path:
+    names = ", ".join(source.name for source in what.sources)
+    title = f"{variant.name}: tuned by `vehicle-pf-tracker tune` on {names}."
+    path = output / f"{BEST}.yaml"
+    write_text(path, to_yaml(configuration.specs(), configuration.to_mapping(), title))
+    return path

@@ -1,0 +1,174 @@
+"""What a search may turn, and how far: derived from the table of parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.trackers.contract import ParticleParameters
+from vehicle_pf_tracker.trackers.parameters import ParameterSpec, Value, specs, unknown_name
+from vehicle_pf_tracker.trackers.registry import Variant
+
+FACTOR = 4.0
+"""A positive parameter is searched from its default over this to its default times this."""
+_DIGITS = 4
+
+_COLOUR = ("sigma", "likelihood.sigma_v", "histogram_bits")
+_FEATURES = (
+    "dispersion.radius",
+    "likelihood.sigma_v",
+    "reference_weight",
+    "confidence.threshold",
+    "velocity_window",
+)
+_KHONG = ("sigma", "likelihood.sigma_v", "jitter", "criterion")
+SEARCHED: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "apf": (
+            "motion.sigma_w",
+            "likelihood.sigma_v",
+            "occlusion.level.enter",
+            "occlusion.level.certain",
+            "velocity.window",
+        ),
+        "pf": _COLOUR,
+        "sapf": (*_COLOUR, "annealing.layers", "annealing.decay"),
+        "hpfms": (*_COLOUR, "iterations", "transition.speed_share"),
+        "pfcl": (*_COLOUR, "lines.sigma_v", "lines.edge_threshold"),
+        "ms": ("histogram_bits", "iterations", "shortest_step"),
+        "mfpf": _FEATURES,
+        "sfpf_color": _FEATURES,
+        "sfpf_edge": (*_FEATURES, "edges.threshold"),
+        "sfpf_texture": _FEATURES,
+        "conventional": _KHONG,
+        "adaptive": (*_KHONG, "low_weight", "occlusion.n_eff"),
+    }
+)
+"""What matters most for each variant; of others all real numbers of their own are searched."""
+
+
+@dataclass(frozen=True, slots=True)
+class Dimension:
+    """A parameter that is searched.
+
+    Attributes
+    ----------
+    name : str
+        Of the parameter.
+    kind : type
+        `bool`, `int`, `float` or `str`.
+    low, high : float
+        Of a number: the least and the largest value.
+    logarithmic : bool
+        Whether ratios count, not differences.
+    choices : tuple of bool or str
+        Of anything else.
+    """
+
+    name: str
+    kind: type[Value]
+    low: float = 0.0
+    high: float = 0.0
+    logarithmic: bool = False
+    choices: tuple[bool | str, ...] = ()
+
+    def covers(self, value: Value) -> bool:
+        """Whether `value` can be found."""
+        if self.choices:
+            return value in self.choices
+        return self.low <= float(value) <= self.high
+
+    def tidy(self, value: Value) -> Value:
+        """Return `value` with few digits, as it is run and written."""
+        if self.kind is not float:
+            return value
+        rounded = float(f"{float(value):.{_DIGITS}g}")
+        return min(max(rounded, self.low), self.high)
+
+    def __str__(self) -> str:
+        if self.choices:
+            return f"{self.name}: {', '.join(map(str, self.choices))}"
+        scale = ", logarithmic" if self.logarithmic else ""
+        return f"{self.name}: {self.low:g} to {self.high:g}{scale}"
+
+
+def search_space(
+    variant: Variant, values: Mapping[str, Value], words: Sequence[str]
+) -> list[Dimension]:
+    """Return what is searched.
+
+    Parameters
+    ----------
+    variant : Variant
+        From the registry.
+    values : mapping of str to Value
+        Where the search begins; ranges are derived from these.
+    words : sequence of str
+        Each ``name`` or ``name=low:high``; none takes what matters most for the variant.
+
+    Raises
+    ------
+    InputError
+        If there is no such parameter, or a range is none or not within the parameter's bounds.
+    """
+    table = {name: spec for name, spec in specs(variant.parameters).items() if name != "seed"}
+    wanted = words or _usual(variant, table)
+    space = [_dimension(table, values, word) for word in wanted]
+    names = [dimension.name for dimension in space]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(f"--search names {twice} twice")
+    return space
+
+
+def _usual(variant: Variant, table: Mapping[str, ParameterSpec]) -> Iterable[str]:
+    common = specs(ParticleParameters)
+    own = [
+        name for name, s in table.items() if name not in common and s.kind is float and s.default
+    ]
+    return SEARCHED.get(variant.name, tuple(own))
+
+
+def _dimension(
+    table: Mapping[str, ParameterSpec], values: Mapping[str, Value], word: str
+) -> Dimension:
+    name, equals, span = word.partition("=")
+    if name not in table:
+        raise InputError(unknown_name(name, table))
+    return _given(table[name], span) if equals else _derived(table[name], values[name])
+
+
+def _given(spec: ParameterSpec, span: str) -> Dimension:
+    low_text, colon, high_text = span.partition(":")
+    if not colon or spec.kind not in {int, float}:
+        raise InputError(
+            f"--search wants NAME or, for a number, NAME=LOW:HIGH, got {spec.name}={span}"
+        )
+    low, high = (float(spec.parse(text)) for text in (low_text, high_text))
+    if low >= high:
+        raise InputError(f"the range of {spec.name} is empty: {span}")
+    return Dimension(spec.name, spec.kind, low, high, low > 0 and high / low >= FACTOR)
+
+
+def _derived(spec: ParameterSpec, value: Value) -> Dimension:
+    if spec.kind is bool:
+        return Dimension(spec.name, bool, choices=(False, True))
+    if isinstance(value, str):
+        if not spec.choices:
+            raise InputError(f"{spec.name} can be any word, and so not be searched")
+        return Dimension(spec.name, str, choices=spec.choices)
+    least, most = spec.minimum, spec.maximum
+    if least is not None and most is not None and most - least <= 1:  # a share
+        return Dimension(spec.name, spec.kind, least, most)
+    if value <= 0:
+        raise InputError(
+            f"{spec.name} is {value}, which gives no range: --search {spec.name}=LOW:HIGH"
+        )
+    low, high = value / FACTOR, value * FACTOR
+    low = low if least is None else max(low, least)
+    high = high if most is None else min(high, most)
+    if spec.kind is int:
+        low, high = max(float(round(low)), 1.0), float(round(high))
+    return Dimension(spec.name, spec.kind, low, high, logarithmic=True)
