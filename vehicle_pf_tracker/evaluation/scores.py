@@ -161,7 +161,9 @@ def _standing(rows: Sequence[EstimateRow]) -> Iterator[EstimateRow | None]:
 
 
 def _is_estimate(row: EstimateRow) -> bool:
-    return row.position is not None and all(map(math.isfinite, row.position))
+    if row.x is None or row.y is None:
+        return False
+    return math.isfinite(row.x) and math.isfinite(row.y)
 
 
 def _span(stamps: Sequence[int]) -> str:
