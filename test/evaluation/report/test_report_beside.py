@@ -8,7 +8,7 @@ import pytest
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
 from vehicle_pf_tracker.evaluation.report.robustness import robustness_sections
-from vehicle_pf_tracker.evaluation.report.speed import speed_table
+from vehicle_pf_tracker.evaluation.report.speed import speed_note, speed_table
 
 ORDER = ("pf", "ms")
 
@@ -76,3 +76,8 @@ def test_speed_by_hand():
         "pf": ["2.00", "3.00", "3.00", "500"]
     }
     assert speed_table(None, ORDER, {}) is None
+
+
+def test_the_speed_says_its_clock():
+    note = speed_note({"clock": "processor time", "processor": ["x86_64", 2]})
+    assert "processor time. Processor: x86_64 with 2 cores." in note

@@ -32,7 +32,7 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredRun,
     typical,
 )
-from vehicle_pf_tracker.evaluation.report.speed import speed_table
+from vehicle_pf_tracker.evaluation.report.speed import speed_note, speed_table
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.truth import Truth
@@ -98,6 +98,7 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         ],
         robustness=robustness_sections(evaluation.folder, aggregates.order, slots),
         speed=speed_table(evaluation.folder.timings(), aggregates.order, slots),
+        speed_note=speed_note(evaluation.folder.timings()),
         systems=system_sections(evaluation.systems),
         seeds=", ".join(map(str, evaluation.folder.seeds)),
         versions=_words(plan.get("versions", {})),

@@ -18,7 +18,7 @@ def speed_table(
     Parameters
     ----------
     timings : mapping or None
-        ``{"cells": [{"recording", "system", "step_ms_p50", "step_ms_p95"}, ...]}``.
+        ``{"clock", "cells": [{"recording", "system", "step_ms_p50", "step_ms_p95"}, ...]}``.
     order : sequence of str
         The systems.
     slots : mapping of str to int
@@ -50,6 +50,16 @@ def speed_table(
         Header("rate", "frames/s", "One second over the mean median step."),
     )
     return PageTable((), headers, tuple(rows)) if rows else None
+
+
+def speed_note(timings: Mapping[str, Any] | None) -> str:
+    """Say what was measured, and on what."""
+    clock = (timings or {}).get("clock", "time of a step")
+    processor = " with ".join(map(str, (timings or {}).get("processor", []) or ["unknown"]))
+    return (
+        f"Measured in a serial pass of its own: {clock}. Processor: {processor} cores. "
+        "Compare systems by their ratios; other machines have other times."
+    )
 
 
 def _cell(value: float | None, decimals: int) -> TableCell:
