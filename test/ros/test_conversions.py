@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -98,6 +99,14 @@ def test_position_box_and_velocity(header, estimate):
     assert [(p.x, p.y) for p in corners] == [(30.5, 21), (50.5, 21), (50.5, 41), (30.5, 41)]
     vector = velocity_message(header, estimate, 0.04).vector
     assert (vector.x, vector.y) == pytest.approx((37.5, -12.5))
+
+
+def test_a_kept_position_message_is_filled_anew(header, estimate):
+    kept = position_message(
+        Header(frame_id="other"), dataclasses.replace(estimate, position=(1, 2))
+    )
+    assert position_message(header, estimate, kept) is kept
+    assert kept == position_message(header, estimate)
 
 
 def test_particles(header, estimate):

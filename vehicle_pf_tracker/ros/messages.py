@@ -77,9 +77,12 @@ def mode_message(
     return DiagnosticArray(header=header, status=[status])
 
 
-def position_message(header: Header, estimate: Estimate) -> PointStamped:
-    """Make the position, in px of the image."""
-    message = PointStamped(header=header)
+def position_message(
+    header: Header, estimate: Estimate, kept: PointStamped | None = None
+) -> PointStamped:
+    """Make the position, in px of the image; in a message `kept` from before if there is one."""
+    message = PointStamped() if kept is None else kept
+    message.header = header
     message.point.x, message.point.y = map(float, estimate.position)
     return message
 

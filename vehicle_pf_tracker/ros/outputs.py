@@ -43,6 +43,7 @@ class Outputs:
         self._node = node
         self._hardware_id = hardware_id
         self._overlay = Overlay()
+        self._kept_position = PointStamped()
         create = node.create_lifecycle_publisher
         # ~/mode last, here and below: it tells a lock-step replay that the image is done with.
         self._position = create(PointStamped, "~/position", _RELIABLE)
@@ -73,7 +74,7 @@ class Outputs:
         """Publish where the vehicle is; `frame_period` in s makes px/frame to px/s."""
         self._overlay.follow(estimate)
         if _is_heard(self._position):
-            self._position.publish(position_message(header, estimate))
+            self._position.publish(position_message(header, estimate, self._kept_position))
         if switches.box and _is_heard(self._box):
             self._box.publish(box_message(header, estimate))
         if switches.velocity and _is_heard(self._velocity):
