@@ -291,3 +291,30 @@ def test_all_real_sequences_import(tmp_path, wanted):
         assert stamps == [t.stamp_ns for t in truth]
         assert recording.notices == []
         shutil.rmtree(out)
+
+
+def truth_file(tmp_path, *lines):
+    path = tmp_path / "truth.csv"
+    path.write_text("\n".join(["frame,x,y,w,h,occ", *lines]) + "\n")
+    return path
+
+
+def test_a_video_takes_its_truth_from_a_table(video, tmp_path):
+    truth = truth_file(tmp_path, "1,2,3,8,6,0", "3,4,3,8,6,2", "25,9,3,8,6,0")
+    summary = import_recording(video, tmp_path / "bag", truth=truth)
+    assert summary.truths == 2
+    assert summary.notices == ("frames of the truth without an image: 1",)
+    first, third = Recording(tmp_path / "bag").truth()
+    assert (first.box, first.occlusion) == (Box(2, 3, 8, 6), Occlusion.NONE)
+    assert (third.box, third.occlusion) == (Box(4, 3, 8, 6), Occlusion.TOTAL)
+    stamps = [image.stamp_ns for image in Recording(tmp_path / "bag").frames()]
+    assert [first.stamp_ns, third.stamp_ns] == [stamps[0], stamps[2]]
+
+
+def test_a_table_of_truth_is_for_videos_alone(frame_folder, video, tmp_path):
+    with pytest.raises(InputError, match="cannot read the truth"):
+        import_recording(video, tmp_path / "bag", truth=tmp_path / "none.csv")
+    with pytest.raises(InputError, match=r"is its groundtruth.csv; --truth is for videos"):
+        import_recording(
+            frame_folder(), tmp_path / "bag", truth=truth_file(tmp_path, "1,2,3,8,6,0")
+        )

@@ -19,6 +19,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     add("out", type=Path, metavar="OUT", help="rosbag2 folder to make")
     add(
+        "--truth", type=Path, metavar="FILE",
+        help="truth of a video: a table frame,x,y,w,h,occ (frames from 1, top-left corner in px, "
+        "0 in view, 1 partly, 2 totally hidden); a frame without a row has none",
+    )  # fmt: skip
+    add(
         "--format", choices=FORMATS,
         help="how images are kept (default: JPEG files as they are, everything else raw)",
     )  # fmt: skip
@@ -31,6 +36,7 @@ def run(args: argparse.Namespace) -> int:
         made = import_recording(
             args.source,
             args.out,
+            truth=args.truth,
             format=args.format,
             progress=progress,
             overwrite=args.overwrite,

@@ -19,6 +19,7 @@ from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import Source, describe
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.evaluation.output_lock import alone_in
 from vehicle_pf_tracker.evaluation.report import write_report
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.tuning import comparison
@@ -98,8 +99,9 @@ def run(args: argparse.Namespace) -> int:
     what, recordings = _search(variant, base, args)
     output = make_folder(args.output)
     try:
-        best = _find_best(what, output, args)
-        lines = _compare(what, best, recordings, output / "evaluation", args)
+        with alone_in(output):
+            best = _find_best(what, output, args)
+            lines = _compare(what, best, recordings, output / "evaluation", args)
     except KeyboardInterrupt:
         tell_notices(["interrupted; the same command goes on where this one stopped"])
         raise

@@ -50,6 +50,7 @@ def import_recording(
     source: Path,
     out: Path,
     *,
+    truth: Path | None = None,
     format: str | None = None,  # noqa: A002 (named as the option of the command)
     progress: Callable[[int, int | None], None] | None = None,
     overwrite: bool = False,
@@ -62,6 +63,8 @@ def import_recording(
         The video file or the frame folder.
     out : Path
         The rosbag2 folder to make.
+    truth : Path or None
+        The truth of a video, a table like a frame folder's ``groundtruth.csv``.
     format : str or None
         ``compressed`` keeps JPEG and PNG files as they are and codes the frames of a video as JPEG;
         ``raw`` writes pixels. None keeps JPEG files and writes everything else raw.
@@ -77,7 +80,7 @@ def import_recording(
     """
     if format is not None and format not in FORMATS:
         raise InputError(f"the format {format!r} is unknown; choose from {', '.join(FORMATS)}")
-    footage = _open(source)
+    footage = _open(source, truth)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
         for picture in footage.pictures():
@@ -92,13 +95,19 @@ def import_recording(
     return ImportSummary(out, frames, truths, footage.fps, *size, tuple(footage.notices()))
 
 
-def _open(source: Path) -> Footage:
+def _open(source: Path, truth: Path | None) -> Footage:
     if not source.exists():
         raise InputError(f"there is no file or folder {source} to import")
     is_bag = source.is_dir() and (source / "metadata.yaml").exists()
     if is_bag or source.suffix in {".mcap", ".db3", ".bag"}:
         raise InputError(f"{source} is a recording already")
-    return FrameFolder(source) if source.is_dir() else VideoFile(source)
+    if not source.is_dir():
+        return VideoFile(source, truth)
+    if truth is not None:
+        raise InputError(
+            f"the truth of the frame folder {source} is its groundtruth.csv; --truth is for videos"
+        )
+    return FrameFolder(source)
 
 
 def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:

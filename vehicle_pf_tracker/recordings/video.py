@@ -14,6 +14,8 @@ import cv2
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.recordings.footage import Picture, stamp_of
+from vehicle_pf_tracker.recordings.truth import Truth
+from vehicle_pf_tracker.recordings.truth_table import read_truth_table
 
 # The decoder's own complaints would go to the terminal beside our sentence.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
@@ -25,14 +27,22 @@ _SILENT = 0
 class VideoFile:
     """The frames of a video file, at the frame rate that the file states.
 
+    Parameters
+    ----------
+    path : Path
+        The file.
+    truth : Path or None
+        A table as `truth_table` reads it, frames counted from 1.
+
     Raises
     ------
     InputError
-        If the file is no video, has no frame, or states no frame rate.
+        If the file is no video, has no frame, or states no frame rate, or the truth is none.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, truth: Path | None = None) -> None:
         self._path = path
+        self._truth = {} if truth is None else read_truth_table(truth)
         self._read = 0
         video = self._open()
         self.fps = float(video.get(cv2.CAP_PROP_FPS))
@@ -48,19 +58,25 @@ class VideoFile:
         try:
             self._read = 0
             while (frame := _next_frame(video)) is not None:
-                name = f"frame {self._read + 1} of {self._path}"
-                yield Picture(stamp_of(self._read, self.fps), frame, name)
-                self._read += 1
+                stamp, number = stamp_of(self._read, self.fps), self._read + 1
+                row = self._truth.get(number)
+                truth = None if row is None else Truth(stamp, row.box, row.occlusion)
+                yield Picture(stamp, frame, f"frame {number} of {self._path}", truth=truth)
+                self._read = number
         finally:
             video.release()
         if not self._read:
             raise InputError(f"no frame of the video {self._path} can be decoded")
 
     def notices(self) -> list[str]:
-        """Tell whether the file has fewer frames than it states."""
-        if self.total is None or self._read >= self.total:
-            return []
-        return [f"the video {self._path} states {self.total} frames, {self._read} could be read"]
+        """Tell whether the file has fewer frames than it states, and of truth without a frame."""
+        told = []
+        if self.total is not None and self._read < self.total:
+            told.append(
+                f"the video {self._path} states {self.total} frames, {self._read} could be read"
+            )
+        lost = sum(not 1 <= number <= self._read for number in self._truth)
+        return told + ([f"frames of the truth without an image: {lost}"] if lost else [])
 
     def _open(self) -> cv2.VideoCapture:
         with _quiet():

@@ -13,8 +13,10 @@ from grid_samples import (
 )
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
+from vehicle_pf_tracker.evaluation.grid import sources
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem
+from vehicle_pf_tracker.features.errors import InputError
 
 
 @pytest.fixture(scope="module")
@@ -152,3 +154,35 @@ def test_a_variant_without_particles_does_not_depend_on_the_seed(recordings, tmp
         for name, seed in (("a", 0), ("b", 7))
     ]
     assert rows[0] == rows[1]
+
+
+def test_a_recording_too_large_for_memory_gives_the_same(plan, tmp_path, monkeypatch):
+    complete(plan, tmp_path / "kept", here, silent)
+    monkeypatch.setattr(sources, "FRAMES_BYTES", 0)
+    monkeypatch.setattr(sources, "_SHELF", sources._Shelf())
+    complete(plan, tmp_path / "streamed", here, silent)
+    assert sources._SHELF.footage(list(plan.recordings)[-1])._kept is None
+    assert results(tmp_path / "streamed") == results(tmp_path / "kept")
+
+
+def test_a_recording_is_decoded_once_for_all_its_cells(plan, out, monkeypatch):
+    opened = []
+    make = sources.Footage.__init__
+    monkeypatch.setattr(sources, "_SHELF", sources._Shelf())
+    monkeypatch.setattr(
+        sources.Footage,
+        "__init__",
+        lambda self, source: opened.append(source.name) or make(self, source),
+    )
+    complete(plan, out, here, silent)
+    assert opened == ["bridge", "free"]
+
+
+def test_two_commands_in_one_folder_are_kept_apart(plan, out):
+    def second(cells):
+        with pytest.raises(InputError, match="another command is at work in"):
+            complete(plan, out, here, silent)
+        yield from here(cells)
+
+    assert complete(plan, out, second, silent) == 6
+    assert complete(plan, out, here, silent) == 0

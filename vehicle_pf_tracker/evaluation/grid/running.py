@@ -11,6 +11,8 @@ from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.store import CellStore
 from vehicle_pf_tracker.evaluation.grid.tracking import Outcome, run_cell
+from vehicle_pf_tracker.evaluation.output_files import make_folder
+from vehicle_pf_tracker.evaluation.output_lock import alone_in
 from vehicle_pf_tracker.evaluation.processes import Turn, run_in_processes
 from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
 
@@ -40,17 +42,19 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
     Raises
     ------
     InputError
-        If the folder cannot be written, or a process is ended from outside.
+        If the folder cannot be written, another command is at work there, or a process is ended
+        from outside.
     """
-    store = CellStore(folder)
-    plan.write(folder)
-    cells = plan.cells()
-    store.drop_others(cells)
-    missing = [cell for cell in cells if not store.has(cell)]
-    done = 0
-    for turn in runner(missing):
-        if turn.ended is not None:
-            store.add(*turn.ended, plan.command)
-            done += 1
-        on_progress(Progress(done, len(missing), tuple(cell.label for cell in turn.running)))
+    with alone_in(make_folder(folder)):
+        store = CellStore(folder)
+        plan.write(folder)
+        cells = plan.cells()
+        store.drop_others(cells)
+        missing = [cell for cell in cells if not store.has(cell)]
+        done = 0
+        for turn in runner(missing):
+            if turn.ended is not None:
+                store.add(*turn.ended, plan.command)
+                done += 1
+            on_progress(Progress(done, len(missing), tuple(cell.label for cell in turn.running)))
     return len(missing)
