@@ -102,7 +102,9 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         systems=system_sections(evaluation.systems),
         seeds=", ".join(map(str, evaluation.folder.seeds)),
         versions=_words(plan.get("versions", {})),
-        options=_words(plan.get("options", {})),
+        options=_words(
+            {f"--{name.replace('_', '-')}": v for name, v in plan.get("options", {}).items()}
+        ),
         sources=[(entry.name, entry.path, entry.topic, entry.digest)
                  for entry in evaluation.recordings],
         command=shlex.join(map(str, plan.get("command", []))),
@@ -203,4 +205,10 @@ def _cells(cells: Sequence[FailedCell]) -> str:
 
 
 def _words(values: Mapping[str, Any]) -> list[tuple[str, str]]:
-    return [(name, "–" if value is None else str(value)) for name, value in values.items()]
+    return [(name, _word(value)) for name, value in values.items()]
+
+
+def _word(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return "–" if value is None else str(value)

@@ -34,13 +34,18 @@ def system_sections(systems: tuple[SystemEntry, ...]) -> list[SystemSection]:
     for system in systems:
         values = flat(system.parameters)
         were_set = flat(system.overrides)
-        rows = [ParameterRow(name, str(values.get(name, value)), was_set=True)
+        rows = [ParameterRow(name, _text(values.get(name, value)), was_set=True)
                 for name, value in were_set.items()]  # fmt: skip
-        rows += [ParameterRow(name, str(value), was_set=False)
+        rows += [ParameterRow(name, _text(value), was_set=False)
                  for name, value in values.items() if name not in were_set]  # fmt: skip
         section = SystemSection(system.label, system.kind, system.parameter_set, tuple(rows))
         sections.append(section)
     return sections
+
+
+def _text(value: Any) -> str:
+    """Return a value as it stands in a parameter file."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def flat(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
