@@ -14,6 +14,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
 from vehicle_pf_tracker.evaluation.report import summary_files
 from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
 from vehicle_pf_tracker.evaluation.report.columns import COLUMNS
+from vehicle_pf_tracker.evaluation.report.page_tables import overall_table
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
 
 
@@ -62,6 +63,15 @@ def test_the_best_mean_rank_comes_first(aggregates):
     assert aggregates.order == tuple(r.system for r in aggregates.rankings["success_auc"].ranks)
     assert set(aggregates.order) == set(VARIANTS)  # the peer has no result
     assert len(aggregates.pairs) == 3
+
+
+def test_recoveries_are_counted_over_all_runs(aggregates, evaluation):
+    judged = [r for run in evaluation.of(system="pf") for r in run.metrics.recovered]
+    judged = [r for r in judged if r is not None]
+    assert aggregates.recoveries["pf"] == (sum(judged), len(judged))
+    assert len(judged) == len(SEEDS)  # one occlusion in one of the recordings
+    (row,) = [r for r in overall_table(aggregates, {}).rows if r.label == "pf"]
+    assert f"({sum(judged)}/{len(judged)})" in " ".join(cell.text for cell in row.cells)
 
 
 def test_csv_has_a_line_for_each_mean(evaluation, aggregates):

@@ -32,6 +32,8 @@ class Aggregates:
         By the key of a ranked column.
     pairs : tuple of PairedTest
         All pairs, by the first ranked column.
+    recoveries : mapping of str to (int, int)
+        Total occlusions recovered from and judged, of all runs of a system.
     """
 
     order: tuple[str, ...]
@@ -39,6 +41,7 @@ class Aggregates:
     overall: Mapping[str, Summaries]
     rankings: Mapping[str, Ranking]
     pairs: tuple[PairedTest, ...]
+    recoveries: Mapping[str, tuple[int, int]]
 
 
 def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
@@ -59,6 +62,7 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
         overall={label: _over_recordings(evaluation, label) for label in order},
         rankings=rankings,
         pairs=tuple(compare_pairs(main)),
+        recoveries={label: _recoveries(evaluation.of(system=label)) for label in order},
     )
 
 
@@ -69,6 +73,11 @@ def run_values(evaluation: ScoredEvaluation, system: str, column: Column) -> dic
         for run in evaluation.of(system=system)
     }
     return {key: value for key, value in values.items() if value is not None}
+
+
+def _recoveries(runs: Sequence[ScoredRun]) -> tuple[int, int]:
+    judged = [verdict for run in runs for verdict in run.metrics.recovered if verdict is not None]
+    return sum(judged), len(judged)
 
 
 def _over_seeds(runs: Sequence[ScoredRun]) -> dict[str, Summary | None]:

@@ -82,7 +82,8 @@ RMSE = Column(
 )  # fmt: skip
 RECOVERED = Column(
     "recovered", HIDDEN, "recovered", "", 2, True, _recovered,
-    "Share of the judged total occlusions after which the track was on the vehicle again.", False,
+    "Share of the judged total occlusions after which the track was on the vehicle again; in "
+    "brackets how many of all runs.", False,
 )  # fmt: skip
 STEP = Column(
     "step_ms_p50", RUN, "step", "ms", 2, False, lambda m: m.step_ms_p50,

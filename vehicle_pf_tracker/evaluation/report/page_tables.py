@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.evaluation.report import numbers
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, Summaries
-from vehicle_pf_tracker.evaluation.report.columns import COLUMNS, RANKED, Column
+from vehicle_pf_tracker.evaluation.report.columns import COLUMNS, RANKED, RECOVERED, Column
 from vehicle_pf_tracker.evaluation.report.occlusion_table import occlusion_cell, occlusions_of
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
 from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
@@ -71,8 +71,14 @@ class PageTable:
 
 
 def overall_table(aggregates: Aggregates, slots: Slots) -> PageTable:
-    """Show all metrics, as means over the recordings."""
-    return _metrics_table(aggregates.overall, COLUMNS, slots, numbers.mean)
+    """Show all metrics, as means over the recordings; recoveries with their number too."""
+
+    def text(label: str, summary: Summary | None, column: Column) -> str:
+        mean = numbers.mean(summary, column)
+        recovered, judged = aggregates.recoveries[label]
+        return f"{mean} ({recovered}/{judged})" if column is RECOVERED and judged else mean
+
+    return _metrics_table(aggregates.overall, COLUMNS, slots, text)
 
 
 def recording_table(aggregates: Aggregates, recording: str, slots: Slots) -> PageTable:
@@ -83,7 +89,9 @@ def recording_table(aggregates: Aggregates, recording: str, slots: Slots) -> Pag
         if (summaries := aggregates.by_recording.get((recording, label))) is not None
     }
     columns = [column for column in COLUMNS if column.by_recording]
-    return _metrics_table(table, columns, slots, numbers.mean_and_spread)
+    return _metrics_table(
+        table, columns, slots, lambda _, summary, column: numbers.mean_and_spread(summary, column)
+    )
 
 
 def ranks_table(aggregates: Aggregates, slots: Slots) -> PageTable:
@@ -165,7 +173,7 @@ def _metrics_table(
     table: Mapping[str, Summaries],
     columns: Sequence[Column],
     slots: Slots,
-    text: Callable[[Summary | None, Column], str],
+    text: Callable[[str, Summary | None, Column], str],
 ) -> PageTable:
     kept = [column for column in columns if any(row.get(column.key) for row in table.values())]
     best = {column.key: _best(table, column) for column in kept}
@@ -178,7 +186,7 @@ def _metrics_table(
             is_best = value is not None and round(value, column.decimals) == best[column.key]
             within = numbers.interval(summary, column)
             note = f"95 % interval of the mean: {within}" if within else ""
-            cells.append(TableCell(text(summary, column), value, is_best, note))
+            cells.append(TableCell(text(label, summary, column), value, is_best, note))
         rows.append(Row(label, slots.get(label), tuple(cells)))
     grouped = itertools.groupby(kept, lambda column: column.group)
     return PageTable(

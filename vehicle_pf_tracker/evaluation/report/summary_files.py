@@ -119,6 +119,7 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
             ]
         },
         "findings": findings(evaluation, aggregates),
+        "recoveries": {label: list(found) for label, found in aggregates.recoveries.items()},
         "failed": [asdict(cell) for cell in evaluation.failed],
     }
 
