@@ -9,7 +9,7 @@ NAME = "vehicle_pf_tracker"
 # Those of trackers/registry.py, in its order; a test holds them equal.
 VARIANTS = ("apf", "pf", "sapf", "hpfms", "pfcl", "ms", "mfpf")
 VARIANTS += ("sfpf_color", "sfpf_edge", "sfpf_texture")
-VARIANTS += ("conventional", "adaptive")
+VARIANTS += ("conventional", "adaptive", "fusion")
 JAZZY_WHEELS = "sys_platform == 'linux' and platform_machine == 'x86_64'"
 
 RUNTIME = [

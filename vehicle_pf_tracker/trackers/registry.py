@@ -13,6 +13,8 @@ from vehicle_pf_tracker.trackers.apf import ApfTracker
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
 from vehicle_pf_tracker.trackers.base import BaseTracker
 from vehicle_pf_tracker.trackers.conventional import ConventionalParameters, ConventionalTracker
+from vehicle_pf_tracker.trackers.fusion import FusionTracker
+from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
 from vehicle_pf_tracker.trackers.hpfms import HpfmsParameters, HpfmsTracker
 from vehicle_pf_tracker.trackers.mfpf import MfpfTracker
 from vehicle_pf_tracker.trackers.mfpf_parameters import (
@@ -113,6 +115,12 @@ VARIANTS: Mapping[str, Variant] = MappingProxyType(
                 AdaptiveTracker,
                 AdaptiveParameters,
                 "colour, only low weights resampled until enough count (Khong et al.)",
+            ),
+            Variant(
+                "fusion",
+                FusionTracker,
+                FusionParameters,
+                "fused cues, scale, camera motion, return from total occlusions (this package)",
             ),
         )
     }

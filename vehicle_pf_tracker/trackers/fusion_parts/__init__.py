@@ -1,0 +1,1 @@
+"""The parts that `fusion` is made of."""

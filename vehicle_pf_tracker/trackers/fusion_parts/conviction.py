@@ -1,0 +1,126 @@
+"""Whether what is followed still is the target: alike enough, and where its motion takes it.
+
+An occluder that takes a target over is seldom unlike it at once. It is told by its motion: the
+estimate falls behind the path that confident frames foretold, stops, or changes its size.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.trackers.evidence import EvidenceParameters
+from vehicle_pf_tracker.trackers.fusion_parts.appearance import Likeness
+from vehicle_pf_tracker.trackers.fusion_parts.history import History
+from vehicle_pf_tracker.trackers.fusion_parts.projective_motion import ProjectiveMotion
+
+Place = tuple[float, float]
+
+CERTAIN = 0.9
+"""Share of the clear level above which looks leave no doubt."""
+_FEWEST = 8
+"""Sightings that a path is foretold from."""
+_COLOURED = 0.85
+_OFF_PATH = 0.25
+_OFF_PATH_COLOURED = 0.6
+_OFF_PER_FRAME = 0.1
+_STALLED = 0.45
+_STALLED_AFTER = 2
+_FLUENT = 0.7
+_LARGEST_GROWTH = 1.33
+_SINKING = 0.25
+_SETTLED = 10
+
+
+class Levels:
+    """Usual similarities in frames without doubt; they sink slowly, as occlusions make them."""
+
+    def __init__(self) -> None:
+        self.template = 0.0
+        self.whole = 0.0
+        self._frames = 0
+
+    def follow(self, likeness: Likeness, rate: float) -> None:
+        """Count a frame without doubt."""
+        self._frames += 1
+        rate = max(rate, 1.0 / self._frames)
+        self.template += self._paced(rate, likeness.template - self.template)
+        self.whole += self._paced(rate, likeness.whole - self.whole)
+
+    def _paced(self, rate: float, change: float) -> float:
+        sinks = change < 0 and self._frames > _SETTLED
+        return (rate * _SINKING if sinks else rate) * change
+
+    def share(self, evidence: float) -> float:
+        """Evidence as a share of its clear level, 0 to 1."""
+        return min(evidence / self.template, 1.0) if self.template > 0 else evidence
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What a frame's estimate is worth.
+
+    Attributes
+    ----------
+    holds : bool
+        Whether it is still the target.
+    sure : bool
+        Whether looks or smooth motion leave no doubt, so that it counts as a sighting.
+    learns : bool
+        Whether references may learn from it.
+    fluent : bool
+        Whether it looks different but keeps its colours and its speed, as in a turn.
+    """
+
+    holds: bool
+    sure: bool = False
+    learns: bool = False
+    fluent: bool = False
+
+
+class Conviction:
+    """Judges the estimates of one track."""
+
+    def __init__(self) -> None:
+        self.levels = Levels()
+        self.doubted = 0
+        self._path: ProjectiveMotion | None = None
+
+    def judge(
+        self,
+        likeness: Likeness,
+        place: Place,
+        scale: float,
+        history: History,
+        size: float,
+        parameters: EvidenceParameters,
+        *,
+        gate: bool,
+    ) -> Verdict:
+        """Judge the estimate `place` (px), `scale` of a target of `size` px at scale 1."""
+        speed = history.follow(place)
+        share = self.levels.share(likeness.evidence)
+        if share < max(parameters.minimum, parameters.occluded_below):
+            return Verdict(holds=False)
+        alike = self.levels.share(likeness.template) >= CERTAIN
+        if alike or self.levels.share(likeness.part) >= CERTAIN or len(history) < _FEWEST:
+            self.doubted = 0
+            return Verdict(holds=True, sure=True, learns=alike)
+        self.doubted += 1
+        if not gate:
+            return Verdict(holds=True)
+        path, time = history.fit(size, retrospect=True, projective=True)
+        expected, expected_scale = path.at(time)
+        expected_speed = math.hypot(*path.velocity_at(time))
+        coloured = likeness.colour > _COLOURED
+        limit = (_OFF_PATH_COLOURED if coloured else _OFF_PATH) * size * scale + 1.0
+        off = math.dist(expected, place) < limit + _OFF_PER_FRAME * expected_speed * self.doubted
+        stalled = (
+            speed < _STALLED * expected_speed
+            and 4 * expected_speed > 0.1 * size * scale
+            and self.doubted > _STALLED_AFTER
+        )
+        grown = max(scale / expected_scale, expected_scale / scale) > _LARGEST_GROWTH
+        fluent = coloured and speed > _FLUENT * expected_speed
+        holds = off and not stalled and not grown
+        return Verdict(holds, sure=fluent, learns=fluent, fluent=fluent)
