@@ -46,6 +46,7 @@ _LEAST_SIDE = 6.0
 _DEGENERATE = 0.4
 """Share of the particles below which the effective sample size is too small (P3)."""
 _RATE_IN_TURNS = 0.25
+_SIGHTINGS_IN_TURNS = 8
 
 
 class FusionTracker(ParticleTracker[FusionParameters]):
@@ -220,6 +221,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             return
         cues = self.parameters.cues
         if verdict.fluent:
+            self._history.forget_all_but(_SIGHTINGS_IN_TURNS)
             self._appearance.learn(view, self._place, self._scale, _RATE_IN_TURNS, 0)
         else:
             self._conviction.levels.follow(likeness, self.parameters.evidence.level_rate)

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.trackers.evidence import EvidenceParameters
 from vehicle_pf_tracker.trackers.fusion_parts.appearance import Likeness
 from vehicle_pf_tracker.trackers.fusion_parts.history import History
-from vehicle_pf_tracker.trackers.fusion_parts.projective_motion import ProjectiveMotion
 
 Place = tuple[float, float]
 
@@ -21,6 +20,8 @@ CERTAIN = 0.9
 _FEWEST = 8
 """Sightings that a path is foretold from."""
 _COLOURED = 0.85
+_COLOURED_IN_TURNS = 0.6
+"""A vehicle that turns fills less of its box."""
 _OFF_PATH = 0.25
 _OFF_PATH_COLOURED = 0.6
 _OFF_PER_FRAME = 0.1
@@ -84,7 +85,7 @@ class Conviction:
     def __init__(self) -> None:
         self.levels = Levels()
         self.doubted = 0
-        self._path: ProjectiveMotion | None = None
+        self._turning = False
 
     def judge(
         self,
@@ -104,7 +105,7 @@ class Conviction:
             return Verdict(holds=False)
         alike = self.levels.share(likeness.template) >= CERTAIN
         if alike or self.levels.share(likeness.part) >= CERTAIN or len(history) < _FEWEST:
-            self.doubted = 0
+            self.doubted, self._turning = 0, False
             return Verdict(holds=True, sure=True, learns=alike)
         self.doubted += 1
         if not gate:
@@ -112,7 +113,7 @@ class Conviction:
         path, time = history.fit(size, retrospect=True, projective=True)
         expected, expected_scale = path.at(time)
         expected_speed = math.hypot(*path.velocity_at(time))
-        coloured = likeness.colour > _COLOURED
+        coloured = likeness.colour > (_COLOURED_IN_TURNS if self._turning else _COLOURED)
         limit = (_OFF_PATH_COLOURED if coloured else _OFF_PATH) * size * scale + 1.0
         off = math.dist(expected, place) < limit + _OFF_PER_FRAME * expected_speed * self.doubted
         stalled = (
@@ -121,6 +122,6 @@ class Conviction:
             and self.doubted > _STALLED_AFTER
         )
         grown = max(scale / expected_scale, expected_scale / scale) > _LARGEST_GROWTH
-        fluent = coloured and speed > _FLUENT * expected_speed
+        fluent = self._turning = coloured and speed > _FLUENT * expected_speed
         holds = off and not stalled and not grown
         return Verdict(holds, sure=fluent, learns=fluent, fluent=fluent)

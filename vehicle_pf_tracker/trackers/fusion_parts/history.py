@@ -58,6 +58,11 @@ class History:
         """Keep a confident sighting of this frame."""
         self._sightings.append(Sighting(place, scale))
 
+    def forget_all_but(self, count: int) -> None:
+        """Keep the latest `count` sightings only: the motion has changed."""
+        while len(self._sightings) > count:
+            self._sightings.popleft()
+
     def follow(self, place: Place) -> float:
         """Keep an estimate of this frame; returns the speed over the last few, px per frame."""
         self._trail.append(Sighting(place, 1.0))
