@@ -6,6 +6,7 @@ from feature_samples import grey
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from vehicle_pf_tracker.features import kernels
 from vehicle_pf_tracker.features.glcm import Cooccurrence
 from vehicle_pf_tracker.features.gradients import GradientDirections
 from vehicle_pf_tracker.features.joint_colour import JointColour
@@ -15,6 +16,7 @@ from vehicle_pf_tracker.features.lbp import BinaryPatterns
 from vehicle_pf_tracker.features.mean_shift import kernel_histogram
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
+from vehicle_pf_tracker.features.sobel import direction_bins
 from vehicle_pf_tracker.features.window import Window
 
 OPENCV = load_kernels("opencv")
@@ -104,11 +106,11 @@ def whole_or_part(draw, frame):
 @settings(max_examples=60, deadline=None)
 @given(data=st.data(), frame=scenes, window=windows, bits=st.sampled_from([1, 3, 5]))
 def test_a_map_has_the_similarity_around_every_pixel(request, name, data, frame, window, bits):
-    kernels = OPENCV if name == "opencv" else request.getfixturevalue(name)
+    chosen = OPENCV if name == "opencv" else request.getfixturevalue(name)
     feature = JointColour(bits)
     reference = Reference(feature.histograms(frame, data.draw(clouds(frame))[:1], window)[0])
     part = whole_or_part(data.draw, frame)
-    found = kernels.similarity_map(feature, frame, window, reference, part)
+    found = chosen.similarity_map(feature, frame, window, reference, part)
     left, top, right, bottom = part or (0, 0, frame.shape[1], frame.shape[0])
     assert found.shape == (bottom - top, right - left)
     y, x = np.mgrid[top:bottom, left:right]
@@ -119,15 +121,15 @@ def test_a_map_has_the_similarity_around_every_pixel(request, name, data, frame,
 
 @pytest.mark.parametrize("name", ["opencv", "numba"])
 def test_nothing_is_like_an_empty_reference(request, name):
-    kernels = OPENCV if name == "opencv" else request.getfixturevalue(name)
+    chosen = OPENCV if name == "opencv" else request.getfixturevalue(name)
     frame, window = scene(1, (30, 40), "noise"), Window(4, 3)
     positions = np.random.default_rng(2).uniform(0, 30, (20, 2))
     for feature in FEATURES.values():
         reference = Reference(np.zeros(feature.bins))
-        similarity = kernels.similarity(feature, frame, positions, window, reference)
+        similarity = chosen.similarity(feature, frame, positions, window, reference)
         assert np.array_equal(similarity, np.zeros(20))
     reference = Reference(np.zeros(512))
-    assert not kernels.similarity_map(JointColour(3), frame, window, reference).any()
+    assert not chosen.similarity_map(JointColour(3), frame, window, reference).any()
 
 
 @settings(max_examples=80, deadline=None)
@@ -186,3 +188,15 @@ def test_a_window_larger_than_the_table_of_roots_is_compared_alike(numba):
     similarity = numba.similarity(JointColour(3), frame, positions, window, reference)
     expected = OPENCV.similarity(JointColour(3), frame, positions, window, reference)
     assert np.abs(similarity - expected).max() < 1e-6
+
+
+@pytest.mark.parametrize("signed", [True, False])
+def test_directions_are_those_of_the_arc_tangent(signed):
+    edges = pytest.importorskip(f"{kernels.__name__}.numba_edges", reason="numba is not installed")
+    values = np.array([*range(-60, 61), -1020, -1019, -723, -511, 509, 721, 1019, 1020])
+    gx, gy = (one.astype(np.int16) for one in np.meshgrid(values, values))
+    strengths = np.hypot(gx, gy).astype(np.float32)
+    table = np.arange(64, dtype=np.uint16)
+    _, found, _ = edges.find_points((gx, gy, strengths), 0.5, table, edges.TANGENTS, signed)
+    moving = strengths > 0
+    assert np.array_equal(found, direction_bins(gx[moving], gy[moving], signed=signed))

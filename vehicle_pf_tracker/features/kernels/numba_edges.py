@@ -8,21 +8,28 @@ import numpy as np
 import numpy.typing as npt
 from numba import types
 
-from vehicle_pf_tracker.features.kernels.numba_cells import RECTANGLES, Rectangles, Table
-from vehicle_pf_tracker.features.kernels.numba_jit import compiled
+from vehicle_pf_tracker.features.kernels.numba_cells import RECTANGLES, TABLE, Rectangles, Table
+from vehicle_pf_tracker.features.kernels.numba_jit import compiled, inlined
 from vehicle_pf_tracker.features.kernels.numba_windows import Counts
-from vehicle_pf_tracker.features.sobel import Strengths
+from vehicle_pf_tracker.features.sobel import DIRECTION_BINS, Strengths
 
 Gradients: TypeAlias = npt.NDArray[np.int16]
 Limits: TypeAlias = npt.NDArray[np.float32]
+Tangents: TypeAlias = npt.NDArray[np.float64]
 Index: TypeAlias = npt.NDArray[np.int32]
 Numbers: TypeAlias = npt.NDArray[np.int64]
 
-_GRADIENTS = types.Array(types.int16, 2, "A", readonly=True)
+_GRADIENTS = types.int16[:, ::1]
+_TANGENTS = types.Array(types.float64, 1, "C", readonly=True)
 _PLANE = types.float32[:, ::1]
+_IMAGES = types.Tuple((_GRADIENTS, _GRADIENTS, _PLANE))
 _LIMITS = types.float32[::1]
 _NUMBERS = types.int64[::1]
 _INDEX = types.int32[:, ::1]
+
+TANGENTS: Tangents = np.tan(np.arange(1, DIRECTION_BINS // 4) * (2 * np.pi / DIRECTION_BINS))
+"""Tangents of the directions between the bins of a quarter turn."""
+TANGENTS.flags.writeable = False
 
 
 @compiled(_PLANE(_GRADIENTS, _GRADIENTS))
@@ -36,26 +43,77 @@ def gradient_strengths(gx: Gradients, gy: Gradients) -> Strengths:
     return strengths
 
 
-@compiled(types.Tuple((_INDEX, _NUMBERS, _NUMBERS))(_PLANE, types.float32))
-def find_points(strengths: Strengths, limit: float) -> tuple[Index, Numbers, Numbers]:
+@inlined
+def _direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
+    """Bin 0 to 63, as `sobel.direction_bins` has it; whole numbers are never near a tangent."""
+    if not signed and (gx < 0 or (gx == 0 and gy < 0)):
+        gx, gy = -gx, -gy
+    if gx > 0 and gy >= 0:
+        first, along, across = 32, gx, gy
+    elif gy > 0:
+        first, along, across = 48, gy, -gx
+    elif gx < 0:
+        first, along, across = 0, -gx, -gy
+    else:
+        first, along, across = 16, -gy, gx
+    for tangent in tangents:
+        first += across >= along * tangent
+    return first
+
+
+@compiled(
+    types.Tuple((_INDEX, types.uint16[::1], _LIMITS))(
+        types.Tuple((_GRADIENTS, _GRADIENTS, _PLANE)),
+        types.float32,
+        TABLE,
+        _TANGENTS,
+        types.boolean,
+    )
+)
+def find_points(
+    images: tuple[Gradients, Gradients, Strengths],
+    limit: float,
+    table: Table,
+    tangents: Tangents,
+    signed: bool,
+) -> tuple[Index, Table, Limits]:
     """List the pixels of at least this strength, row by row.
+
+    Parameters
+    ----------
+    images : three (H, W) arrays
+        Gradient along x and y, and its squared magnitude.
+    limit : float
+        Least squared magnitude.
+    table : (64,) array
+        Cell of each direction.
+    tangents : (15,) array
+        As `TANGENTS`.
+    signed : bool
+        As in `sobel.direction_bins`.
 
     Returns
     -------
     (H, W + 1), (M,), (M,) arrays
-        Number of the first point that is not before a pixel; rows and columns of the points.
+        Number of the first point that is not before a pixel; cells and strengths of the points.
     """
+    gx, gy, strengths = images
     height, width = strengths.shape
     index = np.empty((height, width + 1), np.int32)
-    rows, columns = np.empty(strengths.size, np.int64), np.empty(strengths.size, np.int64)
+    cells = np.empty(strengths.size, np.uint16)
+    passed = np.empty(strengths.size, np.float32)
     count = 0
     for y in range(height):
         for x in range(width):
             index[y, x] = count
-            rows[count], columns[count] = y, x
-            count += strengths[y, x] >= limit
+            if strengths[y, x] >= limit:
+                bin_number = _direction_bin(
+                    np.int64(gx[y, x]), np.int64(gy[y, x]), tangents, signed
+                )
+                cells[count], passed[count] = table[bin_number], strengths[y, x]
+                count += 1
         index[y, width] = count
-    return index, rows[:count].copy(), columns[:count].copy()
+    return index, cells[:count].copy(), passed[:count].copy()
 
 
 @compiled(_NUMBERS(_INDEX, types.uint16[::1], _LIMITS, RECTANGLES, _LIMITS, types.int32[:, ::1]))

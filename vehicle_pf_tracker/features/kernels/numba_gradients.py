@@ -10,6 +10,7 @@ import numpy as np
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.gradients import GradientDirections, window_peaks
 from vehicle_pf_tracker.features.kernels.numba_edges import (
+    TANGENTS,
     Numbers,
     count_points,
     find_points,
@@ -18,7 +19,6 @@ from vehicle_pf_tracker.features.kernels.numba_edges import (
 from vehicle_pf_tracker.features.kernels.numba_place import Place
 from vehicle_pf_tracker.features.kernels.numba_reference import CellTable
 from vehicle_pf_tracker.features.kernels.numba_windows import Counts
-from vehicle_pf_tracker.features.sobel import direction_bins
 from vehicle_pf_tracker.features.window import Window
 from vehicle_pf_tracker.features.window_feature import to_grey
 
@@ -43,9 +43,8 @@ def count_directions(
     strengths = gradient_strengths(gx, gy)
     limits = feature.limits(window_peaks(strengths, place.pixels - (left, top), window))
     # Only what passes the least limit of all can be an edge point in any window.
-    index, y, x = find_points(strengths, limits.min())
-    cells = table.cells[direction_bins(gx[y, x], gy[y, x], signed=feature.signed)]
+    images = gx, gy, strengths
+    index, cells, passed = find_points(images, limits.min(), table.cells, TANGENTS, feature.signed)
     counts = np.empty((len(limits), len(table.values)), np.int32)
     rectangles = place.rectangles((left, top))
-    totals = count_points(index, cells, strengths[y, x], rectangles, limits, counts)
-    return CellCounts(counts, totals)
+    return CellCounts(counts, count_points(index, cells, passed, rectangles, limits, counts))
