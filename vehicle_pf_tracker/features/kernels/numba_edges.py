@@ -15,6 +15,7 @@ from vehicle_pf_tracker.features.sobel import DIRECTION_BINS, Strengths
 
 Gradients: TypeAlias = npt.NDArray[np.int16]
 Limits: TypeAlias = npt.NDArray[np.float32]
+Images: TypeAlias = tuple[Gradients, Gradients, Strengths]
 Tangents: TypeAlias = npt.NDArray[np.float64]
 Index: TypeAlias = npt.NDArray[np.int32]
 Numbers: TypeAlias = npt.NDArray[np.int64]
@@ -71,7 +72,7 @@ def _direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
     )
 )
 def find_points(
-    images: tuple[Gradients, Gradients, Strengths],
+    images: Images,
     limit: float,
     table: Table,
     tangents: Tangents,
