@@ -13,6 +13,10 @@ from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.frame import Frame, frame_size
 
 _BLACK, _WHITE, _YELLOW = (0, 0, 0), (255, 255, 255), (240, 228, 66)
+_TAG = 13
+"""Side of a tag in px."""
+_DARK_STYLES = 3
+"""So many of the first colours are dark, and have white tags."""
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
 
 
@@ -112,9 +116,12 @@ def _draw_mark(image: Frame, corners: tuple[int, int, int, int], slot: int | Non
         cv2.rectangle(image, (left, top), (right, bottom), colour, width, cv2.LINE_AA)
     if slot is None:
         return
-    tag = (right + 3, min(max(top + 9 + 11 * (slot % 2), 10), image.shape[0] - 3))
-    for colour, width in ((_BLACK, 3), (_WHITE, 1)):
-        cv2.putText(image, str(slot + 1), tag, _FONT, 0.38, colour, width, cv2.LINE_AA)
+    x = min(max(right, 0), image.shape[1] - _TAG)
+    y = min(max(top + _TAG * (slot % 3), 0), image.shape[0] - _TAG)  # seldom over each other
+    cv2.rectangle(image, (x, y), (x + _TAG, y + _TAG), colour_of(slot), cv2.FILLED)
+    text = _WHITE if slot < _DARK_STYLES else _BLACK
+    place = (x + 3, y + _TAG - 3)
+    cv2.putText(image, str(slot + 1), place, _FONT, 0.42, text, 1, cv2.LINE_AA)
 
 
 def _draw_corners(image: Frame, corners: tuple[int, int, int, int]) -> None:
