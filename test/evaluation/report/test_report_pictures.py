@@ -1,6 +1,7 @@
 """Stills, overlays and figures, each by itself."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -99,6 +100,14 @@ def test_stills_of_other_images_are_refused(made_evaluation):
     assert take_stills(entry, [shot])[shot].data.startswith("data:image/jpeg;base64,")
     with pytest.raises(InputError, match="other images"):
         take_stills(replace(entry, width=640), [shot])
+
+
+def test_stills_of_a_recording_at_a_url(made_evaluation):
+    pytest.importorskip("fsspec", reason="fsspec is not installed")
+    (entry, _) = EvaluationFolder(made_evaluation).recordings
+    shot = Shot(3, "", BOX, ())
+    elsewhere = replace(entry, path=Path(entry.path).as_uri())
+    assert take_stills(elsewhere, [shot]) == take_stills(entry, [shot])
 
 
 def test_an_error_panel_draws_the_median_within_its_band():

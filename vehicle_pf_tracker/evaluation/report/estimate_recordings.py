@@ -7,6 +7,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.estimates_recording import write_with_estimates
+from vehicle_pf_tracker.evaluation.grid.locations import at_hand
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.reader import Recording
@@ -26,7 +27,7 @@ def write_estimate_recordings(
     for entry in evaluation.recordings:
         path = evaluation.folder.path / FOLDER / entry.name
         try:
-            recording = Recording(entry.path, entry.topic)
+            recording = Recording(at_hand(entry.path), entry.topic)
             runs = _rows(evaluation, entry.name)
             write_with_estimates(path, recording, runs, overwrite=True)
             written.append(path)

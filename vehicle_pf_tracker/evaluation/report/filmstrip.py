@@ -6,12 +6,12 @@ import base64
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import cv2
 import numpy as np
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import RecordingEntry
+from vehicle_pf_tracker.evaluation.grid.locations import at_hand
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
@@ -123,7 +123,7 @@ def numbered_frames(entry: RecordingEntry) -> Iterator[tuple[int, Frame]]:
     InputError
         If the recording is gone, or its images are not those of the evaluation.
     """
-    recording = Recording(Path(entry.path), entry.topic)
+    recording = Recording(at_hand(entry.path), entry.topic)
     for number, stamped in enumerate(recording.frames(), start=1):
         if stamped.frame is None:
             continue
