@@ -5,7 +5,9 @@ import pytest
 from vehicle_pf_tracker.evaluation.experiments import mfpf_histograms, mfpf_systems, mfpf_table1
 from vehicle_pf_tracker.evaluation.experiments.catalogue import EXPERIMENTS
 from vehicle_pf_tracker.evaluation.experiments.experiment import Size
+from vehicle_pf_tracker.evaluation.experiments.strips import telling_frames
 from vehicle_pf_tracker.evaluation.experiments.verdict import Holds
+from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
 
 SIZE = Size(range(100, 102), quick=True)
 RMS = {"mfpf": 8.0, "sfpf_color": 10.0, "sfpf_edge": 20.0, "sfpf_texture": 12.0}
@@ -128,3 +130,14 @@ def test_histograms_do_not_change_where_nothing_does():
     assert set(distances) == {"color", "edge", "texture"}
     for values in distances.values():
         assert values == pytest.approx([0.0, 0.0], abs=1e-6)
+
+
+def test_a_strip_shows_frames_in_their_order(results):
+    for case, hides in (("case2", False), ("case6", True)):
+        scored = mfpf_systems.run_scores(results, case, mfpf_systems.MFPF, 100)
+        numbers = telling_frames(scored, 5)
+        assert numbers == sorted(set(numbers))
+        assert len(numbers) == 5
+        assert any(scored.frames[number - 1].hidden for number in numbers) == hides
+    clear = Scores(tuple(FrameScore(frame.row, None) for frame in scored.frames))
+    assert telling_frames(clear, 5) == sorted(telling_frames(clear, 5))

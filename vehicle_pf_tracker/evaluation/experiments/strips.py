@@ -39,11 +39,13 @@ def telling_frames(scored: Scores, count: int) -> list[int]:
     list of int
         Frame numbers, from 1.
     """
+    last = len(scored.frames) - 2
     covered = [f.row.frame for f in scored.frames if f.truth is not None and f.truth.occlusion]
     total = [f.row.frame for f in scored.frames if f.hidden]
-    ends = total or covered or [1, len(scored.frames)]
-    middle = np.linspace(ends[0], ends[-1], count - 2).round().astype(int).tolist()
-    return [3, *middle, len(scored.frames) - 2]
+    if not covered:
+        return [int(number) for number in np.linspace(3, last, count).round()]
+    ends = total or covered
+    return [3, *(int(number) for number in np.linspace(ends[0], ends[-1], count - 2).round()), last]
 
 
 def strip_figure(
