@@ -17,7 +17,7 @@ from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.scenes.videos import VIDEOS
 
 SIZE = Size(range(100, 101), quick=True)
-LARGE = ("apf-fig1", "apf-table2", "mfpf-table1", "resampling-cost")
+LARGE = ("apf-fig1", "apf-table2", "mfpf-table1", "mfpf-histograms", "resampling-cost")
 
 
 @pytest.fixture(scope="module")
