@@ -9,7 +9,6 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 import rclpy
-from rclpy.service import Service
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger
 
@@ -51,9 +50,19 @@ class Served:
         self.publisher.publish(Header())
         self.spin_until(lambda: len(self.heard) > before)
 
-    def waits_for_services(self):
-        services = [one for one in self.node.services if isinstance(one, Service)]
-        return all(map(self.executor.can_execute, services))
+    def waits_for_all(self):
+        """Spin once, without a message; tell whether everything was waited for."""
+        waits = []
+        original = self.executor.wait_for_ready_callbacks
+
+        def record(timeout, nodes=None):
+            waits.append(nodes is None)
+            return original(0.0, nodes)
+
+        self.executor.wait_for_ready_callbacks = record
+        self.executor.spin_once()
+        self.executor.wait_for_ready_callbacks = original
+        return waits == [True]
 
     def close(self):
         self.executor.shutdown()
@@ -76,9 +85,9 @@ def clock(monkeypatch):
 
 
 def test_while_messages_flow_nothing_else_is_waited_for(served, clock):
-    assert served.waits_for_services()
+    assert served.waits_for_all()
     served.hear_one()
-    assert not served.waits_for_services()
+    assert not served.waits_for_all()
 
 
 def test_messages_that_never_pause_starve_no_service(served):
@@ -91,19 +100,29 @@ def test_messages_that_never_pause_starve_no_service(served):
     served.bench.wait_for(future.done)
 
 
-def test_a_look_serves_what_is_ready_and_ends(served, clock):
+def test_a_look_at_everything_ends_once_nothing_is_ready(served, clock):
     served.hear_one()
     clock[0] += image_executor.LOOK_EVERY
-    served.executor.spin_once()  # nothing is ready
-    assert not served.waits_for_services()
+    assert served.waits_for_all()
+    assert not served.waits_for_all()
 
 
 def test_silence_brings_back_the_wait_for_everything(served, clock):
     served.hear_one()
-    served.spin_until(served.waits_for_services)  # each spin ends after LOOK_EVERY at most
+    assert not served.waits_for_all()  # nothing comes in time
+    assert served.waits_for_all()
     future = served.client.call_async(Trigger.Request())
     served.spin_until(lambda: served.asked)
     served.bench.wait_for(future.done)
+
+
+def test_a_node_can_be_removed_while_messages_flow(served):
+    served.hear_one()
+    served.executor.remove_node(served.node)
+    before = len(served.heard)
+    served.publisher.publish(Header())
+    served.executor.spin_once()  # ends after LOOK_EVERY
+    assert len(served.heard) == before
 
 
 def test_an_error_in_a_callback_is_raised(served):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from rclpy.context import Context
@@ -22,7 +22,29 @@ from rclpy.timer import Timer
 LOOK_EVERY = 0.2
 """Longest time in s that a service or an event waits while messages flow."""
 
-_ALWAYS = (Subscription, Timer)
+
+class _Messages:
+    """What a node has of subscriptions and timers, as a node that has nothing else.
+
+    Looking through the node's other entities for each image would take longer than waiting.
+    """
+
+    clients = services = guards = waitables = ()
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+
+    @property
+    def subscriptions(self) -> Iterator[Subscription]:
+        """Those that there are now."""
+        found: Iterator[Subscription] = self._node.subscriptions
+        return found
+
+    @property
+    def timers(self) -> Iterator[Timer]:
+        """Those that there are now."""
+        found: Iterator[Timer] = self._node.timers
+        return found
 
 
 class ImageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
@@ -43,12 +65,17 @@ class ImageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
         self._flowing = False
         self._looking = False
         self._look_at = 0.0
+        self._messages: dict[Node, _Messages] = {}
 
-    def can_execute(self, entity: Any) -> bool:
-        """Tell whether `entity` is to be waited for now."""
-        if self._flowing and not self._looking and not isinstance(entity, _ALWAYS):
-            return False
-        return bool(super().can_execute(entity))
+    def add_node(self, node: Node) -> bool:
+        """Add a node whose callbacks are to be run."""
+        self._messages[node] = _Messages(node)
+        return bool(super().add_node(node))
+
+    def remove_node(self, node: Node) -> None:
+        """Run no more callbacks of a node."""
+        self._messages.pop(node, None)
+        super().remove_node(node)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait for one callback and run it; without a timeout it may return without one."""
@@ -58,15 +85,17 @@ class ImageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
             return
         self._looking = self._looking or time.monotonic() >= self._look_at
         if not self._looking:
-            self._flowing = self._run_one(LOOK_EVERY) is not None
+            self._flowing = self._run_one(LOOK_EVERY, list(self._messages.values())) is not None
         elif self._run_one(0.0) is None:  # all that was ready has been served
             self._looking = False
             self._look_at = time.monotonic() + LOOK_EVERY
 
-    def _run_one(self, timeout_sec: float | None) -> Any | None:
+    def _run_one(
+        self, timeout_sec: float | None, nodes: Sequence[_Messages] | None = None
+    ) -> Any | None:
         """Run one callback, and return whose it was; None if none was ready in time."""
         try:
-            task, entity, _ = self.wait_for_ready_callbacks(timeout_sec)
+            task, entity, _ = self.wait_for_ready_callbacks(timeout_sec, nodes)
         except (ShutdownException, TimeoutException):
             return None
         task()
