@@ -22,6 +22,7 @@ def lines(metric, tuned, held_out):
     [
         (UP, (0.5, 0.7), (0.5, 0.6), "50% of the gain is left"),
         (UP, (0.5, 0.7), (0.5, 0.4), "over-fitted"),
+        (UP, (0.5, 0.7), (0.5, 0.8), "The gain holds on the recordings held out"),
         (UP, (0.5, 0.5), (0.5, 0.9), "no better than those before"),
         (UP, (0.5, 0.7), None, "Without --held-out"),
         (UP, (0.5, 0.7), (0.5, None), "over-fitted"),

@@ -168,5 +168,6 @@ def verdict(lines: Sequence[Line], objective: Objective) -> str:
         return "Without --held-out nothing shows whether this holds on other recordings."
     if held_out is None or held_out <= 0:
         return "The gain does not hold on the recordings held out: this is over-fitted."
-    share = held_out / tuned
-    return f"On the recordings held out {share:.0%} of the gain is left."
+    if held_out >= tuned:
+        return "The gain holds on the recordings held out."
+    return f"On the recordings held out {held_out / tuned:.0%} of the gain is left."
