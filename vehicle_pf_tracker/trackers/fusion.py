@@ -46,7 +46,7 @@ _LEAST_SIDE = 6.0
 _DEGENERATE = 0.4
 """Share of the particles below which the effective sample size is too small (P3)."""
 _RATE_IN_TURNS = 0.25
-_SIGHTINGS_IN_TURNS = 8
+_SIGHTINGS_IN_TURNS = 10
 
 
 class FusionTracker(ParticleTracker[FusionParameters]):
@@ -258,12 +258,15 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._drift(frame, velocity, elapsed)
         uncertainty = 0.3 * self._side * self._scale + 1.0 + 0.5 * self._swarm.width
         found = self._find(frame, uncertainty)
-        best = self._candidates.follow(found, velocity, elapsed, self._side * self._scale)
+        followed = self._candidates.follow(found, velocity, elapsed, self._side * self._scale)
         evidence, hiding = self.parameters.evidence, self.parameters.hiding
         least = max(evidence.clear_above, evidence.minimum)
-        if best is not None and best.is_certain((x, y), uncertainty, hiding.confirm, least):
-            return self._come_back(frame, best)
-        share = 0.0 if best is None else best.share
+        certain = [
+            one for one in followed if one.is_certain((x, y), uncertainty, hiding.confirm, least)
+        ]
+        if certain:
+            return self._come_back(frame, max(certain, key=lambda one: one.share))
+        share = max((one.share for one in followed), default=0.0)
         ceiling = 0.99 * evidence.occluded_below * self._judge.level
         left_image = bool(are_outside(frame, np.asarray(place)))
         return Outcome(

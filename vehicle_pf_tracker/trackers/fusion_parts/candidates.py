@@ -93,7 +93,7 @@ class Candidates:
 
     def follow(
         self, found: list[Candidate], velocity: Place, elapsed: float, size: float
-    ) -> Candidate | None:
+    ) -> list[Candidate]:
         """Link what was found in this frame to the candidates of the last one.
 
         Parameters
@@ -109,12 +109,12 @@ class Candidates:
 
         Returns
         -------
-        Candidate or None
-            The one that has been followed for longest.
+        list of Candidate
+            All that are followed now.
         """
         linked = (self._link(one, velocity, elapsed, size) for one in found)
         self._all = [one for one in linked if one is not None]
-        return max(self._all, key=lambda one: (one.frames, one.share), default=None)
+        return self._all
 
     def _link(
         self, found: Candidate, velocity: Place, elapsed: float, size: float

@@ -27,7 +27,10 @@ _OFF_PATH_COLOURED = 0.6
 _OFF_PER_FRAME = 0.1
 _STALLED = 0.45
 _STALLED_AFTER = 2
-_FLUENT = 0.7
+_FLUENT = 0.85
+_LAG = 0.03
+_LAG_IN_TURNS = 0.7
+"""A vehicle that turns leaves its path sideways; one that is being hidden falls behind on it."""
 _LARGEST_GROWTH = 1.33
 _SINKING = 0.25
 _SETTLED = 10
@@ -51,6 +54,11 @@ class Levels:
     def _paced(self, rate: float, change: float) -> float:
         sinks = change < 0 and self._frames > _SETTLED
         return (rate * _SINKING if sinks else rate) * change
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is no level to hold anything against."""
+        return self._frames == 0
 
     def share(self, evidence: float) -> float:
         """Evidence as a share of its clear level, 0 to 1."""
@@ -103,7 +111,7 @@ class Conviction:
         share = self.levels.share(likeness.evidence)
         if share < max(parameters.minimum, parameters.occluded_below):
             return Verdict(holds=False)
-        alike = self.levels.share(likeness.template) >= CERTAIN
+        alike = self.levels.empty or self.levels.share(likeness.template) >= CERTAIN
         if alike or self.levels.share(likeness.part) >= CERTAIN or len(history) < _FEWEST:
             self.doubted, self._turning = 0, False
             return Verdict(holds=True, sure=True, learns=alike)
@@ -122,6 +130,18 @@ class Conviction:
             and self.doubted > _STALLED_AFTER
         )
         grown = max(scale / expected_scale, expected_scale / scale) > _LARGEST_GROWTH
-        fluent = self._turning = coloured and speed > _FLUENT * expected_speed
+        lag, aside = _offset(place, expected, path.velocity_at(time))
+        keeps_up = lag < _LAG * size * scale + _LAG_IN_TURNS * aside
+        fluent = self._turning = coloured and keeps_up and speed > _FLUENT * expected_speed
         holds = off and not stalled and not grown
         return Verdict(holds, sure=fluent, learns=fluent, fluent=fluent)
+
+
+def _offset(place: Place, expected: Place, velocity: Place) -> tuple[float, float]:
+    """How far `place` is behind and beside `expected`, seen along the motion, px."""
+    speed = math.hypot(*velocity)
+    if speed == 0:
+        return 0.0, math.dist(place, expected)
+    dx, dy = place[0] - expected[0], place[1] - expected[1]
+    along = (dx * velocity[0] + dy * velocity[1]) / speed
+    return -along, abs(dx * velocity[1] - dy * velocity[0]) / speed

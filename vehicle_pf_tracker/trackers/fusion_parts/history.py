@@ -16,7 +16,7 @@ Place = tuple[float, float]
 _KEPT = 30
 _FITTED = 26
 """Latest sightings that a motion is fitted to."""
-_DISTRUSTED = 2
+_DISTRUSTED = 4
 """Latest sightings that are left out in retrospect: an occluder may have dragged them along."""
 _TRAIL = 5
 
