@@ -95,6 +95,12 @@ def test_a_peer_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_path, 
     assert "make peers" in json.loads(failed.read_text())["reason"]
 
 
+def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
+    words = ["--variants", "peer:csrt", "--peers-python", tmp_path / "none"]
+    assert evaluate(tmp_path / "out", bags / "one", *words) == 1
+    assert capsys.readouterr().err.endswith("error: nothing could run; the report says why\n")
+
+
 @pytest.mark.parametrize(
     ("words", "status", "said"),
     [

@@ -130,6 +130,9 @@ def _show(summaries: Sequence[SystemSummary]) -> None:
 
 
 def _judge(summaries: Sequence[SystemSummary], limit: float | None) -> int:
+    if not any(summary.runs for summary in summaries):
+        tell_error("nothing could run; the report says why")
+        return 1
     if limit is None:
         return 0
     means = {summary.label: summary.mean("rmse_px") for summary in summaries}

@@ -94,5 +94,11 @@ def _outcome(future: Any) -> Outcome:
 
 
 def _running(client: Any, by_key: Mapping[str, GridCell]) -> tuple[GridCell, ...]:
-    keys = [key for processed in client.processing().values() for key in processed]
+    """Return the cells at work; a worker is given more than it has threads for."""
+    threads = client.nthreads()
+    keys = [
+        key
+        for worker, given in client.processing().items()
+        for key in list(given)[: threads.get(worker, 0)]
+    ]
     return tuple(by_key[key] for key in keys if key in by_key)

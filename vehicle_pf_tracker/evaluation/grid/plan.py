@@ -18,7 +18,7 @@ from vehicle_pf_tracker.evaluation.grid.starts import (
     shifted_starts,
     start_frames,
 )
-from vehicle_pf_tracker.evaluation.grid.systems import System, seeds_of
+from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
 from vehicle_pf_tracker.evaluation.run_info import versions
 from vehicle_pf_tracker.evaluation.truth_file import write_truth
@@ -104,8 +104,10 @@ class Plan:
         return grid + beside
 
     def _cells(self, source: Source, starts: Sequence[Start]) -> Iterator[GridCell]:
+        # Peers are slow: begun last, they would be waited for.
+        ordered = sorted(self.systems, key=lambda system: isinstance(system, VariantSystem))
         for start in starts:
-            for system in self.systems:
+            for system in ordered:
                 # Other starts are variation enough; failures are counted over all seeds.
                 is_varied = start.kind in {"", RESTARTS}
                 seeds = seeds_of(system, self.seeds if is_varied else self.seeds[:1])
