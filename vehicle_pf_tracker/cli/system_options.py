@@ -86,10 +86,10 @@ def chosen(args: argparse.Namespace) -> tuple[list[System], list[str]]:
     variants = [find_variant(word) for word in words if not word.startswith(PEER)]
     everywhere, sets = _parameter_sets(args)
     _check_sets(variants, everywhere, sets)
-    notes: list[str] = []
+    fitting, notes = _fitting(variants, sets)
     systems: list[System] = []
     for variant in variants:
-        own = _own_sets(variant, sets, notes)
+        own = fitting[variant.name]
         defaults = [] if own and args.without_defaults else [ParameterSet("")]
         systems += [_variant_system(variant, each, everywhere) for each in [*defaults, *own]]
     models = _models(args.peer_model)
@@ -143,6 +143,10 @@ def _check_sets(
 ) -> None:
     names = [variant.name for variant in variants]
     for each in sets:
+        if not names:
+            raise InputError(
+                f"the parameter set {each.name} is for no variant: there are only peers"
+            )
         if each.variant is not None and each.variant not in names:
             raise InputError(
                 f"the parameter set {each.variant}@{each.name} is for a variant that is not among "
@@ -155,22 +159,31 @@ def _check_sets(
             raise InputError(unknown_name(name, known))
 
 
-def _own_sets(
-    variant: Variant, sets: Iterable[ParameterSet], notes: list[str]
-) -> list[ParameterSet]:
-    own = []
+def _fitting(
+    variants: Sequence[Variant], sets: Iterable[ParameterSet]
+) -> tuple[dict[str, list[ParameterSet]], list[str]]:
+    """Return the sets that each variant can run with, and notes on those that it cannot."""
+    fitting: dict[str, list[ParameterSet]] = {variant.name: [] for variant in variants}
+    notes = []
     for each in sets:
-        if each.variant not in {None, variant.name}:
-            continue
-        try:
-            _configuration(variant, each)
-        except InputError as error:
-            if each.variant is not None:
-                raise
-            notes.append(f"{variant.name} is not run with {each.name}: {error}")
-            continue
-        own.append(each)
-    return own
+        named = [variant for variant in variants if each.variant in {None, variant.name}]
+        misfits = {variant.name: _misfit(variant, each) for variant in named}
+        reasons = [reason for reason in misfits.values() if reason]
+        if len(reasons) == len(named):
+            raise InputError(reasons[0])
+        notes += reasons
+        for name, reason in misfits.items():
+            fitting[name] += [] if reason else [each]
+    return fitting, notes
+
+
+def _misfit(variant: Variant, parameter_set: ParameterSet) -> str:
+    """Say why a variant cannot run with a set; empty if it can."""
+    try:
+        _configuration(variant, parameter_set)
+    except InputError as error:
+        return f"{variant.name} is not run with {parameter_set.name}: {error}"
+    return ""
 
 
 def _variant_system(

@@ -140,7 +140,7 @@ def _describe(
             "import it with truth, or track it with `vehicle-pf-tracker run`"
         )
     stamps = [
-        message.stamp_ns or message.log_time_ns
+        message.log_time_ns if message.stamp_ns is None else message.stamp_ns
         for message in recording.messages({recording.image_topic})
     ]
     pairs = associate(stamps, [one.stamp_ns for one in truth], max_diff)
