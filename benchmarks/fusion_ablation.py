@@ -35,7 +35,7 @@ HELD_OUT = (
     "m6_dual_carriageway/red_car",
     "semi_synthetic/cdnet_pole_partial",
 )
-SCENES = ("bridge", "bus", "braking", "highway", "scale", "shadows")
+SCENES = ("bridge", "bus", "highway")
 OFF: dict[str, dict[str, object]] = {
     "all parts": {},
     "no anchor template": {"cues.anchor": False},
