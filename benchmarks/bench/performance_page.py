@@ -30,9 +30,10 @@ _KERNELS = """## Windows measured at once
 
 The naive peer takes one crop, one `cv2.calcHist` of 8x8x8 bins (or P2's three features in OpenCV
 and numpy) and one coefficient for each particle. The particles are spread around the vehicle by
-8 px, and every call sees another frame and another cloud. `kernel` is the route with numba,
-`kernel-opencv` the one without; `1080p-over-vga` compares the two image sizes with each other, and
-`map512` the similarities of all pixels of an image by the two routes.
+8 px, and every call sees another frame and another cloud. A turn lasts 5 ms at least, so that both
+work from warm caches; between the images of a node they are colder (see there). `kernel` is the
+route with numba, `kernel-opencv` the one without; `1080p-over-vga` compares the two image sizes
+with each other, and `map512` the similarities of all pixels of an image by the two routes.
 """
 _STEPS = f"""## A frame's whole step
 
