@@ -79,7 +79,7 @@ def _summary(label: str, cells: Sequence[GridCell], folder: Path) -> SystemSumma
 
 
 def table(summaries: Sequence[SystemSummary]) -> Table:
-    """For a terminal: means over seeds and then recordings, the best system first."""
+    """For a terminal: means over seeds and then recordings, the best success AUC first."""
     columns: dict[str, Callable[[SystemSummary], str]] = {
         "RMSE, px": lambda s: _number(s.mean("rmse_px"), 1),
         "median error, px": lambda s: _number(s.mean("median_px"), 1),
@@ -92,7 +92,7 @@ def table(summaries: Sequence[SystemSummary]) -> Table:
     made = Table("")
     for name in columns:
         made.add_column(Text(name), justify="right")
-    order = sorted(summaries, key=lambda s: -(s.mean("on_target") or 0.0))
+    order = sorted(summaries, key=lambda s: -(s.mean("success_auc") or 0.0))
     for summary in order:
         made.add_row(Text(summary.label), *(Text(cell(summary)) for cell in columns.values()))
     return made
