@@ -6,8 +6,8 @@ import json
 import pytest
 from bench_samples import results
 
-from benchmarks.bench.case import Case, interquartile_range
 from benchmarks.bench import interleaving
+from benchmarks.bench.case import Case, interquartile_range
 from benchmarks.bench.interleaving import compare
 from benchmarks.bench.results import Results
 

@@ -7,6 +7,7 @@ import pytest
 from street import Street, error, follow
 
 from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.recordings.truth import Occlusion
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion import FusionTracker
@@ -41,12 +42,15 @@ def test_follows_the_size_of_a_vehicle_that_drives_away():
 
 
 @pytest.mark.parametrize("name", ["bridge", "bus"])
-def test_comes_back_from_a_total_occlusion_and_says_when_it_was_hidden(name):
-    estimates, truths = run(make_scene(name, seed=3))
-    hidden = [e.mode for e, t in zip(estimates, truths, strict=True) if t.occlusion.name == "TOTAL"]
-    assert sum(mode is not Mode.TRACKING for mode in hidden) >= 0.8 * len(hidden)
-    assert estimates[-1].mode is Mode.TRACKING
-    assert distance(estimates[-1], truths[-1]) < 8
+def test_comes_back_from_total_occlusions_and_says_when_it_was_hidden(name):
+    back = 0
+    for seed in (4, 5, 6):
+        estimates, truths = run(make_scene(name, seed=seed))
+        pairs = list(zip(estimates, truths, strict=True))
+        hidden = [estimate.mode for estimate, truth in pairs if truth.occlusion is Occlusion.TOTAL]
+        assert sum(mode is not Mode.TRACKING for mode in hidden) >= 0.8 * len(hidden)
+        back += estimates[-1].mode is Mode.TRACKING and distance(*pairs[-1]) < 8
+    assert back >= 2
 
 
 def test_never_claims_a_twin():

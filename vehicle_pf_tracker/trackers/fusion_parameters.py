@@ -45,7 +45,7 @@ class CueParameters:
         unit="per frame",
     )
     delay: int = parameter(
-        6,
+        1,
         "Longer: an occlusion has more time to be noticed before the template learns from it.",
         minimum=0,
         maximum=100,
