@@ -46,7 +46,9 @@ def test_what_was_ended_goes_on_and_comes_out_the_same(tmp_path, number):
     assert "Traceback" not in told
     assert process.returncode == (130 if number == signal.SIGINT else -number)
     assert ("interrupted; the same command goes on" in told) == (number == signal.SIGINT)
-    before = {path: path.stat().st_mtime_ns for path in ended.glob("cells/*/*/seed-*/estimates.csv")}
+    before = {
+        path: path.stat().st_mtime_ns for path in ended.glob("cells/*/*/seed-*/estimates.csv")
+    }
     assert 5 <= len(before) < 61
     assert not (ended / "report.html").exists()
     assert main([*words, str(ended)]) == 0
