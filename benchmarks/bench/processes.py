@@ -9,12 +9,12 @@ import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import TracebackType
 
 from benchmarks.bench.material import drive
 from benchmarks.bench.metered_node import METER
 from benchmarks.bench.resident import resident_mb
 from benchmarks.bench.root import ROOT
+from vehicle_pf_tracker.evaluation.child_process import wait_or_kill
 from vehicle_pf_tracker.features.errors import InputError
 
 ALLOCATOR = {
@@ -25,7 +25,6 @@ ALLOCATOR = {
 """What the launch files set, for the floor and for the tracker nodes alike."""
 
 _READY = "ready:"
-_END_SECONDS = 10.0
 
 
 class NodeProcess:
@@ -77,11 +76,7 @@ class NodeProcess:
     def end(self) -> None:
         """End the process."""
         self._process.terminate()
-        try:
-            self._process.wait(_END_SECONDS)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        wait_or_kill(self._process)
         assert self._process.stderr is not None
         self._process.stderr.close()
         self._log.close()
@@ -89,12 +84,7 @@ class NodeProcess:
     def __enter__(self) -> NodeProcess:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *failure: object) -> None:
         self.end()
 
 

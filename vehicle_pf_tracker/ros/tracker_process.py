@@ -8,11 +8,11 @@ import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
+from vehicle_pf_tracker.evaluation.child_process import wait_or_kill
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.parameters import Value
 
 _SCRIPT = "import sys; from vehicle_pf_tracker.ros.executables import main; sys.exit(main({!r}))"
-_END_SECONDS = 10.0
 
 
 @contextmanager
@@ -43,19 +43,10 @@ def tracker_process(
     try:
         yield process
     finally:
-        status = _end(process)
+        # Not SIGINT, which a process begun in a shell's background inherits as ignored.
+        process.terminate()
+        status = wait_or_kill(process)
     if status not in {0, -signal.SIGTERM}:
         raise InputError(
             f"the node {variant}_tracker ended with status {status}; see its log above"
         )
-
-
-def _end(process: subprocess.Popen[bytes]) -> int:
-    if process.poll() is None:
-        # Not SIGINT, which a process begun in a shell's background inherits as ignored.
-        process.terminate()
-    try:
-        return process.wait(_END_SECONDS)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        return process.wait()

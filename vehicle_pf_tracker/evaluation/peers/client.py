@@ -8,11 +8,12 @@ import subprocess
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType, TracebackType
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from vehicle_pf_tracker.evaluation.child_process import wait_or_kill
 from vehicle_pf_tracker.evaluation.peers.environment import peer_python
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.errors import InputError
@@ -31,7 +32,6 @@ MODELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """The peers by name, and the model files that the user brings for each."""
 
 _WORKER = Path(__file__).with_name("worker.py")
-_END_SECONDS = 10.0
 
 
 class PeerAnswer(NamedTuple):
@@ -133,11 +133,7 @@ class Peer:
         assert self._process.stdin is not None
         with contextlib.suppress(BrokenPipeError):  # it died; what was under way is lost
             self._process.stdin.close()
-        try:
-            self._process.wait(_END_SECONDS)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        wait_or_kill(self._process)
         if self._process.stdout is not None:
             self._process.stdout.close()
         self._log.close()
@@ -145,12 +141,7 @@ class Peer:
     def __enter__(self) -> Peer:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *failure: object) -> None:
         self.close()
 
     def _ask(self, frame: Frame, **request: object) -> PeerAnswer:
