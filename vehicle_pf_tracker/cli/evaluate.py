@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
 from vehicle_pf_tracker.cli import report, system_options
 from vehicle_pf_tracker.cli.console import print_table, tell_error, tell_notices
+from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers
 from vehicle_pf_tracker.cli.whole_numbers import natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
-from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 from vehicle_pf_tracker.evaluation.grid.locations import find_recordings
 from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
 from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
@@ -40,20 +39,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="runs of each system that has randomness (default: %(default)s)",
     )  # fmt: skip
     add("--first-seed", type=natural, default=0, metavar="S", help="the first of the seeds")
-    add(
-        "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
-        help="processes; results do not depend on it (default: one per processor)",
-    )  # fmt: skip
+    add_workers(parser)
     add(
         "--scheduler", metavar="URL",
         help="run on the Dask cluster of this scheduler, as tcp://host:8786; the workers read the "
         "recordings at the same paths or URLs",
     )  # fmt: skip
     add("--topic", help="the image topic, where recordings have several")
-    add(
-        "--max-diff", type=float, default=MAX_DIFF, metavar="S",
-        help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
-    )  # fmt: skip
+    add_max_diff(parser)
     add(
         "--max-rmse", type=float, metavar="PX",
         help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import os
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError
+from vehicle_pf_tracker.cli.shared_options import add_workers
 from vehicle_pf_tracker.cli.whole_numbers import natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
 from vehicle_pf_tracker.evaluation.experiments.catalogue import (
@@ -45,10 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--first-seed", type=natural, default=0, metavar="S",
         help="the first of the seeds; to try things out take others than 0 to 9, from 100 on",
     )  # fmt: skip
-    add(
-        "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
-        help="processes; results do not depend on it (default: one per processor)",
-    )  # fmt: skip
+    add_workers(parser)
     add(
         "--quick", action="store_true",
         help=f"coarse grids and {QUICK_SEEDS} seeds, to see that everything works",

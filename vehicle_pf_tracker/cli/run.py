@@ -9,7 +9,7 @@ from pathlib import Path
 from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError, show, tell_notices
 from vehicle_pf_tracker.cli.progress import OnProgress, counting
-from vehicle_pf_tracker.evaluation.association import MAX_DIFF
+from vehicle_pf_tracker.cli.shared_options import add_max_diff
 from vehicle_pf_tracker.evaluation.interpolation import interpolated_columns
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
@@ -33,10 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="folder for estimates.csv, metrics.json and run.json; those in it are replaced",
     )  # fmt: skip
     add("--topic", help="the image topic, if the recording has several")
-    add(
-        "--max-diff", type=float, default=MAX_DIFF, metavar="S",
-        help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
-    )  # fmt: skip
+    add_max_diff(parser)
     add(
         "--interpolate-occlusions", action="store_true",
         help="add columns to estimates.csv with the path drawn straight through the frames that "

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import argparse
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli import parameter_options, system_options
 from vehicle_pf_tracker.cli.console import print_table, tell_notices
+from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers
 from vehicle_pf_tracker.cli.whole_numbers import natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
-from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 from vehicle_pf_tracker.evaluation.grid.locations import find_recordings
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
-from vehicle_pf_tracker.evaluation.grid.sources import Source, describe
+from vehicle_pf_tracker.evaluation.grid.sources import describe
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.evaluation.output_lock import alone_in
 from vehicle_pf_tracker.evaluation.report import write_report
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.evaluation.tuning import comparison
 from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES
 from vehicle_pf_tracker.evaluation.tuning.search_space import SEARCHED, search_space
@@ -80,15 +80,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--set", action="append", default=[], metavar="NAME=VALUE", dest="assignments",
         help="begin with this value, over the file; repeatable",
     )  # fmt: skip
-    add(
-        "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
-        help="processes; results do not depend on it (default: one per processor)",
-    )  # fmt: skip
+    add_workers(parser)
     add("--topic", help="the image topic, where recordings have several")
-    add(
-        "--max-diff", type=float, default=MAX_DIFF, metavar="S",
-        help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
-    )  # fmt: skip
+    add_max_diff(parser)
 
 
 def run(args: argparse.Namespace) -> int:

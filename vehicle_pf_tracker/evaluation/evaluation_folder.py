@@ -20,6 +20,7 @@ from typing import Any
 
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.evaluation.results import ESTIMATES, RUN
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.evaluation.truth_file import read_truth
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.truth import Truth
@@ -27,19 +28,6 @@ from vehicle_pf_tracker.recordings.truth import Truth
 PLAN, FAILED = "evaluation.json", "failed.json"
 TIMINGS = "timings.json"
 TRUTH = "truth.csv"
-
-
-@dataclass(frozen=True, slots=True)
-class RecordingEntry:
-    """A recording as the plan names it; sizes in px."""
-
-    name: str
-    path: str
-    topic: str
-    frames: int
-    width: int
-    height: int
-    digest: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +80,7 @@ class EvaluationFolder:
     ----------
     plan : mapping of str to Any
         `evaluation.json` as it is.
-    recordings : tuple of RecordingEntry
+    recordings : tuple of Source
         In the order of the plan.
     systems : tuple of SystemEntry
         In the order of the plan.
@@ -111,7 +99,7 @@ class EvaluationFolder:
             raise InputError(f"{path} is no folder of an evaluation: it has no {PLAN}")
         self.plan: Mapping[str, Any] = read_document(path / PLAN)
         try:
-            self.recordings = tuple(_recording(entry) for entry in self.plan["recordings"])
+            self.recordings = tuple(Source.from_json(entry) for entry in self.plan["recordings"])
             self.systems = tuple(_system(entry) for entry in self.plan["systems"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
         except (KeyError, TypeError, ValueError) as error:
@@ -174,18 +162,6 @@ def read_document(path: Path) -> dict[str, Any]:
 
 def _optional(path: Path) -> Mapping[str, Any] | None:
     return read_document(path) if path.is_file() else None
-
-
-def _recording(entry: Mapping[str, Any]) -> RecordingEntry:
-    return RecordingEntry(
-        name=str(entry["name"]),
-        path=str(entry["path"]),
-        topic=str(entry["topic"]),
-        frames=int(entry["frames"]),
-        width=int(entry["width"]),
-        height=int(entry["height"]),
-        digest=str(entry["digest"]),
-    )
 
 
 def _system(entry: Mapping[str, Any]) -> SystemEntry:

@@ -2,11 +2,11 @@ import pytest
 
 pytest.importorskip("optuna", reason="the extra [tune] is not installed")
 
-from vehicle_pf_tracker.evaluation.grid.sources import Source
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.tracking import Outcome
 from vehicle_pf_tracker.evaluation.processes import Turn
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES, mean_of_means
 from vehicle_pf_tracker.evaluation.tuning.search_space import search_space
 from vehicle_pf_tracker.evaluation.tuning.searching import Search, Trial, best_of, search

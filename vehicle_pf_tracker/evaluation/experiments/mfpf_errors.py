@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from statistics import fmean, pstdev
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vehicle_pf_tracker.evaluation.experiments import mfpf_systems as mfpf
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
+from vehicle_pf_tracker.evaluation.experiments.mfpf_case_plots import draw_by_case
 from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import FOUR, MFPF, READINGS, SINGLES
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.evaluation.plots import draw_errors
@@ -40,19 +42,15 @@ def report(results: Results, size: Size) -> Report:
 
 
 def _figure(results: Results, size: Size) -> Figure:
-    names, seed = mfpf.cases(size), size.seeds[0]
-    figure = Figure(figsize=(11, 2.9 * ((len(names) + 1) // 2) + 0.5), layout="constrained")
-    axes = figure.subplots((len(names) + 1) // 2, 2, squeeze=False)
-    for ax, case in zip(axes.flat, names, strict=True):
+    def draw(axes: Axes, case: str) -> None:
         # MFPF first: its line is solid.
-        runs = {s.label: mfpf.run_scores(results, case, s, seed) for s in (MFPF, *SINGLES)}
-        draw_errors(ax, runs, f"case {case[-1]}: {mfpf.told(case)}")
-        ax.title.set_fontsize("medium")
-        ax.set(xlabel="", ylabel="error, px")
-    for ax in axes[-1]:
-        ax.set(xlabel="frame")
-    mfpf.shared_legend(figure, axes.flat)
-    return figure
+        runs = {
+            system.label: mfpf.run_scores(results, case, system, size.seeds[0])
+            for system in (MFPF, *SINGLES)
+        }
+        draw_errors(axes, runs, case)
+
+    return draw_by_case(size, draw, "error, px", height=2.9)
 
 
 def _claims(results: Results, size: Size) -> tuple[Claim, ...]:

@@ -19,6 +19,7 @@ from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import (
     OURS,
     READINGS,
     read_as,
+    read_label,
 )
 from vehicle_pf_tracker.evaluation.experiments.numbers import mean_and_spread
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
@@ -149,7 +150,7 @@ def report(results: Results, size: Size) -> Report:
         for reading in READINGS
     }
     table = DataTable(
-        ("", *(f"{label}{'' if reading == OURS else ', ' + reading}"
+        ("", *(read_label(label, reading)
                for reading in READINGS for label in FEATURES.values())),
         tuple(
             (_TITLES[situation], *(mean_and_spread(found[reading][situation][name], 2)

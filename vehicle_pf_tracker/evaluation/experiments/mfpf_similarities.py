@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from vehicle_pf_tracker.evaluation.experiments import mfpf_systems as mfpf
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
+from vehicle_pf_tracker.evaluation.experiments.mfpf_case_plots import draw_by_case
 from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import FEATURES, MFPF, OURS, READINGS
 from vehicle_pf_tracker.evaluation.experiments.numbers import mean_and_spread
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
@@ -53,18 +54,10 @@ def _rows(results: Results, case: str, seed: int, reading: str) -> list[tuple[En
 
 
 def _figure(results: Results, size: Size) -> Figure:
-    names = mfpf.cases(size)
-    figure = Figure(figsize=(11, 2.7 * ((len(names) + 1) // 2) + 0.5), layout="constrained")
-    axes = figure.subplots((len(names) + 1) // 2, 2, sharey=True, squeeze=False)
-    for ax, case in zip(axes.flat, names, strict=True):
-        _draw(ax, results, case, size.seeds[0])
-        ax.set_title(f"case {case[-1]}: {mfpf.told(case)}", fontsize="medium")
-    for ax in axes[-1]:
-        ax.set(xlabel="frame")
-    for ax in axes[:, 0]:
-        ax.set(ylabel="average similarity")
-    mfpf.shared_legend(figure, axes.flat)
-    return figure
+    def draw(axes: Axes, case: str) -> None:
+        _draw(axes, results, case, size.seeds[0])
+
+    return draw_by_case(size, draw, "average similarity", height=2.7, one_scale=True)
 
 
 def _draw(axes: Axes, results: Results, case: str, seed: int) -> None:

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
-
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from vehicle_pf_tracker.evaluation.experiments.cells import RunCell, SceneChoice, System
 from vehicle_pf_tracker.evaluation.experiments.experiment import Results, Size
@@ -56,13 +52,17 @@ LAST_FRAMES = 20
 """Whoever is close throughout these has followed to the end."""
 
 
+def read_label(label: str, reading: str) -> str:
+    """Name a filter, or a feature, under `reading`; ours goes without saying."""
+    return label if reading == OURS else f"{label}, {reading}"
+
+
 def read_as(system: System, reading: str) -> System:
     """Give the settings of `reading` to a filter, under a name of its own."""
     settings = dict(READINGS[reading])
     if reading == OURS and system.variant in ("mfpf", "sfpf_edge"):
         settings |= _EDGES
-    label = system.label if reading == OURS else f"{system.label}, {reading}"
-    return replace(system.but(settings), label=label)
+    return replace(system.but(settings), label=read_label(system.label, reading))
 
 
 def cases(size: Size) -> tuple[str, ...]:
@@ -147,14 +147,3 @@ def setting(size: Size) -> str:
 
 def _in_words(settings: Mapping[str, Value]) -> str:
     return ", ".join(f"`{name}` {value:g}" for name, value in settings.items())
-
-
-def shared_legend(figure: Figure, axes: Iterable[Axes]) -> None:
-    """Put one legend below all plots, each name once."""
-    handles: dict[str, Artist] = {}
-    for ax in axes:
-        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
-            handles.setdefault(label, handle)
-    figure.legend(
-        list(handles.values()), list(handles), loc="outside lower center", ncols=7, frameon=False
-    )

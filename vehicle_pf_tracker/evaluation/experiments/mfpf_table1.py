@@ -159,7 +159,7 @@ def _data(results: Results, size: Size) -> DataTable:
 
 def _rms_table(errors: Mapping[str, Errors], size: Size) -> DataTable:
     rows: list[tuple[Entry, ...]] = [
-        (f"{label}{'' if reading == OURS else ', ' + reading}",
+        (mfpf.read_label(label, reading),
          *(mean_and_spread(of_case[label]) for of_case in found.values()),
          mean_and_spread(_over_cases(found, label)))
         for reading, found in errors.items()
@@ -178,7 +178,7 @@ def _followed_table(
     followed: Mapping[str, Mapping[str, Mapping[str, Sequence[bool]]]], size: Size
 ) -> DataTable:
     rows: list[tuple[Entry, ...]] = [
-        (f"{label}{'' if reading == OURS else ', ' + reading}",
+        (mfpf.read_label(label, reading),
          *(sum(of_case[label]) for of_case in found.values()))
         for reading, found in followed.items()
         for label in _PAPER

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from statistics import fmean
 
-from matplotlib.figure import Figure
-
 from vehicle_pf_tracker.evaluation.experiments import mfpf_systems as mfpf
-from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
+from vehicle_pf_tracker.evaluation.experiments.case_figure import Values
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
-from vehicle_pf_tracker.evaluation.experiments.mfpf_share import share_figure, share_table
-from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import FEATURES, MFPF, OURS, READINGS
+from vehicle_pf_tracker.evaluation.experiments.mfpf_share import ShareWords, share_report
+from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import FEATURES, MFPF, READINGS
 from vehicle_pf_tracker.evaluation.experiments.numbers import median_and_range
-from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
+from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds
 
 _PLACE = "section V, table II"
 _PAPER = {
@@ -25,9 +23,6 @@ _PAPER = {
 _ALWAYS, _OFTEN = 95.0, 80.0
 """Percent of the frames that count as always, and as nearly always."""
 
-Shares = Mapping[str, Mapping[str, Sequence[float]]]
-"""Percent of the frames for each seed, by case and by feature."""
-
 
 def report(results: Results, size: Size) -> Report:
     """Count frames, and judge."""
@@ -36,27 +31,14 @@ def report(results: Results, size: Size) -> Report:
         for reading in READINGS
     }
     hidden = {reading: _hidden_shares(results, size, reading) for reading in READINGS}
-    rows: list[tuple[Entry, ...]] = [
-        (reading, case, label, seed, value)
-        for reading, found in shares.items()
-        for case, of_case in found.items()
-        for label, values in of_case.items()
-        for seed, value in zip(size.seeds, values, strict=True)
-    ]
-    title = (
+    words = ShareWords(
         "Percent of the frames in which the average similarity is above its threshold, or, for "
-        "MFPF, which are not in prediction mode; mean ± standard deviation over the seeds:"
+        "MFPF, which are not in prediction mode; mean ± standard deviation over the seeds:",
+        of="feature",
+        column="percent_above_threshold",
+        axis="frames above the threshold, %",
     )
-    return Report(
-        DataTable(("reading", "case", "feature", "seed", "percent_above_threshold"), tuple(rows)),
-        _figure(shares[OURS]),
-        Verdict(_claims(shares, hidden), mfpf.setting(size)),
-        {title: share_table(shares, _PAPER)},
-    )
-
-
-def _figure(found: Shares) -> Figure:
-    return share_figure(found, "frames above the threshold, %")
+    return share_report(shares, _PAPER, size, words, _claims(shares, hidden))
 
 
 def _shares(results: Results, size: Size, case: str, reading: str) -> dict[str, list[float]]:
@@ -85,7 +67,7 @@ def _hidden_shares(results: Results, size: Size, reading: str) -> dict[str, list
 
 
 def _claims(
-    shares: Mapping[str, Shares], hidden: Mapping[str, Mapping[str, Sequence[float]]]
+    shares: Mapping[str, Values], hidden: Mapping[str, Mapping[str, Sequence[float]]]
 ) -> tuple[Claim, ...]:
     return (
         Claim(
@@ -110,7 +92,7 @@ def _claims(
     )
 
 
-def _open(reading: str, found: Shares) -> Finding:
+def _open(reading: str, found: Values) -> Finding:
     without = {case: of for case, of in found.items() if case in mfpf.WITHOUT_HIDING}
     least = [min(fmean(v) for label, v in of.items() if label != MFPF.label)
              for of in without.values()]  # fmt: skip
@@ -125,7 +107,7 @@ def _open(reading: str, found: Shares) -> Finding:
     return Finding(reading, holds, f"percent of the frames, {told}")
 
 
-def _less(reading: str, found: Shares) -> Finding:
+def _less(reading: str, found: Values) -> Finding:
     margins = {
         case: fmean(of[MFPF.label]) - max(fmean(v) for k, v in of.items() if k != MFPF.label)
         for case, of in found.items()

@@ -7,18 +7,16 @@ from statistics import fmean
 
 from vehicle_pf_tracker.evaluation.experiments import mfpf_systems as mfpf
 from vehicle_pf_tracker.evaluation.experiments.case_figure import Values
-from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
-from vehicle_pf_tracker.evaluation.experiments.mfpf_share import share_figure, share_table
+from vehicle_pf_tracker.evaluation.experiments.mfpf_share import ShareWords, share_report
 from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import (
     FOUR,
     MFPF,
-    OURS,
     READINGS,
     SINGLES,
 )
 from vehicle_pf_tracker.evaluation.experiments.numbers import mean_and_spread
-from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
+from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 
 _PLACE = "section V, table III"
@@ -33,23 +31,14 @@ _PAPER = {
 def report(results: Results, size: Size) -> Report:
     """Take the shares, and judge them."""
     shares = {reading: _shares(results, size, reading) for reading in READINGS}
-    rows: list[tuple[Entry, ...]] = [
-        (reading, case, label, seed, value)
-        for reading, found in shares.items()
-        for case, of_case in found.items()
-        for label, values in of_case.items()
-        for seed, value in zip(size.seeds, values, strict=True)
-    ]
-    title = (
+    words = ShareWords(
         f"Percent of the frames with an error below {CLOSE_PX:g} px, mean ± standard deviation "
-        "over the seeds:"
+        "over the seeds:",
+        of="filter",
+        column="percent_below_15px",
+        axis=f"errors below {CLOSE_PX:g} px, %",
     )
-    return Report(
-        DataTable(("reading", "case", "filter", "seed", "percent_below_15px"), tuple(rows)),
-        share_figure(shares[OURS], f"errors below {CLOSE_PX:g} px, %"),
-        Verdict(_claims(shares), mfpf.setting(size)),
-        {title: share_table(shares, _PAPER)},
-    )
+    return share_report(shares, _PAPER, size, words, _claims(shares))
 
 
 def _shares(results: Results, size: Size, reading: str) -> dict[str, dict[str, list[float]]]:

@@ -6,10 +6,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import cell_folder, safe_name
-from vehicle_pf_tracker.evaluation.grid.sources import Source
 from vehicle_pf_tracker.evaluation.grid.starts import USUAL, Start
 from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem
 from vehicle_pf_tracker.evaluation.identity import result_key, variant_modules
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 BESIDE = "robustness"

@@ -5,13 +5,12 @@ from __future__ import annotations
 import hashlib
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
-from typing import Any
 
 from vehicle_pf_tracker.evaluation.association import associate
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
 from vehicle_pf_tracker.evaluation.grid.locations import at_hand, is_url
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
@@ -21,37 +20,6 @@ from vehicle_pf_tracker.recordings.truth import Truth
 FRAMES_BYTES = 1 << 30
 """Decoded frames that a process keeps at most; what is larger is decoded anew for each run."""
 _BLOCK = 1 << 22
-
-
-@dataclass(frozen=True, slots=True)
-class Source:
-    """A recording of the plan.
-
-    Attributes
-    ----------
-    name : str
-        Its name in all tables, and of its folders.
-    path : str
-        Path or URL.
-    topic : str
-        The image topic.
-    frames, width, height : int
-        How many images it has, and their size in px.
-    digest : str
-        SHA-256 of its content.
-    """
-
-    name: str
-    path: str
-    topic: str
-    frames: int
-    width: int
-    height: int
-    digest: str
-
-    def to_json(self) -> dict[str, Any]:
-        """Everything as plain values."""
-        return asdict(self)
 
 
 class Footage:

@@ -22,13 +22,14 @@ import numpy as np
 from vehicle_pf_tracker.evaluation.association import max_diff_ns
 from vehicle_pf_tracker.evaluation.evaluation_folder import TIMINGS
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
-from vehicle_pf_tracker.evaluation.grid.sources import Footage, Source, footage
+from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
 from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem
 from vehicle_pf_tracker.evaluation.offline import with_target
 from vehicle_pf_tracker.evaluation.output_files import write_json
 from vehicle_pf_tracker.evaluation.peers.client import Peer
 from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
 from vehicle_pf_tracker.evaluation.run_info import versions
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import Frame

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from vehicle_pf_tracker.evaluation.evaluation_folder import RecordingEntry
 from vehicle_pf_tracker.evaluation.grid.locations import at_hand
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import Frame, frame_size
@@ -95,7 +95,7 @@ def longest_occlusions(truths: Mapping[int, Truth]) -> list[tuple[int, int]]:
     return sorted(longest)
 
 
-def take_stills(entry: RecordingEntry, shots: Iterable[Shot]) -> dict[Shot, Still]:
+def take_stills(entry: Source, shots: Iterable[Shot]) -> dict[Shot, Still]:
     """Read the frames of all shots from the recording in one pass, and draw on them.
 
     Raises
@@ -115,7 +115,7 @@ def take_stills(entry: RecordingEntry, shots: Iterable[Shot]) -> dict[Shot, Stil
     return stills
 
 
-def numbered_frames(entry: RecordingEntry) -> Iterator[tuple[int, Frame]]:
+def numbered_frames(entry: Source) -> Iterator[tuple[int, Frame]]:
     """Give the images of a recording that can be read, with their numbers from 1.
 
     Raises

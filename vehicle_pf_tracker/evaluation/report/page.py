@@ -10,7 +10,6 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from vehicle_pf_tracker.evaluation.evaluation_folder import RecordingEntry
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report import filmstrip, page_tables
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
@@ -34,6 +33,7 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
 )
 from vehicle_pf_tracker.evaluation.report.speed import speed_note, speed_table
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.truth import Truth
 
@@ -143,7 +143,7 @@ def _rank_notes(aggregates: Aggregates) -> Iterator[str]:
 def _section(
     evaluation: ScoredEvaluation,
     aggregates: Aggregates,
-    entry: RecordingEntry,
+    entry: Source,
     slots: Mapping[str, int],
     maker: SvgMaker,
     images: bool,
@@ -162,7 +162,7 @@ def _section(
     )
 
 
-def _recording_facts(entry: RecordingEntry, truths: Mapping[int, Truth]) -> str:
+def _recording_facts(entry: Source, truths: Mapping[int, Truth]) -> str:
     kinds = Counter(truth.occlusion.name.lower() for truth in truths.values())
     parts = [counted(entry.frames, "frame"), f"{entry.width} × {entry.height} px"]
     parts += [f"{len(truths)} with truth"] if len(truths) != entry.frames else []
@@ -172,7 +172,7 @@ def _recording_facts(entry: RecordingEntry, truths: Mapping[int, Truth]) -> str:
 
 
 def _strips(
-    entry: RecordingEntry,
+    entry: Source,
     truths: Mapping[int, Truth],
     runs: Mapping[str, Sequence[ScoredRun]],
     slots: Mapping[str, int],

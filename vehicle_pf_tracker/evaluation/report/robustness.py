@@ -86,14 +86,8 @@ def _shifted(
 def _frames(
     folder: EvaluationFolder, systems: Sequence[SystemEntry], slots: Mapping[str, int]
 ) -> RobustnessSection:
-    rows = []
-    for system in systems:
-        found = _found(folder, FRAMES, system, f"*/{METRICS}")
-        if not found:
-            continue
-        cells = [_cell(_means(found, key), decimals) for key, decimals in
-                 ((SUCCESS.key, 3), ("precision_20px", 3), ("rmse_px", 1))]  # fmt: skip
-        rows.append(Row(system.label, slots.get(system.label), (*cells, _count(found))))
+    found = [(s.label, _found(folder, FRAMES, s, f"*/{METRICS}")) for s in systems]
+    rows = _mean_rows(found, slots, {SUCCESS.key: 3, "precision_20px": 3, "rmse_px": 1})
     headers = (
         Header("success AUC"),
         Header("precision at 20 px"),
@@ -104,20 +98,14 @@ def _frames(
         "Started on the true box of later frames, and scored from there on (OTB's temporal "
         "robustness), with the first seed."
     )
-    return RobustnessSection("Other first frames", about, PageTable((), headers, tuple(rows)))
+    return RobustnessSection("Other first frames", about, PageTable((), headers, rows))
 
 
 def _restarts(
     folder: EvaluationFolder, systems: Sequence[SystemEntry], slots: Mapping[str, int]
 ) -> RobustnessSection:
-    rows = []
-    for system in systems:
-        found = _found(folder, RESTARTS, system, _RESTARTS_FILE)
-        if not found:
-            continue
-        cells = [_cell(_means(found, key), decimals) for key, decimals in
-                 (("failures", 2), ("accuracy", 3), ("robustness", 3))]  # fmt: skip
-        rows.append(Row(system.label, slots.get(system.label), (*cells, _count(found))))
+    found = [(s.label, _found(folder, RESTARTS, s, _RESTARTS_FILE)) for s in systems]
+    rows = _mean_rows(found, slots, {"failures": 2, "accuracy": 3, "robustness": 3})
     headers = (
         Header(
             "failures", "per run", "Times that the estimate lost all overlap and was restarted."
@@ -132,7 +120,22 @@ def _restarts(
         "In the manner of VOT: a track without overlap with the visible vehicle has failed, and is "
         "started anew on the truth five frames later, once the vehicle is in full view."
     )
-    return RobustnessSection("Failures and re-starts", about, PageTable((), headers, tuple(rows)))
+    return RobustnessSection("Failures and re-starts", about, PageTable((), headers, rows))
+
+
+def _mean_rows(
+    found: Sequence[tuple[str, Documents]], slots: Mapping[str, int], decimals: Mapping[str, int]
+) -> tuple[Row, ...]:
+    """Give each system with results its means, and how many runs they are of."""
+    return tuple(
+        Row(
+            label,
+            slots.get(label),
+            (*(_cell(_means(of, key), places) for key, places in decimals.items()), _count(of)),
+        )
+        for label, of in found
+        if of
+    )
 
 
 def _found(

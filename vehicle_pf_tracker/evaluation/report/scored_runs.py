@@ -19,12 +19,12 @@ from vehicle_pf_tracker.evaluation.curves import (
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     Cell,
     EvaluationFolder,
-    RecordingEntry,
     SystemEntry,
 )
 from vehicle_pf_tracker.evaluation.failures import first_failure
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.truth import Truth
@@ -95,7 +95,7 @@ class ScoredEvaluation:
     failed: tuple[FailedCell, ...]
 
     @property
-    def recordings(self) -> tuple[RecordingEntry, ...]:
+    def recordings(self) -> tuple[Source, ...]:
         """Those of the plan."""
         return self.folder.recordings
 
@@ -132,7 +132,7 @@ def typical(runs: Sequence[ScoredRun]) -> ScoredRun | None:
     return ordered[(len(ordered) - 1) // 2] if ordered else None
 
 
-def _cells(folder: EvaluationFolder) -> Iterator[tuple[RecordingEntry, SystemEntry, int]]:
+def _cells(folder: EvaluationFolder) -> Iterator[tuple[Source, SystemEntry, int]]:
     for recording, system in itertools.product(folder.recordings, folder.systems):
         for seed in folder.seeds_of(system):
             yield recording, system, seed

@@ -8,11 +8,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from vehicle_pf_tracker.evaluation.evaluation_folder import RecordingEntry
 from vehicle_pf_tracker.evaluation.output_files import make_folder, replacing
 from vehicle_pf_tracker.evaluation.report.filmstrip import numbered_frames
 from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, colour_of, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun, typical
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.recordings.truth import Truth
@@ -54,7 +54,7 @@ def write_videos(
 
 def _write(
     path: Path,
-    entry: RecordingEntry,
+    entry: Source,
     truths: Mapping[int, Truth],
     runs: Mapping[str, ScoredRun],
     slots: Mapping[str, int],

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.running import Runner
-from vehicle_pf_tracker.evaluation.grid.sources import Source
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.identity import scoring_digest
 from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
+from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.evaluation.tuning.objective import Objective, mean_of_means
 from vehicle_pf_tracker.evaluation.tuning.search_space import Dimension
 from vehicle_pf_tracker.features.errors import InputError

@@ -1,0 +1,25 @@
+"""Options that several verbs have."""
+
+from __future__ import annotations
+
+import argparse
+import os
+
+from vehicle_pf_tracker.cli.whole_numbers import positive
+from vehicle_pf_tracker.evaluation.association import MAX_DIFF
+
+
+def add_max_diff(parser: argparse.ArgumentParser) -> None:
+    """Add what association of estimates and truth needs."""
+    parser.add_argument(
+        "--max-diff", type=float, default=MAX_DIFF, metavar="S",
+        help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
+    )  # fmt: skip
+
+
+def add_workers(parser: argparse.ArgumentParser) -> None:
+    """Add the number of processes."""
+    parser.add_argument(
+        "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
+        help="processes; results do not depend on it (default: one per processor)",
+    )  # fmt: skip
