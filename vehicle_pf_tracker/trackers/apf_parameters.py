@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.trackers.clear_level import ClearLevelParameters
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.parameters import group, parameter
+from vehicle_pf_tracker.trackers.shared_parameters import (
+    as_printed_switch,
+    histogram_bits_parameter,
+    resampling_parameter,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,26 +148,9 @@ class ApfVelocityParameters:
 class ApfParameters(ParticleParameters):
     """Parameters of `apf`."""
 
-    as_printed: bool = parameter(
-        False,
-        "Follow the paper to the letter: overrides every reading below that departs from it.",
-        source="READINGS 1, 5, 6, 7, 11",
-    )
-    histogram_bits: int = parameter(
-        3,
-        "More: finer colours, more easily upset by light and noise.",
-        minimum=1,
-        maximum=5,
-        unit="bits/channel",
-        source="P1 section III-C",
-        effect="relearns",
-    )
-    resampling: str = parameter(
-        "multinomial",
-        "How ancestors are drawn; systematic and stratified vary less.",
-        choices=SCHEMES,
-        source="P1 Algorithm 2",
-    )
+    as_printed: bool = as_printed_switch("READINGS 1, 5, 6, 7, 11")
+    histogram_bits: int = histogram_bits_parameter()
+    resampling: str = resampling_parameter("P1 Algorithm 2")
     motion: ApfMotionParameters = group(ApfMotionParameters)
     likelihood: LikelihoodParameters = group(LikelihoodParameters)
     reference: ApfReferenceParameters = group(ApfReferenceParameters)

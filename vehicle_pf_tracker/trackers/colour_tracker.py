@@ -24,6 +24,10 @@ from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.parameters import group, parameter
+from vehicle_pf_tracker.trackers.shared_parameters import (
+    histogram_bits_parameter,
+    resampling_parameter,
+)
 
 VELOCITY_WINDOW = 8
 """Displacements in the reported velocity, where the filter itself does not use it."""
@@ -41,21 +45,8 @@ class ColourParameters(ParticleParameters):
         unit="px/frame",
         source="P1 eq. 7",
     )
-    histogram_bits: int = parameter(
-        3,
-        "More: finer colours, more easily upset by light and noise.",
-        minimum=1,
-        maximum=5,
-        unit="bits/channel",
-        source="P1 section III-C",
-        effect="relearns",
-    )
-    resampling: str = parameter(
-        "multinomial",
-        "How ancestors are drawn; systematic and stratified vary less.",
-        choices=SCHEMES,
-        source="P1 Algorithm 2",
-    )
+    histogram_bits: int = histogram_bits_parameter()
+    resampling: str = resampling_parameter("P1 Algorithm 2")
     # 0.158 is Perez's lambda of 20.
     likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.158)
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from vehicle_pf_tracker.features.glcm import Cooccurrence
 from vehicle_pf_tracker.features.haralick import HaralickStatistics
 from vehicle_pf_tracker.features.lbp import BinaryPatterns
 from vehicle_pf_tracker.features.window_feature import WindowFeature
-from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.parameters import group, parameter
+from vehicle_pf_tracker.trackers.shared_parameters import as_printed_switch, resampling_parameter
 
 TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
     "glcm": Cooccurrence,
@@ -21,6 +21,16 @@ TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
     "haralick": HaralickStatistics,
 }
 """The textures that P2 tried, by the word that the parameter takes."""
+
+
+def _texture_parameter() -> Any:
+    return parameter(
+        "glcm",
+        "The histogram that describes texture; the paper tried all three and kept glcm.",
+        choices=TEXTURES,
+        source="P2 section III-D",
+        effect="relearns",
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,11 +135,7 @@ class EdgeParameters:
 class FeatureFilterParameters(ParticleParameters):
     """What `mfpf` and its single-feature filters have in common."""
 
-    as_printed: bool = parameter(
-        False,
-        "Follow the paper to the letter: overrides every reading below that departs from it.",
-        source="READINGS 1, 12 to 19",
-    )
+    as_printed: bool = as_printed_switch("READINGS 1, 12 to 19")
     reference_weight: float = parameter(
         0.7,
         "Higher: the reference keeps more of the first frame and follows the last one less.",
@@ -151,12 +157,7 @@ class FeatureFilterParameters(ParticleParameters):
         choices=("mean", "best"),
         source="P2 eq. 12, 13 and 18, READINGS 17",
     )
-    resampling: str = parameter(
-        "multinomial",
-        "How ancestors are drawn; systematic and stratified vary less.",
-        choices=SCHEMES,
-        source="P2 eq. 15",
-    )
+    resampling: str = resampling_parameter("P2 eq. 15")
     resample_below: float = parameter(
         0.5,
         "Higher: resamples at larger effective sample sizes; 1 always.",
@@ -194,13 +195,7 @@ class SfpfEdgeParameters(FeatureFilterParameters):
 class SfpfTextureParameters(FeatureFilterParameters):
     """Parameters of `sfpf_texture`."""
 
-    texture: str = parameter(
-        "glcm",
-        "The histogram that describes texture; the paper tried all three and kept glcm.",
-        choices=TEXTURES,
-        source="P2 section III-D",
-        effect="relearns",
-    )
+    texture: str = _texture_parameter()
 
     def effective(self) -> SfpfTextureParameters:
         """Return the parameters in force: those of the print where `as_printed` is set."""
@@ -212,13 +207,7 @@ class MfpfParameters(FeatureFilterParameters):
     """Parameters of `mfpf`."""
 
     edges: EdgeParameters = group(EdgeParameters)
-    texture: str = parameter(
-        "glcm",
-        "The histogram that describes texture; the paper tried all three and kept glcm.",
-        choices=TEXTURES,
-        source="P2 section III-D",
-        effect="relearns",
-    )
+    texture: str = _texture_parameter()
     joint_resampling: bool = parameter(
         True,
         "Resample once, on the product of the features' weights; off keeps the particles that "

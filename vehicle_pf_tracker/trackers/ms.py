@@ -22,21 +22,14 @@ from vehicle_pf_tracker.trackers.contract import CommonParameters
 from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.parameters import parameter
+from vehicle_pf_tracker.trackers.shared_parameters import histogram_bits_parameter
 
 
 @dataclass(frozen=True, slots=True)
 class MsParameters(CommonParameters):
     """Parameters of `ms`."""
 
-    histogram_bits: int = parameter(
-        3,
-        "More: finer colours, more easily upset by light and noise.",
-        minimum=1,
-        maximum=5,
-        unit="bits/channel",
-        source="P1 section III-C",
-        effect="relearns",
-    )
+    histogram_bits: int = histogram_bits_parameter()
     iterations: int = parameter(
         15,
         "More: vehicles that moved further are still reached, where steps stay long.",

@@ -20,17 +20,14 @@ from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourT
 from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters, log_likelihood
 from vehicle_pf_tracker.trackers.parameters import group, parameter
+from vehicle_pf_tracker.trackers.shared_parameters import as_printed_switch
 
 
 @dataclass(frozen=True, slots=True)
 class RepeatedResamplingParameters(ColourParameters):
     """What both filters of P3 have."""
 
-    as_printed: bool = parameter(
-        False,
-        "Follow the paper to the letter: overrides every reading below that departs from it.",
-        source="READINGS 21 and 22",
-    )
+    as_printed: bool = as_printed_switch("READINGS 21 and 22")
     sigma: float = parameter(
         14.0,
         "About 1.75 times the vehicle's speed: less loses fast vehicles, more follows look-alikes.",
