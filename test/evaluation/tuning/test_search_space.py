@@ -2,7 +2,7 @@ import pytest
 
 from vehicle_pf_tracker.evaluation.tuning.search_space import SEARCHED, Dimension, search_space
 from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.trackers.parameters import specs, to_mapping
+from vehicle_pf_tracker.trackers.parameters import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 
@@ -26,7 +26,17 @@ def test_every_variant_has_a_space_that_holds_its_defaults_and_keeps_to_the_boun
 
 
 def test_what_is_named_for_a_variant_is_there():
-    assert set(SEARCHED) <= set(VARIANTS)
+    assert set(SEARCHED) == set(VARIANTS)
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+@pytest.mark.parametrize("end", ["low", "high"])
+def test_each_end_of_a_range_goes_with_the_defaults_of_the_others(name, end):
+    kind = find_variant(name).parameters
+    for dimension in space_of(name):
+        if not dimension.choices:
+            value = dimension.kind(getattr(dimension, end))
+            from_mapping(kind, {dimension.name: value}).validate()
 
 
 @pytest.mark.parametrize(

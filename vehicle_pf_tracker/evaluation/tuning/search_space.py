@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
 from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.parameters import ParameterSpec, Value, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant
 
@@ -44,9 +43,22 @@ SEARCHED: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "sfpf_texture": _FEATURES,
         "conventional": _KHONG,
         "adaptive": (*_KHONG, "low_weight", "occlusion.n_eff"),
+        "fusion": (
+            "sharpness",
+            "motion.sigma",
+            "motion.gain=0.05:0.8",
+            "cues.template_rate=0.01:0.2",
+            "cues.delay=0:8",
+            "hiding.confirm",
+            # Up to evidence.clear_above, which it must not exceed.
+            "evidence.occluded_below=0.5:0.8",
+        ),
     }
 )
-"""What matters most for each variant; of others all real numbers of their own are searched."""
+"""What matters most for each variant.
+
+Words as `search_space` takes them: with a range where the one that would be derived is of no use.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,21 +126,13 @@ def search_space(
         If there is no such parameter, or a range is none or not within the parameter's bounds.
     """
     table = {name: spec for name, spec in specs(variant.parameters).items() if name != "seed"}
-    wanted = words or _usual(variant, table)
+    wanted = words or SEARCHED[variant.name]
     space = [_dimension(table, values, word) for word in wanted]
     names = [dimension.name for dimension in space]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise InputError(f"--search names {twice} twice")
     return space
-
-
-def _usual(variant: Variant, table: Mapping[str, ParameterSpec]) -> Iterable[str]:
-    common = specs(ParticleParameters)
-    own = [
-        name for name, s in table.items() if name not in common and s.kind is float and s.default
-    ]
-    return SEARCHED.get(variant.name, tuple(own))
 
 
 def _dimension(
