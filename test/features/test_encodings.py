@@ -2,13 +2,12 @@
 
 import array
 
-import cv2
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.features.encodings import ENCODINGS, decode_compressed, to_rgb
+from vehicle_pf_tracker.features.encodings import ENCODINGS, to_rgb
 from vehicle_pf_tracker.features.errors import InputError
 
 RED, GREEN, BLUE = (200, 10, 30), (20, 220, 40), (5, 15, 250)
@@ -149,36 +148,3 @@ def test_any_header_gives_a_frame_or_an_input_error(encoding, height, width, ste
         return
     assert frame.shape == (height, width, 3)
     assert frame.dtype == np.uint8
-
-
-def coded(extension, image):
-    return cv2.imencode(extension, image)[1].tobytes()
-
-
-def test_png_keeps_every_pixel():
-    assert np.array_equal(decode_compressed("png", coded(".png", COLOURS[..., ::-1])), COLOURS)
-
-
-def test_jpeg_keeps_the_order_of_the_channels():
-    flat = np.full((16, 16, 3), RED, np.uint8)
-    frame = decode_compressed("rgb8; jpeg compressed bgr8", coded(".jpg", flat[..., ::-1]))
-    assert np.abs(frame.astype(int) - RED).max() <= 3
-
-
-def test_grey_jpeg_becomes_rgb():
-    frame = decode_compressed("jpeg", coded(".jpg", np.full((16, 16), 90, np.uint8)))
-    assert frame.shape == (16, 16, 3)
-    assert np.abs(frame.astype(int) - 90).max() <= 1
-
-
-@pytest.mark.parametrize("data", [b"", b"not an image", b"\x89PNG\r\n\x1a\n" + bytes(20)])
-def test_rubbish_is_refused(data):
-    with pytest.raises(InputError, match="compressed image"):
-        decode_compressed("jpeg", data)
-
-
-@pytest.mark.parametrize("share", [0.3, 0.6, 0.99])
-def test_a_cut_jpeg_is_refused_rather_than_filled_with_grey(share):
-    data = coded(".jpg", np.random.default_rng(1).integers(0, 255, (64, 64, 3), np.uint8))
-    with pytest.raises(InputError, match="cut off"):
-        decode_compressed("jpeg", data[: int(share * len(data))])

@@ -49,6 +49,20 @@ def test_compressed_frames_come_back(tmp_path, compression):
     assert stamps(recording) == [stamp_of(index) for index in range(5)]
 
 
+def test_a_compressed_frame_that_claims_gigabytes_is_left_out_and_told(tmp_path):
+    with RecordingWriter(tmp_path / "bag") as writer:
+        for index in range(3):
+            coded = cv2.imencode(".png", frame_of(index)[..., ::-1])[1].tobytes()
+            if index == 1:
+                size = (30_000).to_bytes(4, "big")
+                coded = coded[:16] + size + size + coded[24:]
+            writer.write_compressed(stamp_of(index), "png", coded)
+    recording = Recording(tmp_path / "bag")
+    frames = [found.frame for found in recording.frames()]
+    assert [frame is None for frame in frames] == [False, True, False]
+    assert "claims 30000x30000 px" in " ".join(recording.notices)
+
+
 def test_raw_frames_are_views_that_cannot_be_written_to(record):
     frame = next(Recording(record(1)).frames()).frame
     assert not frame.flags.writeable

@@ -24,7 +24,7 @@ from tracker_rig import (
 )
 
 from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.encodings import decode_compressed
+from vehicle_pf_tracker.features.compressed_image import decode_compressed
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session
@@ -119,6 +119,25 @@ def test_compressed_images_give_the_numbers_of_their_decoded_frames(bench):
     ]
     decoded = [decode_compressed("jpeg", data) for data in coded]
     assert [without_times(answer) for answer in answers] == offline("apf", decoded)
+
+
+def test_a_compressed_image_that_claims_gigabytes_is_answered_and_the_track_kept(bench):
+    frames = [cv2.imencode(".png", frame[..., ::-1])[1].tobytes() for frame in road(5)]
+    size = (30_000).to_bytes(4, "big")
+    bomb = frames[3][:16] + size + size + frames[3][24:]
+    rig = Rig(
+        bench,
+        on_target(image_transport="compressed"),
+        kind=CompressedImage,
+        topic="image/compressed",
+    )
+    answers = [
+        rig.show(CompressedImage(header=header(index), format="png", data=array.array("B", data)))
+        for index, data in enumerate([*frames[:3], bomb, frames[4]])
+    ]
+    modes = [answer.status[0].message for answer in answers]
+    assert modes == ["TRACKING"] * 3 + ["REJECTED", "TRACKING"]
+    assert "claims 30000x30000 px" in values_of(answers[3])["reason"]
 
 
 def broken(index: int, **changes) -> Image:

@@ -80,48 +80,11 @@ def to_rgb(
     return frame
 
 
-def decode_compressed(format: str, data: Buffer) -> Frame:  # noqa: A002 (the ROS field's name)
-    """Decode the data of a `sensor_msgs/CompressedImage` (JPEG or PNG) to an RGB frame.
-
-    Parameters
-    ----------
-    format : str
-        The message's format, for the error only: the data say themselves what they are.
-    data : buffer
-        The file's bytes.
-
-    Raises
-    ------
-    InputError
-        If the data are empty, cut off, or no image that OpenCV can decode.
-    """
-    coded = _flat(data)
-    if coded.size == 0:
-        raise InputError(f"a compressed image (format {format!r}) holds no data")
-    if _is_cut_jpeg(coded):
-        raise InputError(f"a compressed image (format {format!r}) is cut off before its end")
-    try:
-        image = cv2.imdecode(coded, cv2.IMREAD_COLOR)
-    except cv2.error:
-        image = None
-    if image is None:
-        raise InputError(f"a compressed image (format {format!r}) cannot be decoded; is it JPEG?")
-    return cv2.cvtColor(image, cv2.COLOR_BGR2RGB, dst=image)  # type: ignore[return-value]
-
-
-def _flat(data: Buffer) -> Bytes:
+def flat_bytes(data: Buffer) -> Bytes:
+    """View a buffer as an array of its bytes."""
     if isinstance(data, np.ndarray):
         return data.reshape(-1)
     return np.frombuffer(data, np.uint8)
-
-
-def _is_cut_jpeg(coded: Bytes) -> bool:
-    """Tell whether a JPEG has no end marker, which its decoder would fill up with grey.
-
-    The marker cannot occur within the coded pixels; a thumbnail has its own in the first half.
-    """
-    data = coded.tobytes()
-    return data.startswith(b"\xff\xd8") and data.find(b"\xff\xd9", len(data) // 2) < 0
 
 
 def _check_layout(encoding: str, layout: _Encoding, height: int, width: int, step: int) -> None:
@@ -138,7 +101,7 @@ def _check_layout(encoding: str, layout: _Encoding, height: int, width: int, ste
 
 def _pixels(layout: _Encoding, height: int, width: int, step: int, data: Buffer) -> Bytes:
     """View the data without row padding: (rows, width) or (rows, width, bytes of a pixel)."""
-    flat = _flat(data)
+    flat = flat_bytes(data)
     rows = int(height * layout.rows)
     if flat.size < step * rows:
         raise InputError(

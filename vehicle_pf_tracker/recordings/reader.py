@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.features.encodings import decode_compressed, to_rgb
+from vehicle_pf_tracker.features.compressed_image import decode_compressed
+from vehicle_pf_tracker.features.encodings import to_rgb
 from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.recordings import messages, truth_messages

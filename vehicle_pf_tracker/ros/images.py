@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from sensor_msgs.msg import CompressedImage, Image
 
-from vehicle_pf_tracker.features.encodings import decode_compressed, to_rgb
+from vehicle_pf_tracker.features.compressed_image import decode_compressed
+from vehicle_pf_tracker.features.encodings import to_rgb
 from vehicle_pf_tracker.features.frame import Frame
 
 
