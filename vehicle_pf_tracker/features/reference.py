@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -14,7 +15,7 @@ class Reference:
     """A normalised histogram and its active bins.
 
     Only bins that occur in the reference can add to a Bhattacharyya coefficient, so that only those
-    are counted in windows. What follows from them is kept, since a reference serves many frames.
+    are counted in windows. What follows from them is kept, since a reference may serve many frames.
 
     Parameters
     ----------
@@ -23,16 +24,20 @@ class Reference:
 
     Attributes
     ----------
-    active : (K,) array
-        Numbers of the bins that are not zero, ascending.
-    values : (K,) array
-        The histogram there.
     kept : dict
         What kernels made of it, by a key of their own.
     """
 
     def __init__(self, histogram: Histogram) -> None:
         self.histogram = np.asarray(histogram, dtype=np.float64)
-        self.active = np.flatnonzero(self.histogram)
-        self.values: Histogram = self.histogram[self.active]
         self.kept: dict[object, object] = {}
+
+    @cached_property
+    def active(self) -> npt.NDArray[np.intp]:
+        """Numbers of the bins that are not zero, ascending, shape (K,)."""
+        return np.flatnonzero(self.histogram)
+
+    @cached_property
+    def values(self) -> Histogram:
+        """The histogram at the active bins, shape (K,)."""
+        return self.histogram[self.active]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -22,3 +24,9 @@ def bhattacharyya_coefficient(p: Array, q: Array) -> Array:
 def hellinger_distance(coefficient: Array) -> Array:
     """``sqrt(1 - rho)`` of a Bhattacharyya coefficient (P1 eq. 23), from 0 (equal) to 1."""
     return np.sqrt(np.maximum(1.0 - np.asarray(coefficient), 0.0))
+
+
+def hellinger_similarity(p: Array, q: Array) -> float:
+    """``1 - d_B`` of two normalised histograms (bins,), from 0 (disjoint) to 1 (equal)."""
+    coefficient = min(float(np.sqrt(p * q).sum()), 1.0)
+    return 1.0 - math.sqrt(max(1.0 - coefficient, 0.0))

@@ -95,11 +95,11 @@ def bounds(frame: Frame, positions: Positions, window: Window) -> Bounds:
 def keep_inside(frame: Frame, positions: Positions) -> Positions:
     """Clip positions so that each lies on a pixel of `frame`, shape (..., 2)."""
     width, height = frame_size(frame)
-    return np.clip(positions, 0.5, [width - 0.5, height - 0.5])
+    # np.clip does the same, slower.
+    return np.minimum(np.maximum(positions, 0.5), (width - 0.5, height - 0.5))
 
 
-def are_outside(frame: Frame, positions: Positions) -> npt.NDArray[np.bool_]:
-    """Tell which positions lie beyond the border of `frame`, shape (...)."""
+def is_outside(frame: Frame, x: float, y: float) -> bool:
+    """Tell whether a position lies beyond the border of `frame`."""
     width, height = frame_size(frame)
-    x, y = positions[..., 0], positions[..., 1]
-    return np.asarray((x < 0) | (y < 0) | (x > width) | (y > height))
+    return x < 0 or y < 0 or x > width or y > height

@@ -54,12 +54,11 @@ def residual(weights: Weights, count: int, rng: np.random.Generator) -> Ancestor
 def _search(weights: Weights, points: npt.NDArray[np.float64]) -> Ancestors:
     """Index of the first cumulative weight above each point of [0, 1)."""
     weights, _ = normalise(weights)
-    cumulative = np.cumsum(weights)
+    cumulative = weights.cumsum()
     # ``side="right"`` steps over particles of weight zero; rounding may leave the last sum below
-    # one, so that a point can lie past it: clamp to the last particle that has weight (READINGS 9).
-    last = int(np.flatnonzero(weights)[-1])
-    found = np.searchsorted(cumulative, points, side="right")
-    return np.minimum(found, last).astype(np.intp)
+    # one, so that a point can lie past it: clamp to the last particle that adds to it (READINGS 9).
+    last = cumulative.argmax()
+    return np.minimum(cumulative.searchsorted(points, side="right"), last)
 
 
 SCHEMES: Mapping[str, Scheme] = {

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -26,11 +28,12 @@ def normalise(weights: Weights) -> tuple[Weights, bool]:
     """
     weights = np.asarray(weights, dtype=np.float64)
     largest = weights.max()
-    if not (np.isfinite(largest) and largest > 0 and weights.min() >= 0):
-        return np.full(len(weights), 1.0 / len(weights)), False
+    if not (math.isfinite(largest) and largest > 0 and weights.min() >= 0):
+        return _uniform(len(weights)), False
     # Dividing by the largest first keeps a cloud of tiny weights from summing to zero.
     scaled = weights / largest
-    return scaled / scaled.sum(), True
+    scaled /= scaled.sum()
+    return scaled, True
 
 
 def from_log(log_weights: Weights) -> tuple[Weights, bool]:
@@ -46,10 +49,12 @@ def from_log(log_weights: Weights) -> tuple[Weights, bool]:
     normalised, sound
         As for `normalise`.
     """
-    largest = np.max(log_weights)
-    if not np.isfinite(largest):
-        return normalise(np.zeros(len(log_weights)))
-    return normalise(np.exp(log_weights - largest))
+    largest = log_weights.max()
+    if not math.isfinite(largest):
+        return _uniform(len(log_weights)), False
+    weights = np.exp(log_weights - largest)  # the largest is one
+    weights /= weights.sum()
+    return weights, True
 
 
 def effective_sample_size(weights: Weights) -> float:
@@ -70,3 +75,7 @@ def effective_sample_size(weights: Weights) -> float:
     P2 eq. 14 and P3, with normalised weights (READINGS 16).
     """
     return float(1.0 / np.square(weights).sum())
+
+
+def _uniform(count: int) -> Weights:
+    return np.full(count, 1.0 / count)

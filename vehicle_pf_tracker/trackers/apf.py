@@ -14,7 +14,7 @@ from vehicle_pf_tracker.features.colour import Histogram
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.reference import Reference
-from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient, hellinger_distance
+from vehicle_pf_tracker.features.similarity import hellinger_similarity
 from vehicle_pf_tracker.filtering.motion import (
     RAYLEIGH_MEAN,
     sample_normal,
@@ -81,8 +81,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         position = cloud.mean()  # step 13
         at = np.asarray([position])
         histogram = self.kernels.histograms(feature, frame, at, window)[0]  # step 14
-        evidence = _similarity(histogram, self._reference.histogram)
-        self._compare_and_learn(settings, histogram)  # steps 15 and 16
+        evidence = hellinger_similarity(histogram, self._reference.histogram)
+        self._compare_and_learn(settings, histogram, evidence)  # steps 15 and 16
         self._follow(settings, position, elapsed, regular=regular)
         return Outcome(
             cloud,
@@ -105,7 +105,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         """Run Algorithm 2."""
         scheme = SCHEMES[settings.resampling]
         ancestors = scheme(self._cloud.weights, settings.num_particles, self._rng)
-        return self._cloud.positions[ancestors]
+        return self._cloud.positions.take(ancestors, axis=0)
 
     def _drift(self, settings: ApfParameters, count: int, elapsed: float) -> Array:
         motion, velocity = settings.motion, self._velocity.settled
@@ -118,23 +118,28 @@ class ApfTracker(ParticleTracker[ApfParameters]):
             self._rng, count, velocity, sigma_r * elapsed, sigma_n * elapsed
         )
 
-    def _compare_and_learn(self, settings: ApfParameters, histogram: Histogram) -> None:
-        """Do steps 15 and 16."""
-        alpha = self._follow_rate(settings, histogram)
+    def _compare_and_learn(
+        self, settings: ApfParameters, histogram: Histogram, to_last: float
+    ) -> None:
+        """Do steps 15 and 16; `to_last` is the histogram's similarity to the reference."""
+        to_first = hellinger_similarity(histogram, self._first)
+        alpha = self._follow_rate(settings, to_first)
         blended = alpha * histogram + (1 - alpha) * self._reference.histogram
-        judged = histogram if settings.occlusion.raw_histogram else blended
-        self._pi = _similarity(judged, self._first)
-        self._pi_up = _similarity(judged, self._reference.histogram)
+        if settings.occlusion.raw_histogram:
+            self._pi, self._pi_up = to_first, to_last
+        else:
+            self._pi = hellinger_similarity(blended, self._first)
+            self._pi_up = hellinger_similarity(blended, self._reference.histogram)
         self._keep_levels(settings)
         if self._is_clear(settings) or not settings.reference.frozen_while_occluded:
             self._reference = Reference(blended)
 
-    def _follow_rate(self, settings: ApfParameters, histogram: Histogram) -> float:
+    def _follow_rate(self, settings: ApfParameters, to_first: float) -> float:
         """Return alpha of step 15; with the relative rule only good frames have one."""
         if settings.occlusion.rule == "fixed":
             return settings.reference.alpha
         good = settings.reference.steady_above * self._levels[0].value
-        return settings.reference.steady_alpha * (_similarity(histogram, self._first) >= good)
+        return settings.reference.steady_alpha * (to_first >= good)
 
     def _keep_levels(self, settings: ApfParameters) -> None:
         """Judge Pi and Pi_up by their clear levels, which follow in frames where both are clear."""
@@ -157,8 +162,3 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         if regular or not settings.velocity.frozen_while_occluded:
             self._velocity.add(self._position, position, elapsed)
         self._position = position
-
-
-def _similarity(p: Histogram, q: Histogram) -> float:
-    """``1 - d_B`` (step 16)."""
-    return float(1.0 - hellinger_distance(bhattacharyya_coefficient(p, q)))

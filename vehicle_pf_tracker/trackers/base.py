@@ -13,7 +13,7 @@ import numpy as np
 from vehicle_pf_tracker.features.box import Box, check_target
 from vehicle_pf_tracker.features.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.features.kernels.choice import load_kernels
-from vehicle_pf_tracker.features.window import Window, are_outside, keep_inside
+from vehicle_pf_tracker.features.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
 from vehicle_pf_tracker.trackers.contract import CommonParameters, ParticleParameters
@@ -44,8 +44,8 @@ class Cloud:
 
     def mean(self) -> tuple[float, float]:
         """Weighted mean of the positions (P1 eq. 5)."""
-        x, y = (self.weights[:, np.newaxis] * self.positions).sum(axis=0)
-        return float(x), float(y)
+        x, y = (self.weights[:, np.newaxis] * self.positions).sum(axis=0).tolist()
+        return x, y
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,8 +177,8 @@ class BaseTracker(ABC, Generic[ParametersT]):
     def _move(self, frame: Frame, positions: Array, moves: Array) -> tuple[Array, bool]:
         """Displace particles inside the image; tells whether their mean went over its border."""
         proposed = positions + moves
-        left_image = bool(are_outside(frame, proposed.mean(axis=0)))
-        return keep_inside(frame, proposed), left_image
+        x, y = (proposed.sum(axis=0) / len(proposed)).tolist()
+        return keep_inside(frame, proposed), is_outside(frame, x, y)
 
     def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
         box = Box.around(outcome.position, self.target.box.width, self.target.box.height)

@@ -17,7 +17,7 @@ import numpy as np
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.camera_motion import CameraFlow, CameraMotion
 from vehicle_pf_tracker.features.frame import Frame, frame_size
-from vehicle_pf_tracker.features.window import are_outside, keep_inside
+from vehicle_pf_tracker.features.window import is_outside, keep_inside
 from vehicle_pf_tracker.filtering.motion import (
     RAYLEIGH_MEAN,
     sample_normal,
@@ -157,7 +157,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._frames += 1
         swarm = self._swarm.resampled(self._rng, len(self._swarm.weights))
         moved = swarm.moved(self._rng, elapsed, spread)
-        left_image = bool(are_outside(frame, moved.positions.mean(axis=0)))
+        left_image = is_outside(frame, *moved.positions.mean(axis=0).tolist())
         return self._kept(frame, moved), left_image
 
     def _kept(self, frame: Frame, swarm: Swarm) -> Swarm:
@@ -268,7 +268,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             return self._come_back(frame, max(certain, key=lambda one: one.share))
         share = max((one.share for one in followed), default=0.0)
         ceiling = 0.99 * evidence.occluded_below * self._judge.level
-        left_image = bool(are_outside(frame, np.asarray(place)))
+        left_image = is_outside(frame, *place)
         return Outcome(
             self._swarm.cloud(), (x, y), velocity, "hidden", min(share, ceiling), {},
             left_image=left_image,
