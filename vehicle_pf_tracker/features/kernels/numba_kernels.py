@@ -63,7 +63,7 @@ class NumbaKernels(Kernels):
         table = table_for_counting(active, feature.bins)
         if counts_edges(feature):
             place = Place.of(feature, frame, positions, window)
-            cells, totals = count_directions(feature, frame, place, window, table)
+            cells, totals = count_directions(feature, frame, place, table)
             return Counted(cells[:, : table.active], totals)
         if counts_pixels(feature):
             place = Place.of(feature, frame, positions, window)
@@ -88,7 +88,7 @@ class NumbaKernels(Kernels):
             return compare_pixels(feature, frame, place, table_of(reference), _NO_COUNTS)
         if counts_edges(feature):
             place, table = Place.of(feature, frame, positions, window), table_of(reference)
-            cells, totals = count_directions(feature, frame, place, window, table)
+            cells, totals = count_directions(feature, frame, place, table)
             roots = roots_up_to(window.width * window.height)
             return compare_counts(cells, totals, (table.values, roots))
         return feature.similarity(frame, positions, window, reference)
