@@ -103,22 +103,31 @@ def _sobel(grey: Grey, images: Images, x0: int, y0: int) -> None:
 def _window_peaks(strengths: Strengths, width: int, height: int) -> Strengths:
     """Largest number of the window that begins at each pixel, as far as windows fit."""
     # Maxima over 1, 2, 4, ... rows; two of the last that overlap make those over a window's.
-    highest = strengths.copy()
+    rows = strengths.copy()
     span = 1
     while 2 * span <= height:
-        for y in range(len(highest) - span):
-            highest[y] = np.maximum(highest[y], highest[y + span])
+        for y in range(len(rows) - span):
+            _raise_to(rows[y], rows[y + span])
         span *= 2
-    for y in range(len(highest) - height + 1):
-        highest[y] = np.maximum(highest[y], highest[y + height - span])
-    peaks = np.empty((len(highest) - height + 1, highest.shape[1] - width + 1), np.int32)
+    peaks = np.empty((len(rows) - height + 1, rows.shape[1] - width + 1), np.int32)
+    kept = np.empty(rows.shape[1], np.int32)
     for y in range(len(peaks)):
-        row, span = highest[y], 1
-        while 2 * span <= width:
-            row = np.maximum(row[:-span], row[span:])
-            span *= 2
-        peaks[y] = np.maximum(row[: peaks.shape[1]], row[width - span :])
+        row, span_along = rows[y], 1
+        _raise_to(row, rows[y + height - span])
+        while 2 * span_along <= width:
+            kept[:] = row
+            _raise_to(row, kept[span_along:])
+            span_along *= 2
+        peaks[y] = row[: peaks.shape[1]]
+        _raise_to(peaks[y], row[width - span_along :])
     return peaks
+
+
+@inlined
+def _raise_to(numbers: Strengths, others: Strengths) -> None:
+    """Replace numbers by the larger ones of another array, as far as both go."""
+    for x in range(min(len(numbers), len(others))):
+        numbers[x] = max(numbers[x], others[x])
 
 
 @inlined
