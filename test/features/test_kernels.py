@@ -27,7 +27,7 @@ FEATURES = {
     "marginals": RgbMarginals(),
     "directions": GradientDirections(),
     "directions, 80 %": GradientDirections(threshold=0.8, floor=40.0),
-    "directions, all": GradientDirections(threshold=0.0),
+    "directions, 1 %": GradientDirections(threshold=0.01),
     "directions, unsigned": GradientDirections(signed=False),
     "directions, in window": GradientDirections(in_frame=False),
     "pairs": Cooccurrence(),
@@ -195,9 +195,10 @@ def test_a_window_larger_than_the_table_of_roots_is_compared_alike(numba):
 def test_directions_are_those_of_the_arc_tangent(signed):
     edges = pytest.importorskip(f"{kernels.__name__}.numba_edges", reason="numba is not installed")
     values = np.array([*range(-60, 61), -1020, -1019, -723, -511, 509, 721, 1019, 1020])
-    gx, gy = np.meshgrid(values, values)
+    gx, gy = (one.ravel() for one in np.meshgrid(values, values))
+    gx, gy = gx[(gx != 0) | (gy != 0)], gy[(gx != 0) | (gy != 0)]
     found = [
         edges.direction_bin(x, y, edges.TANGENTS, signed)
-        for x, y in zip(gx.ravel().tolist(), gy.ravel().tolist(), strict=True)
+        for x, y in zip(gx.tolist(), gy.tolist(), strict=True)
     ]
-    assert found == direction_bins(gx, gy, signed=signed).ravel().tolist()
+    assert found == direction_bins(gx, gy, signed=signed).tolist()

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.features.window import Window, are_outside, bounds, centres, keep_inside
+from vehicle_pf_tracker.features.window import Window, bounds, centres, is_outside, keep_inside
 
 FRAME = np.zeros((48, 64, 3), np.uint8)
 
@@ -58,9 +58,10 @@ def test_positions_kept_inside_lie_on_a_pixel(x, y):
     pixel = centres(inside)[0]
     assert 0 <= pixel[0] < 64
     assert 0 <= pixel[1] < 48
-    assert not are_outside(FRAME, inside)[0]
+    assert not is_outside(FRAME, *inside[0])
 
 
 def test_outside_is_beyond_the_border():
-    positions = np.array([[0.0, 0.0], [64.0, 48.0], [-0.1, 5.0], [5.0, 48.1]])
-    assert are_outside(FRAME, positions).tolist() == [False, False, True, True]
+    positions = (0.0, 0.0), (64.0, 48.0), (-0.1, 5.0), (5.0, 48.1)
+    outside = [is_outside(FRAME, *position) for position in positions]
+    assert outside == [False, False, True, True]

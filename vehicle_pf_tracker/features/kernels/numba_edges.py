@@ -56,10 +56,8 @@ def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
         first, along, across = 48, gy, -gx
     elif gx < 0:
         first, along, across = 0, -gx, -gy
-    elif gy < 0:
+    else:
         first, along, across = 16, -gy, gx
-    else:  # no direction counts as that of 0 degrees
-        return 32
     for tangent in tangents:
         first += across >= along * tangent
     return first
