@@ -24,7 +24,10 @@ INTRODUCTION = """# The variants on real sequences
 
 Nine sequences of traffic video with truth, defaults throughout, the first true box, no help; made
 by
+
+```sh
 {commands}
+```
 
 `csrt`, `kcf` and `mil` are OpenCV's trackers, which draw nothing and run once; where one gives a
 frame up, its last box counts. Each cell is the mean over the seeds, with the least and the most
@@ -54,7 +57,7 @@ def page(evaluation: EvaluationFolder) -> str:
     table, missing = _measured(evaluation)
     commands = "\n".join((__doc__ or "").split("\n\n", 1)[1].rstrip().splitlines())
     parts = [
-        INTRODUCTION.format(commands=f"\n{commands}"),
+        INTRODUCTION.format(commands=commands),
         f"{ON_TARGET}\n\n{_markdown(table, _on_target, 3)}",
         f"{RMSE}\n\n{_markdown(table, _rmse, 1)}",
         f"{RECOVERED}\n\n{_recoveries(table)}",
