@@ -51,6 +51,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-rmse", type=float, metavar="PX",
         help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
     )  # fmt: skip
+    _add_timing(parser)
+    report.add_report_options(parser)
+    _add_robustness(parser)
+
+
+def _add_timing(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
     add(
         "--timing", action="store_true",
         help="then measure the speed of all systems, one after the other; let nothing run beside",
@@ -59,7 +66,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--timing-frames", type=positive, default=TIMING_FRAMES, metavar="N",
         help="frames of each recording to measure it on (default: %(default)s)",
     )  # fmt: skip
-    report.add_report_options(parser)
+
+
+def _add_robustness(parser: argparse.ArgumentParser) -> None:
     robust = parser.add_argument_group("robustness, beside the grid")
     robust.add_argument(
         "--shifted-starts", action="store_true",

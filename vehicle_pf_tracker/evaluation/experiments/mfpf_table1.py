@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from statistics import fmean
 
 from vehicle_pf_tracker.evaluation.experiments import mfpf_systems as mfpf
+from vehicle_pf_tracker.evaluation.experiments import mfpf_textures as textures
 from vehicle_pf_tracker.evaluation.experiments.case_figure import SHADES, error_case_figure
 from vehicle_pf_tracker.evaluation.experiments.cells import RunCell, System
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
@@ -34,15 +35,6 @@ _PAPER = {
     "Texture": (26.35, 11.95, 16.69, 13.66, 16.04, 13.50),
     "MFPF": (15.21, 8.38, 16.16, 9.97, 15.11, 11.93),
 }
-_LEFT = {
-    name: (
-        MFPF.but({"texture": name}),
-        System.of(f"Texture by {name}", "sfpf_texture", {"texture": name}),
-    )
-    for name in ("lbp", "haralick")
-}
-"""The textures that the paper tried and left, in both filters that have one."""
-_USED = {"glcm": (MFPF, SINGLES[2])} | _LEFT
 _TRIED = (
     "What was tried to mend MFPF, as its mean RMS over the six cases with 3 to 10 seeds from 100 "
     "on: its defaults 79 px; a mean speed over 5 frames 70 to 116 px, over 20 and more 29 to 72 px "
@@ -65,13 +57,7 @@ Errors = Mapping[str, Mapping[str, Sequence[float]]]
 
 def cells(size: Size) -> list[RunCell]:
     """Run the four filters under every reading, and the other textures."""
-    return mfpf.cells(size) + [
-        mfpf.cell(case, system, seed)
-        for case in mfpf.cases(size)
-        for pair in _LEFT.values()
-        for system in pair
-        for seed in size.seeds
-    ]
+    return mfpf.cells(size) + textures.cells(size)
 
 
 def report(results: Results, size: Size) -> Report:
@@ -82,14 +68,14 @@ def report(results: Results, size: Size) -> Report:
         "RMS in px, mean ± standard deviation over the seeds:": _rms_table(errors, size),
         f"Runs that end with {mfpf.LAST_FRAMES} frames below {CLOSE_PX:g} px, "
         f"of {len(size.seeds)}:": _followed_table(followed, size),
-        "The three textures, RMS in px:": _texture_table(results, size),
+        "The three textures, RMS in px:": textures.table(results, size),
     }
     shades = {name: SHADES[CASES[name].occlusion] for name in mfpf.cases(size)}
     return Report(
         _data(results, size),
         error_case_figure(errors[OURS], shades, [_short(n) for n in shades], "case"),
         Verdict(
-            (*_claims(errors), *_further(errors, followed), _texture_claim(results, size)),
+            (*_claims(errors), *_further(errors, followed), textures.claim(results, size)),
             mfpf.setting(size),
             _TRIED,
         ),
@@ -145,14 +131,10 @@ def _data(results: Results, size: Size) -> DataTable:
                         size.seeds, values, followed[reading][case][system.label], strict=True
                     )
                 ]
-    for texture, pair in _LEFT.items():
-        for case in mfpf.cases(size):
-            for system in pair:
-                values = mfpf.per_seed(results, size, case, system, OURS, "rmse_px")
-                rows += [
-                    (OURS, case, system.label, texture, seed, rms, None)
-                    for seed, rms in zip(size.seeds, values, strict=True)
-                ]
+    rows += [
+        (OURS, case, label, texture, seed, rms, None)
+        for texture, case, label, seed, rms in textures.rows(results, size)
+    ]
     columns = ("reading", "case", "filter", "texture", "seed", "rmse_px", "followed_to_the_end")
     return DataTable(columns, tuple(rows))
 
@@ -303,49 +285,6 @@ def _to_the_end(reading: str, found: Mapping[str, Mapping[str, Sequence[bool]]])
         reading,
         Holds.of(all(enough), any(enough)),
         f"of {runs} runs: {', '.join(told)}",
-    )
-
-
-def _texture_errors(results: Results, size: Size) -> dict[str, tuple[list[float], list[float]]]:
-    """RMS over all cases for each seed, of MFPF and of the texture filter, by texture."""
-    found = {}
-    for texture, (joint, alone) in _USED.items():
-        of = [
-            [fmean(v) for v in zip(*(mfpf.per_seed(results, size, case, system, OURS, "rmse_px")
-                                     for case in mfpf.cases(size)), strict=True)]
-            for system in (joint, alone)
-        ]  # fmt: skip
-        found[texture] = of[0], of[1]
-    return found
-
-
-def _texture_table(results: Results, size: Size) -> DataTable:
-    rows = []
-    for texture, systems in _USED.items():
-        for name, system in zip(("MFPF", "texture alone"), systems, strict=True):
-            values = [
-                mfpf.per_seed(results, size, case, system, OURS, "rmse_px")
-                for case in mfpf.cases(size)
-            ]
-            over = [fmean(of) for of in zip(*values, strict=True)]
-            rows.append((f"{name}, {texture}", *map(mean_and_spread, values),
-                         mean_and_spread(over)))  # fmt: skip
-    return DataTable(("filter", *mfpf.cases(size), "all"), tuple(rows))
-
-
-def _texture_claim(results: Results, size: Size) -> Claim:
-    found = _texture_errors(results, size)
-    first = [
-        min(found, key=lambda texture: fmean(found[texture][which])) == "glcm" for which in (0, 1)
-    ]
-    told = "; ".join(
-        f"{texture} {mean_and_spread(joint)} px in MFPF, {mean_and_spread(alone)} px alone"
-        for texture, (joint, alone) in found.items()
-    )
-    return Claim(
-        "of the three textures the elements of the co-occurrence matrix are the most successful",
-        "section III-D",
-        (Finding(OURS, Holds.of(all(first), any(first)), f"mean RMS over all cases: {told}"),),
     )
 
 
