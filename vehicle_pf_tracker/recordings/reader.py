@@ -16,9 +16,10 @@ from vehicle_pf_tracker.recordings import messages, truth_messages
 from vehicle_pf_tracker.recordings import topics as names
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.cdr import deserialize, header_stamp_ns
-from vehicle_pf_tracker.recordings.mcap_blocks import Block, DamageError, Message
+from vehicle_pf_tracker.recordings.mcap_blocks import Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex, read_index
 from vehicle_pf_tracker.recordings.mcap_stream import merged_messages
+from vehicle_pf_tracker.recordings.read_notices import ReadNotices
 from vehicle_pf_tracker.recordings.topic_table import TopicInfo, choose_image_topic, list_topics
 from vehicle_pf_tracker.recordings.truth import Truth
 
@@ -90,10 +91,8 @@ class Recording:
 
     def __init__(self, path: Path | str, topic: str | None = None) -> None:
         self.path = Path(path)
-        files, self._notices = recording_files(self.path)
+        files, found = recording_files(self.path)
         self._files = [read_index(file) for file in files]
-        self._unreadable: dict[int, str] = {}
-        self._damages: dict[tuple[Path, int], str] = {}
         self._check_readable()
         self.topics: tuple[TopicInfo, ...] = list_topics(self._files)
         chosen = choose_image_topic(self.path, self.topics, topic)
@@ -102,7 +101,8 @@ class Recording:
         blocks = [block for index in self._files for block in index.blocks]
         self.start_ns = min(block.start_ns for block in blocks)
         self.end_ns = max(block.end_ns for block in blocks)
-        self._note_damage()
+        self._notices = ReadNotices(self.path, self.image_topic, found)
+        self._notices.add_files(self._files)
 
     @property
     def frame_count(self) -> int:
@@ -117,14 +117,7 @@ class Recording:
     @property
     def notices(self) -> list[str]:
         """What was not as it should be, a sentence each; it grows while reading."""
-        notices = [*self._notices, *self._damages.values()]
-        if self._unreadable:
-            first = next(iter(self._unreadable.values()))
-            count = len(self._unreadable)
-            notices.append(
-                f"unreadable images of {self.image_topic} in {self.path}: {count}; {first}"
-            )
-        return notices
+        return self._notices.sentences
 
     def frames(
         self, start_offset: float = 0.0, duration: float | None = None
@@ -162,14 +155,13 @@ class Recording:
             unread = []
             yield image
         is_short = count < self._frame_count and not start_offset and duration is None
-        if is_short and not self._damages and len(unread) < _UNREADABLE_IN_A_ROW:
-            self._damages[self.path, -1] = (
-                f"recording {self.path}: {self._frame_count - count} images that it says it has "
-                "are missing"
-            )
+        if is_short and len(unread) < _UNREADABLE_IN_A_ROW:
+            self._notices.add_missing(self._frame_count - count)
         if not readable and (unread or is_short):
-            reason = next(iter([*self._unreadable.values(), *self._damages.values()]))
-            raise InputError(f"no image of {self.image_topic} in {self.path} can be read; {reason}")
+            raise InputError(
+                f"no image of {self.image_topic} in {self.path} can be read; "
+                f"{self._notices.first_reason}"
+            )
 
     def truth(self) -> tuple[Truth, ...]:
         """Read the true state of the vehicle in each frame that has one, by stamp.
@@ -229,14 +221,13 @@ class Recording:
         end = self.end_ns + 1
         if duration is not None:
             end = min(end, first + _nanoseconds("duration", duration))
-        return merged_messages(self._files, topics, first, end, self._note_block)
+        return merged_messages(self._files, topics, first, end, self._notices.add_block)
 
     def _decode_or_note(self, message: Message) -> StampedFrame:
         try:
             return _decode(self.image_type, message.data)
         except InputError as error:
-            seconds = (message.log_time_ns - self.start_ns) / 1e9
-            self._unreadable[message.log_time_ns] = f"{seconds:.3f} s after the start: {error}"
+            self._notices.add_image(message.log_time_ns, self.start_ns, error)
             stamp = header_stamp_ns(message.data)
             return StampedFrame(message.log_time_ns if stamp is None else stamp, None)
 
@@ -272,26 +263,6 @@ class Recording:
                 "nothing in it can be used"
             )
         raise InputError(f"the recording {self.path} holds no messages")
-
-    def _note_damage(self) -> None:
-        frames = 0
-        for index in self._files:
-            frames += sum(
-                index.counts[channel_id]
-                for channel_id, channel in index.channels.items()
-                if channel.topic == self.image_topic
-            )
-            self._notices += [f"recording {index.path}: {damage}" for damage in index.damages]
-            if index.is_truncated:
-                self._notices.append(
-                    f"recording {index.path} is truncated after frame {frames}; "
-                    "what was readable is used"
-                )
-
-    def _note_block(self, index: McapIndex, block: Block, error: DamageError) -> None:
-        self._damages[index.path, block.offset] = (
-            f"recording {index.path}: a part at byte {block.offset} was skipped: {error}"
-        )
 
 
 def _decode(type_name: str, data: memoryview) -> StampedFrame:
