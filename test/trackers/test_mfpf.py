@@ -111,6 +111,7 @@ def test_reading_15_the_reference_is_the_first_histogram_and_the_last_one():
     street = Street()
     tracker = make(reference_weight=1.0)
     follow(tracker, street, range(5))
+    assert len(tracker._first) == 3
     for first, reference in zip(tracker._first, tracker._references, strict=True):
         assert np.array_equal(first, reference.histogram)
     tracker = make(reference_weight=0.25)
