@@ -44,9 +44,8 @@ class Place(NamedTuple):
     ) -> Place:
         """Find the windows around positions."""
         size = frame_size(frame)
-        found = window_pixels(positions, *size)
-        (left, top), (right, bottom) = found[-2:].tolist()
-        return cls(found[:-2], (left, top, right, bottom), reach_of(feature, window), size)
+        pixels, extent = window_pixels(positions, *size)
+        return cls(pixels, extent, reach_of(feature, window), size)
 
     def covered(self, margin: int = 0) -> PixelRange:
         """Smallest part of the frame that has all windows in it, and a margin as far as it goes."""

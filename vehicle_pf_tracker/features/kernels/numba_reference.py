@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+import math
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from numba import types
 
 from vehicle_pf_tracker.features.kernels.numba_cells import Table
+from vehicle_pf_tracker.features.kernels.numba_jit import compiled
 from vehicle_pf_tracker.features.kernels.numba_windows import Reals
 from vehicle_pf_tracker.features.reference import Histogram, Reference
 
@@ -17,9 +20,10 @@ _LANES = 16
 
 _MOST_ROOTS = 1 << 16
 
+_HISTOGRAM = types.Array(types.float64, 1, "A", readonly=True)
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CellTable:
+
+class CellTable(NamedTuple):
     """Which cell each bin has, and what a cell's count is worth.
 
     Attributes
@@ -29,35 +33,45 @@ class CellTable:
     active : int
         K.
     values : (K + 1 or more,) array
-        Square roots of the reference at the active bins, followed by zeros.
+        Square roots of the reference at the active bins, followed by zeros; of no meaning where
+        bins are only counted.
     """
 
     cells: Table
     active: int
     values: Reals
 
-    @classmethod
-    def of(cls, active: npt.NDArray[np.intp], bins: int, values: Histogram) -> CellTable:
-        """Make the table of the bins `active` with the reference's `values` there."""
-        count = len(active)
-        cells = np.full(bins, count, np.uint16)
-        cells[active] = np.arange(count)
-        padded = np.zeros(-(-(count + 1) // _LANES) * _LANES)
-        np.sqrt(values, out=padded[:count])
-        padded.flags.writeable = False
-        return cls(cells, count, padded)
+
+@compiled(types.Tuple((types.uint16[::1], types.int64, types.float64[::1]))(_HISTOGRAM))
+def _number_cells(histogram: Histogram) -> tuple[Table, int, Reals]:
+    """Number the bins that are not zero; see `CellTable` for what is returned."""
+    active = 0
+    for value in histogram:
+        active += value != 0
+    cells = np.full(len(histogram), active, np.uint16)
+    values = np.zeros(-(-(active + 1) // _LANES) * _LANES)
+    number = 0
+    for k in range(len(histogram)):
+        if histogram[k] != 0:
+            cells[k], values[number] = number, math.sqrt(histogram[k])
+            number += 1
+    return cells, active, values
 
 
 def table_for_counting(active: npt.NDArray[np.intp], bins: int) -> CellTable:
     """Table of the bins `active` without any reference."""
-    return _all_bins(bins) if len(active) == bins else CellTable.of(active, bins, _zeros(active))
+    if len(active) == bins:
+        return table_of_all(bins)
+    chosen = np.zeros(bins)
+    chosen[active] = 1.0
+    return CellTable(*_number_cells(chosen))
 
 
 def table_of(reference: Reference) -> CellTable:
     """Table of a reference, made once."""
     kept = reference.kept.get("cells")
     if not isinstance(kept, CellTable):
-        kept = CellTable.of(reference.active, len(reference.histogram), reference.values)
+        kept = CellTable(*_number_cells(reference.histogram))
         reference.kept["cells"] = kept
     return kept
 
@@ -75,10 +89,6 @@ def _roots(length: int) -> Reals:
 
 
 @functools.lru_cache(maxsize=8)
-def _all_bins(bins: int) -> CellTable:
-    every = np.arange(bins)
-    return CellTable.of(every, bins, _zeros(every))
-
-
-def _zeros(active: npt.NDArray[np.intp]) -> Histogram:
-    return np.zeros(len(active))
+def table_of_all(bins: int) -> CellTable:
+    """Table of all bins without any reference."""
+    return CellTable(*_number_cells(np.ones(bins)))

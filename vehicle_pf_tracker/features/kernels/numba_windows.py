@@ -35,26 +35,22 @@ QUAD = types.UniTuple(types.int64, 4)
 _COUNTS = types.int32[:, ::1]
 
 
-@compiled(RECTANGLES(_POSITIONS, types.int64, types.int64))
-def window_pixels(positions: Positions, width: int, height: int) -> Pixels:
-    """Pixel x, y of each window's centre, as `window.bounds` has it; then the least, the largest.
+@compiled(types.Tuple((RECTANGLES, QUAD))(_POSITIONS, types.int64, types.int64))
+def window_pixels(
+    positions: Positions, width: int, height: int
+) -> tuple[Pixels, tuple[int, int, int, int]]:
+    """Pixel x, y of each window's centre, as `window.bounds` has it, shape (N, 2).
 
-    Returns
-    -------
-    (N + 2, 2) array
+    Then the least x and y, and the largest x and y of them.
     """
-    count = len(positions)
-    pixels = np.empty((count + 2, 2), np.int64)
-    pixels[count, 0], pixels[count, 1] = width, height
-    pixels[count + 1] = 0
-    for i in range(count):
-        for axis in range(2):
-            nearest = np.int64(np.rint(positions[i, axis] - 0.5))
-            pixel = min(max(nearest, 0), (width if axis == 0 else height) - 1)
-            pixels[i, axis] = pixel
-            pixels[count, axis] = min(pixels[count, axis], pixel)
-            pixels[count + 1, axis] = max(pixels[count + 1, axis], pixel)
-    return pixels
+    pixels = np.empty((len(positions), 2), np.int64)
+    x0, y0, x1, y1 = width, height, 0, 0
+    for i in range(len(positions)):
+        x = min(max(np.int64(np.rint(positions[i, 0] - 0.5)), 0), width - 1)
+        y = min(max(np.int64(np.rint(positions[i, 1] - 0.5)), 0), height - 1)
+        pixels[i, 0], pixels[i, 1] = x, y
+        x0, y0, x1, y1 = min(x0, x), min(y0, y), max(x1, x), max(y1, y)
+    return pixels, (x0, y0, x1, y1)
 
 
 @compiled(RECTANGLES(RECTANGLES, REACH, PAIR, PAIR))
