@@ -19,16 +19,11 @@ from vehicle_pf_tracker.features.kernels.numba_windows import (
     Counts,
     Reals,
     compare_rectangles,
-    slide_windows,
+    compare_windows,
     window_rectangles,
 )
 from vehicle_pf_tracker.features.rgb_marginals import CHANNEL_BINS, RgbMarginals
 from vehicle_pf_tracker.features.window_feature import WindowFeature, to_grey
-
-# What things cost, roughly in cycles; they decide about the route, and not about the result.
-_PIXEL = 4
-_STEP = 10
-_CELLS_AT_ONCE = 8
 
 
 def compare_pixels(
@@ -50,26 +45,13 @@ def compare_pixels(
     """
     left, top, right, bottom = place.covered()
     area = (place.reach[0] * 2 + 1) * (place.reach[2] * 2 + 1)
-    planes = planes_of(feature)
-    roots = roots_up_to(planes * area)
     if (right - left) * (bottom - top) > len(place.pixels) * area:
         return _compare_apart(feature, frame, place, table, counts)
     cells = _cells(feature, frame[top:bottom, left:right], table)
-    if _work_of_sliding(place, cells, table) > len(place.pixels) * (
-        _PIXEL * planes * area + len(table.values)
-    ):
-        rectangles = place.rectangles((left, top))
-        return compare_rectangles(cells, rectangles, (table.values, roots), counts)
-    return slide_windows(
-        cells, place.pixels, place.extent, (left, top), place.reach, (table.values, roots), counts
+    scale = table.values, roots_up_to(planes_of(feature) * area)
+    return compare_windows(
+        cells, place.pixels, place.extent, (left, top), place.reach, scale, counts
     )
-
-
-def _work_of_sliding(place: Place, cells: Cells, table: CellTable) -> int:
-    x0, y0, x1, y1 = place.extent
-    step = len(table.values) // _CELLS_AT_ONCE
-    each_row = (x1 - x0 + 1) * (step + _STEP) + (2 * place.reach[0] + 1) * step
-    return _PIXEL * cells.size + (y1 - y0 + 1) * each_row
 
 
 def _compare_apart(

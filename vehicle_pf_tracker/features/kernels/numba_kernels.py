@@ -27,6 +27,7 @@ from vehicle_pf_tracker.features.kernels.numba_reference import (
     roots_up_to,
     table_for_counting,
     table_of,
+    table_of_all,
 )
 from vehicle_pf_tracker.features.kernels.numba_windows import Counts, compare_counts, map_windows
 from vehicle_pf_tracker.features.reference import Reference
@@ -36,6 +37,7 @@ from vehicle_pf_tracker.features.window_feature import (
     Coefficients,
     Counted,
     CountedFeature,
+    Histograms,
     WindowFeature,
 )
 
@@ -73,6 +75,17 @@ class NumbaKernels(Kernels):
             return Counted(counts, planes_of(feature) * (right - left) * (bottom - top))
         assert isinstance(feature, CountedFeature)
         return feature.counts(frame, positions, window, active)
+
+    def histograms(
+        self, feature: WindowFeature, frame: Frame, positions: Positions, window: Window
+    ) -> Histograms:
+        """Describe windows; see `Kernels.histograms`."""
+        if not counts_pixels(feature):
+            return super().histograms(feature, frame, positions, window)
+        place, table = Place.of(feature, frame, positions, window), table_of_all(feature.bins)
+        counts = np.empty((len(positions), feature.bins), np.int32)
+        compare_pixels(feature, frame, place, table, counts)
+        return np.asarray(counts / np.maximum(counts.sum(axis=1, keepdims=True), 1))
 
     def similarity(
         self,

@@ -44,7 +44,7 @@ class CellTable(NamedTuple):
 
 @compiled(types.Tuple((types.uint16[::1], types.int64, types.float64[::1]))(_HISTOGRAM))
 def _number_cells(histogram: Histogram) -> tuple[Table, int, Reals]:
-    """Number the bins that are not zero; see `CellTable` for what is returned."""
+    """Give a number to each bin that is not zero; see `CellTable` for what is returned."""
     active = 0
     for value in histogram:
         active += value != 0

@@ -34,6 +34,11 @@ SCALE = types.UniTuple(types.Array(types.float64, 1, "C", readonly=True), 2)
 QUAD = types.UniTuple(types.int64, 4)
 _COUNTS = types.int32[:, ::1]
 
+# What things cost, roughly in cycles; they decide about the route, and not about the result.
+_PIXEL = 4
+_STEP = 10
+_BINS_AT_ONCE = 8
+
 
 @compiled(types.Tuple((RECTANGLES, QUAD))(_POSITIONS, types.int64, types.int64))
 def window_pixels(
@@ -64,7 +69,7 @@ def window_rectangles(
     pixels : (N, 2) array
         Centres in the frame.
     reach : (int, int, int)
-        As for `slide_windows`.
+        As for `compare_windows`.
     origin, size : (int, int)
         x, y in the frame that count as 0, and width, height of the frame in px.
     """
@@ -158,8 +163,8 @@ def _listed(pixels: Pixels, x0: int, y0: int, heads: Rectangles) -> Pixels:
     return others
 
 
-@compiled(types.float64[::1](CELLS, RECTANGLES, QUAD, PAIR, REACH, SCALE, _COUNTS))
-def slide_windows(
+@inlined
+def _slide(
     cells: Cells,
     pixels: Pixels,
     extent: tuple[int, int, int, int],
@@ -168,27 +173,7 @@ def slide_windows(
     scale: Scale,
     counts: Counts,
 ) -> Reals:
-    """Compare windows that lie close together.
-
-    Parameters
-    ----------
-    cells, pixels : (P, H, W) array, (N, 2) array
-        Of the region that all windows cover; centre x, y of each window in the frame.
-    extent, origin : tuples of int
-        Least x and y, largest x and y of `pixels`; x, y of the region's first pixel in the frame.
-    reach : (int, int, int)
-        Pixels of a window to the left of its centre, to the right of it counting the centre
-        itself, and above it (as many as below).
-    scale : (K + 1 or more,) array, (M,) array
-        Square roots of the reference at the active bins, followed by zeros; and those of 0, 1, 2, …
-    counts : (N or 0, K) array
-        Filled with each window's counts, if it has room.
-
-    Returns
-    -------
-    (N,) array
-        Bhattacharyya coefficients.
-    """
+    """Compare windows that lie close together; parameters as for `compare_windows`."""
     planes, height, width = cells.shape
     (left, right, up), (values, roots) = reach, scale
     x0, y0 = extent[0] - origin[0], extent[1] - origin[1]
@@ -232,7 +217,7 @@ def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
 
 @compiled(types.float64[::1](CELLS, RECTANGLES, SCALE, _COUNTS))
 def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale, counts: Counts) -> Reals:
-    """Compare windows one after the other; parameters as for `slide_windows`."""
+    """Compare windows one after the other; parameters as for `compare_windows`."""
     planes = cells.shape[0]
     values, roots = scale
     sums = np.zeros(len(values), np.int32)
@@ -249,6 +234,62 @@ def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale, count
         if len(counts):
             counts[i] = sums[: counts.shape[1]]
     return result
+
+
+@inlined
+def _is_sliding_worthwhile(
+    cells: Cells, count: int, extent: tuple[int, int, int, int], reach: Reach, bins: int
+) -> bool:
+    """Weigh what the two ways to the same result cost, roughly in cycles."""
+    x0, y0, x1, y1 = extent
+    across = 2 * reach[0] + 1
+    step = bins // _BINS_AT_ONCE
+    each_row = (x1 - x0 + 1) * (step + _STEP) + across * step
+    sliding = _PIXEL * cells.size + (y1 - y0 + 1) * each_row
+    return sliding <= count * (_PIXEL * len(cells) * across * (2 * reach[2] + 1) + bins)
+
+
+@compiled(types.float64[::1](CELLS, RECTANGLES, QUAD, PAIR, REACH, SCALE, _COUNTS))
+def compare_windows(
+    cells: Cells,
+    pixels: Pixels,
+    extent: tuple[int, int, int, int],
+    origin: tuple[int, int],
+    reach: Reach,
+    scale: Scale,
+    counts: Counts,
+) -> Reals:
+    """Compare windows with a reference.
+
+    Parameters
+    ----------
+    cells, pixels : (P, H, W) array, (N, 2) array
+        Of the region that all windows cover; centre x, y of each window in the frame.
+    extent, origin : tuples of int
+        Least x and y, largest x and y of `pixels`; x, y of the region's first pixel in the frame.
+    reach : (int, int, int)
+        Pixels of a window to the left of its centre, to the right of it counting the centre
+        itself, and above it (as many as below).
+    scale : (K + 1 or more,) array, (M,) array
+        Square roots of the reference at the active bins, followed by zeros; and those of 0, 1, 2, …
+    counts : (N or 0, K) array
+        Filled with each window's counts, if it has room.
+
+    Returns
+    -------
+    (N,) array
+        Bhattacharyya coefficients.
+    """
+    if _is_sliding_worthwhile(cells, len(pixels), extent, reach, len(scale[0])):
+        return _slide(cells, pixels, extent, origin, reach, scale, counts)
+    _, height, width = cells.shape
+    left, right, up = reach
+    rectangles = np.empty((len(pixels), 4), np.int64)
+    for i in range(len(pixels)):
+        x, y = pixels[i, 0] - origin[0], pixels[i, 1] - origin[1]
+        rectangles[i, 0], rectangles[i, 1] = max(x - left, 0), max(y - up, 0)
+        rectangles[i, 2], rectangles[i, 3] = min(x + right, width), min(y + up + 1, height)
+    return compare_rectangles(cells, rectangles, scale, counts)
 
 
 @compiled(
