@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli import parameter_options, system_options
 from vehicle_pf_tracker.cli.console import print_table, tell_notices
+from vehicle_pf_tracker.cli.parameter_sets import settable
 from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers
 from vehicle_pf_tracker.cli.whole_numbers import natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
@@ -125,7 +126,7 @@ def _configuration(variant: Variant, args: argparse.Namespace) -> Configuration:
     configuration = Configuration.of(variant)
     if args.params is not None:
         configuration = parameter_options.with_file(configuration, variant, args.params)
-    values = parse_assignments(system_options.settable(variant), args.assignments)
+    values = parse_assignments(settable(variant), args.assignments)
     return configuration.updated(values)
 
 
