@@ -102,17 +102,17 @@ def test_waiting_is_answered_too(bench):
     assert rig.positions == []
 
 
+def compressed_rig(bench) -> Rig:
+    values = on_target(image_transport="compressed")
+    return Rig(bench, values, kind=CompressedImage, topic="image/compressed")
+
+
 def test_compressed_images_give_the_numbers_of_their_decoded_frames(bench):
     coded = []
     for frame in road(10):
         _, jpeg = cv2.imencode(".jpg", cv2.cvtColor(frame, cv2.COLOR_RGB2BGR))
         coded.append(array.array("B", jpeg.tobytes()))
-    rig = Rig(
-        bench,
-        on_target(image_transport="compressed"),
-        kind=CompressedImage,
-        topic="image/compressed",
-    )
+    rig = compressed_rig(bench)
     answers = [
         rig.show(CompressedImage(header=header(index), format="jpeg", data=data))
         for index, data in enumerate(coded)
@@ -125,12 +125,7 @@ def test_a_compressed_image_that_claims_gigabytes_is_answered_and_the_track_kept
     frames = [cv2.imencode(".png", frame[..., ::-1])[1].tobytes() for frame in road(5)]
     size = (30_000).to_bytes(4, "big")
     bomb = frames[3][:16] + size + size + frames[3][24:]
-    rig = Rig(
-        bench,
-        on_target(image_transport="compressed"),
-        kind=CompressedImage,
-        topic="image/compressed",
-    )
+    rig = compressed_rig(bench)
     answers = [
         rig.show(CompressedImage(header=header(index), format="png", data=array.array("B", data)))
         for index, data in enumerate([*frames[:3], bomb, frames[4]])
