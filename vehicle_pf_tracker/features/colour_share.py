@@ -1,8 +1,8 @@
-"""How much each pixel's colour speaks for the target and against its surroundings.
+"""How much each pixel's colour speaks for the target and against what is around it.
 
-Histograms of the target and of the background around it give each colour a share
+Histograms of the target and of its surroundings give each colour a share
 ``target / (target + background)``: colours that the surroundings have too count for little. Grey
-video fills the luminance bins alone, which are fine enough to tell by.
+video, where colours tell nothing, is told by finer steps of luminance.
 """
 
 from __future__ import annotations
@@ -14,74 +14,64 @@ import numpy.typing as npt
 from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.template import Map
 
-Bins = npt.NDArray[np.intp]
+Bins = npt.NDArray[np.uint16]
 Histogram = npt.NDArray[np.float64]
 
-_LUMINANCE_BITS = 4
-_CHROMA_STEP = 10
-_CHROMA_BINS = 8
-BINS = (1 << _LUMINANCE_BITS) * _CHROMA_BINS**2
-
-_LUMINANCE = (np.arange(256) >> (8 - _LUMINANCE_BITS)) * _CHROMA_BINS**2
-_CHROMA = np.clip(
-    (np.arange(256) - 128 + _CHROMA_STEP * _CHROMA_BINS // 2) // _CHROMA_STEP, 0, _CHROMA_BINS - 1
-)
-
-
-def colour_bins(image: Frame) -> Bins:
-    """Bin of every pixel: 16 of luminance by 8 x 8 of chroma, which is narrow around grey."""
-    planes = cv2.cvtColor(image, cv2.COLOR_RGB2YCrCb)
-    luminance, red, blue = planes[..., 0], planes[..., 1], planes[..., 2]
-    return np.asarray(_LUMINANCE[luminance] + _CHROMA[red] * _CHROMA_BINS + _CHROMA[blue], np.intp)
+_COLOUR_SHIFT = 4
+_GREY_SHIFT = 2
+_COLOURS = (256 >> _COLOUR_SHIFT) ** 3
+_GREYS = 256 >> _GREY_SHIFT
+_GREY_BELOW = 0.5
+"""Mean difference of the channels in grey levels below which a picture counts as grey."""
+_UNSEEN = 2.5e-8
+"""Keeps the share of colours that were never seen at a half."""
 
 
-def histogram(bins: Bins) -> Histogram:
-    """Normalised histogram of the bins given; uniform where there are none."""
-    counts = np.bincount(bins.ravel(), minlength=BINS).astype(np.float64)
-    total = counts.sum()
-    return counts / total if total > 0 else np.full(BINS, 1.0 / BINS)
+def is_grey(image: Frame) -> bool:
+    """Whether the three channels of a picture are the same but for coding noise."""
+    channels = image.astype(np.int16)
+    differences = np.abs(channels[..., ::2] - channels[..., 1:2])
+    return bool(differences.mean() < _GREY_BELOW)
+
+
+def colour_bins(image: Frame, *, grey: bool) -> Bins:
+    """Bin of every pixel: 16 x 16 x 16 of RGB, or 64 of luminance.
+
+    Parameters
+    ----------
+    image : (H, W, 3) array
+        RGB.
+    grey : bool
+        What `is_grey` said of the video.
+
+    Returns
+    -------
+    (H, W) array
+        Below `bin_count(grey=grey)`.
+    """
+    if grey:
+        return np.asarray(image[..., 0] >> _GREY_SHIFT, np.uint16)
+    levels = (image >> _COLOUR_SHIFT).astype(np.uint16)
+    return np.asarray((levels[..., 0] << 8) | (levels[..., 1] << 4) | levels[..., 2], np.uint16)
+
+
+def bin_count(*, grey: bool) -> int:
+    """Give the number of bins of `colour_bins`."""
+    return _GREYS if grey else _COLOURS
+
+
+def histogram(bins: Bins, count: int) -> Histogram:
+    """Normalised histogram of the bins given, (count,); zero where there are none."""
+    counts = np.bincount(bins.ravel(), minlength=count).astype(np.float64)
+    return np.asarray(counts / max(counts.sum(), 1.0))
 
 
 def shares(target: Histogram, background: Histogram) -> npt.NDArray[np.float32]:
     """Share of each bin, 0 to 1; a half where neither has been seen."""
-    little = 1e-3
-    return ((target + little) / (target + background + 2 * little)).astype(np.float32)
+    return ((target + _UNSEEN) / (target + background + 2 * _UNSEEN)).astype(np.float32)
 
 
-def contrast_map(share: Map, size: tuple[int, int], ring: int) -> Map:
-    """Mean share in every window minus that in the ring around it.
-
-    Parameters
-    ----------
-    share : (H, W) array
-        Of each pixel.
-    size : (int, int)
-        Width and height of the windows.
-    ring : int
-        Width of the ring in px.
-
-    Returns
-    -------
-    (H - h + 1, W - w + 1) array
-        From -1 to 1, laid out as `template.correlate`.
-    """
-    width, height = size
-    rows, columns = share.shape
-    padded = cv2.copyMakeBorder(share, ring, ring, ring, ring, cv2.BORDER_REFLECT)
-    sums = cv2.integral(padded, sdepth=cv2.CV_64F)
-
-    def box(left: int, top: int, wide: int, high: int) -> npt.NDArray[np.float64]:
-        down, along = rows - height + 1, columns - width + 1
-        y0, y1, x0, x1 = top, top + high, left, left + wide
-        return np.asarray(
-            sums[y1 : y1 + down, x1 : x1 + along]
-            - sums[y0 : y0 + down, x1 : x1 + along]
-            - sums[y1 : y1 + down, x0 : x0 + along]
-            + sums[y0 : y0 + down, x0 : x0 + along]
-        )
-
-    inside = box(ring, ring, width, height)
-    outside = box(0, 0, width + 2 * ring, height + 2 * ring) - inside
-    area = width * height
-    around = (width + 2 * ring) * (height + 2 * ring) - area
-    return (inside / area - outside / max(around, 1)).astype(np.float32)
+def mean_share_map(share: Map, size: tuple[int, int]) -> Map:
+    """Mean share in the window of `size` (w, h), both odd, around every pixel, (H, W)."""
+    found = cv2.boxFilter(share, cv2.CV_32F, size, borderType=cv2.BORDER_REPLICATE)
+    return np.asarray(found, np.float32)

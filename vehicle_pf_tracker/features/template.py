@@ -1,4 +1,4 @@
-"""Normalised cross-correlation of a grey template, whole and by halves."""
+"""Normalised cross-correlation of a grey template, whole and its halves."""
 
 from __future__ import annotations
 
@@ -65,14 +65,11 @@ def halves(shape: tuple[int, ...]) -> tuple[tuple[slice, slice], ...]:
     )
 
 
-def coefficient(one: Patch, other: Patch) -> float:
-    """Correlation coefficient of two patches of one shape; 0 where one has no structure."""
-    a, b = one.ravel().astype(np.float64), other.ravel().astype(np.float64)
-    a, b = a - a.mean(), b - b.mean()
-    aa, bb, least = float(a @ a), float(b @ b), len(a) * LEAST_DEVIATION**2
-    return float(a @ b) / (aa * bb) ** 0.5 if min(aa, bb) >= least else 0.0
-
-
-def half_coefficients(one: Patch, other: Patch) -> tuple[float, ...]:
-    """Coefficients of the left, right, upper and lower halves."""
-    return tuple(coefficient(one[half], other[half]) for half in halves(one.shape))
+def best_coefficient(image: npt.NDArray[np.uint8], template: Patch) -> float:
+    """Largest coefficient of `template` in `image`, at least 0; 0 where it does not fit in."""
+    height, width = template.shape
+    if image.shape[0] < height or image.shape[1] < width:
+        return 0.0
+    grey = image.astype(np.float32)
+    found = correlate(grey, template, have_structure(grey, (width, height)))
+    return max(float(found.max()), 0.0)

@@ -1,9 +1,9 @@
 """`fusion`: a particle filter that takes the best idea of each paper and adds what they lack.
 
 While the target is seen: camera motion, constant velocity, fused cues on a canonical region,
-adaptive resampling, judgement, learning. While it is hidden: its projective motion foretold from
-confident frames, particles that drift along it, and a search that widens with them.
-docs/fusion.md tells what each part is for.
+adaptive resampling, judgement, learning. In doubt nothing is learnt, and the particles are held
+to the motion that clear frames foretell. While it is hidden: that motion goes on, particles drift
+along it, and a search widens with them. docs/fusion.md tells what each part is for.
 """
 
 from __future__ import annotations
@@ -28,25 +28,36 @@ from vehicle_pf_tracker.trackers.base import Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance, Likeness
-from vehicle_pf_tracker.trackers.fusion_parts.candidates import Candidate, Candidates
-from vehicle_pf_tracker.trackers.fusion_parts.conviction import Conviction, Verdict
-from vehicle_pf_tracker.trackers.fusion_parts.history import History, Sighting, carried
-from vehicle_pf_tracker.trackers.fusion_parts.projective_motion import ProjectiveMotion
-from vehicle_pf_tracker.trackers.fusion_parts.swarm import Spread, Swarm
+from vehicle_pf_tracker.trackers.fusion_parts.candidates import Candidate, Candidates, Chain
+from vehicle_pf_tracker.trackers.fusion_parts.history import History, Trend, carried
+from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles, Spread
+from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion, Verdict
 from vehicle_pf_tracker.trackers.fusion_parts.view import View
 
 Place: TypeAlias = tuple[float, float]
 
-_SIZES = (1 / 1.06, 1.0, 1.06)
-_SIZES_OF_SEARCH = (1 / 1.3, 1 / 1.14, 1.0, 1.14, 1.3)
+_SIZES = tuple(1.04**step for step in (-2, -1, 0, 1, 2))
+_SIZES_OF_SEARCH = tuple(1.07**step for step in (-3, -2, -1, 0, 1, 2, 3))
+_SIZES_AT_FIRST = 4.0
+"""Frames hidden in which the size cannot have changed much."""
 _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
 _LEAST_SIDE = 6.0
 """px that the longer side of the box may shrink to."""
 _DEGENERATE = 0.4
 """Share of the particles below which the effective sample size is too small (P3)."""
-_RATE_IN_TURNS = 0.25
-_SIGHTINGS_IN_TURNS = 10
+_YOUNG_FRAMES = 6
+_YOUNG_SPREAD = 1.5
+_NEAR_PREDICTION = 0.4
+"""Standard deviation of the weak prior around the predicted mean, of the size."""
+_ON_TREND = 0.2
+_ON_TREND_INNOVATIONS = 3.0
+_TREND_SCALE = 0.08
+_DOUBTED = 4.0
+"""Latest frames that no trend is fitted to in doubt: an occluder may have dragged them along."""
+_ROLLED_BACK = 6.0
+"""The same once the target is hidden."""
+_RATE_IN_TURNS = 0.2
 
 
 class FusionTracker(ParticleTracker[FusionParameters]):
@@ -54,13 +65,19 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `Tracker.start`."""
-        self._swarm = Swarm.around(self._rng, 1, box.centre, (0.0, 0.0), 1.0, 1.0)
         estimate = super().start(frame, box)
         self._place, self._scale, self._velocity = estimate.position, 1.0, (0.0, 0.0)
-        self._begin(self._place, 1.0, (0.0, 0.0))
-        self._conviction = Conviction()
+        count = self.parameters.num_particles
+        still = Spread(0.0, 0.0, 0.0)
+        self._particles = Particles.around(self._rng, count, self._place, (0.0, 0.0), 1.0, still)
+        self._history = History(self._side)
+        self._suspicion = Suspicion()
+        self._candidates = Candidates()
         self._flow = CameraFlow()
         self._flow.measure(frame, box)
+        self._trend: Trend | None = None
+        self._hidden_for: float | None = None
+        self._frames = 0
         return estimate
 
     def reconfigure(self, parameters: FusionParameters) -> None:
@@ -68,42 +85,36 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         super().reconfigure(parameters)
         if self._target is not None:
             self._appearance.cues = parameters.cues
-            if len(self._swarm.weights) != parameters.num_particles:
-                self._swarm = self._swarm.resampled(self._rng, parameters.num_particles)
+            if len(self._particles.weights) != parameters.num_particles:
+                self._particles = self._particles.resampled(self._rng, parameters.num_particles)
 
     def _learn(self) -> None:
-        target, cues = self.target, self.parameters.cues
-        window = self.parameters.window
+        target, window = self.target, self.parameters.window
         self._size = target.box.width, target.box.height
         learnt = window.width or self._size[0], window.height or self._size[1]
-        self._appearance = Appearance(target.patch, target.centre, learnt, cues.side, cues)
+        self._appearance = Appearance(target.patch, target.centre, learnt, self.parameters.cues)
 
     def _scatter(self, centre: Place) -> Array:
         return np.asarray(centre) + sample_normal(self._rng, self.parameters.num_particles, 0.5)
-
-    def _begin(self, place: Place, scale: float, velocity: Place) -> None:
-        """Begin to follow what is seen here."""
-        self._history = History().restarted(Sighting(place, scale))
-        self._swarm = Swarm.around(
-            self._rng, self.parameters.num_particles, place, velocity, scale, self._side * scale
-        )
-        self._path: ProjectiveMotion | None = None
-        self._frames = 0
-        self._candidates = Candidates()
 
     @property
     def _side(self) -> float:
         """Geometric mean of the sides of the first box, px."""
         return math.sqrt(self._size[0] * self._size[1])
 
+    @property
+    def _extent(self) -> float:
+        """The same of the present box."""
+        return self._side * self._scale
+
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         _ = self.target  # says what is wrong before the start
         elapsed = min(elapsed, _LONGEST_STEP)
-        motion = self._camera_motion(frame)
-        self._carry(motion, elapsed)
-        if self._path is None:
+        self._carry(self._camera_motion(frame), elapsed)
+        self._frames += 1
+        if self._hidden_for is None:
             return self._follow(frame, elapsed)
-        return self._search(frame, self._path, elapsed)
+        return self._search(frame, elapsed)
 
     def _camera_motion(self, frame: Frame) -> CameraMotion:
         if not self.parameters.motion.camera:
@@ -111,215 +122,282 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         return self._flow.measure(frame, self._box(self._place))
 
     def _carry(self, motion: CameraMotion, elapsed: float) -> None:
-        """Take everything that is known along with the background."""
+        """Take everything that is known along with the background and with time."""
         self._history.age(elapsed, motion)
+        self._candidates.age(elapsed, motion)
+        if self._trend is not None:
+            self._trend = self._trend.after(elapsed)
         if motion.still:
             return
-        self._swarm = self._swarm.carried(motion)
+        self._particles = self._particles.carried(motion)
         self._place = carried(self._place, motion)
         self._scale *= motion.scale
-        self._candidates.carry(motion)
-        if self._path is not None:
-            self._path = self._path.moved(motion.shift, motion.scale)
+        if self._trend is not None:
+            self._trend = self._trend.carried(motion)
 
     # ---- in sight
 
     def _follow(self, frame: Frame, elapsed: float) -> Outcome:
-        swarm, left_image = self._predicted(frame, elapsed)
-        view = self._look_around(frame, swarm)
-        swarm, sound, passes, redrawn = self._weighed(frame, view, swarm, elapsed)
-        place, scale = swarm.place, swarm.scale
-        likeness = self._appearance.compare(view, place, scale)
-        verdict = self._conviction.judge(
-            likeness, place, scale, self._history, self._side, self.parameters.evidence,
-            gate=self.parameters.hiding.gate,
-        )  # fmt: skip
-        if not verdict.holds:
-            return self._search(frame, self._lose_sight(), 0.0)
-        self._swarm, self._place, self._scale = swarm, place, scale
-        self._velocity = swarm.velocity
+        particles, left_image = self._predicted(frame, elapsed)
+        expected = particles.place
+        view = self._look_around(frame, expected, particles.scale)
+        particles, sound, passes, redrawn = self._weighed(frame, view, particles)
+        place, scale = view.refine(particles.place, particles.scale), particles.scale
+        self._take(frame, particles, place, scale, elapsed)
+        likeness = self._appearance.compare(view, self._place, scale)
+        verdict = self._judge_looks(view, likeness)
         self._learn_from(view, likeness, verdict)
-        share = self._conviction.levels.share(likeness.evidence)
+        if verdict.hidden:
+            self._lose_sight(frame)
         return Outcome(
-            swarm.cloud(sound=sound), place, self._velocity, "seen", share, _told(likeness),
-            passes, redrawn, left_image,
+            self._particles.cloud(sound=sound), self._place, self._velocity,
+            "hidden" if verdict.hidden else "seen", self._evidence(likeness, verdict),
+            _told(likeness), passes, redrawn, left_image,
         )  # fmt: skip
 
-    def _predicted(self, frame: Frame, elapsed: float) -> tuple[Swarm, bool]:
-        """Drive all particles on; in doubt they keep closer to their motion."""
-        settings, young = self.parameters.motion, 1.0 + 3.0 / (1.0 + self._frames) ** 1.5
-        calm = 0.5 if self._conviction.doubted else 1.0
-        spread = Spread(
-            calm * young * settings.sigma * self._side * self._scale,
-            0.6 * calm * settings.scale_sigma if self._conviction.doubted else settings.scale_sigma,
-            max(settings.gain * calm, 1.0 / (1.0 + self._frames)),
-        )
-        self._frames += 1
-        swarm = self._swarm.resampled(self._rng, len(self._swarm.weights))
-        moved = swarm.moved(self._rng, elapsed, spread)
-        left_image = is_outside(frame, *moved.positions.mean(axis=0).tolist())
+    def _predicted(self, frame: Frame, elapsed: float) -> tuple[Particles, bool]:
+        """Resample and drive all particles on (P1 eq. 1, constant velocity)."""
+        particles = self._particles.resampled(self._rng, len(self._particles.weights))
+        growth = self._history.growth() if self.parameters.motion.scale else 0.0
+        moved = particles.moved(self._rng, elapsed, growth, self._spread())
+        left_image = bool(are_outside(frame, moved.positions.mean(axis=0)))
         return self._kept(frame, moved), left_image
 
-    def _kept(self, frame: Frame, swarm: Swarm) -> Swarm:
+    def _spread(self) -> Spread:
+        motion = self.parameters.motion
+        young = _YOUNG_SPREAD if self._frames <= _YOUNG_FRAMES else 1.0
+        return Spread(
+            young * motion.sigma * self._extent,
+            young * motion.velocity_sigma * self._extent,
+            motion.scale_sigma,
+        )
+
+    def _kept(self, frame: Frame, particles: Particles) -> Particles:
         """Keep positions in the image, and sizes between a few px and the image's."""
-        scales = np.clip(swarm.scales, *self._scale_bounds(frame))
+        scales = np.clip(particles.scales, *self._scale_bounds(frame))
         if not self.parameters.motion.scale:
             scales = np.ones_like(scales)
-        return replace(swarm, positions=keep_inside(frame, swarm.positions), scales=scales)
+        return replace(particles, positions=keep_inside(frame, particles.positions), scales=scales)
 
     def _scale_bounds(self, frame: Frame) -> tuple[float, float]:
         longer = max(self._size)
         return min(_LEAST_SIDE / longer, 1.0), max(2.0 * max(frame_size(frame)) / longer, 1.0)
 
-    def _look_around(self, frame: Frame, swarm: Swarm) -> View:
-        scale = swarm.scale
-        reach = 0.6 * self._size[0] * scale + 4.0, 0.6 * self._size[1] * scale + 4.0
+    def _look_around(self, frame: Frame, place: Place, scale: float) -> View:
+        reach = 0.6 * max(self._size) * scale
         sizes = _SIZES if self.parameters.motion.scale else (1.0,)
-        return self._appearance.look(frame, swarm.place, scale, reach, sizes)
+        return self._appearance.look(frame, place, scale, reach, sizes)
 
     def _weighed(
-        self, frame: Frame, view: View, swarm: Swarm, elapsed: float
-    ) -> tuple[Swarm, bool, int, int]:
+        self, frame: Frame, view: View, particles: Particles
+    ) -> tuple[Particles, bool, int, int]:
         """Weigh the particles; draw those of low weight anew while few carry all (P3)."""
-        if self._frames <= 3:
-            swarm = self._with_peak(frame, view, swarm, elapsed)
-        motion = self.parameters.motion
-        spread = Spread(motion.sigma * self._side * self._scale, motion.scale_sigma, motion.gain)
+        expected = particles.place
+        particles, sound = self._weigh(view, particles, expected)
         passes = redrawn = 0
-        swarm, sound = self._weigh(view, swarm)
-        least = _DEGENERATE * len(swarm.weights)
+        least = _DEGENERATE * len(particles.weights)
         while (
             passes < self.parameters.resampling_passes
-            and effective_sample_size(swarm.weights) < least
+            and effective_sample_size(particles.weights) < least
         ):
-            kept = swarm.weights >= min(1.0 / len(swarm.weights), swarm.weights.max())
-            drawn = swarm.jittered(self._rng, kept, elapsed, spread.times(0.4))
-            swarm, sound = self._weigh(view, self._kept(frame, drawn))
-            passes, redrawn = passes + 1, redrawn + int((~kept).sum())
-        return swarm, sound, passes, redrawn
+            particles, drawn = particles.renewed(self._rng, self._spread().times(0.4))
+            particles, sound = self._weigh(view, self._kept(frame, particles), expected)
+            passes, redrawn = passes + 1, redrawn + drawn
+        return particles, sound, passes, redrawn
 
-    def _weigh(self, view: View, swarm: Swarm) -> tuple[Swarm, bool]:
-        fused = view.fused(swarm.positions, swarm.scales)
-        weights, sound = from_log(self.parameters.sharpness * fused)
-        return replace(swarm, weights=weights), sound
+    def _weigh(
+        self, view: View, particles: Particles, expected: Place
+    ) -> tuple[Particles, bool]:
+        """Likelihood of the looks, times how well each particle agrees with the motion."""
+        logs = self.parameters.sharpness * view.read(
+            view.fused, particles.positions, particles.scales
+        )
+        away = ((particles.positions - expected) ** 2).sum(axis=1)
+        logs -= 0.5 * away / (_NEAR_PREDICTION * self._extent) ** 2
+        if self._suspicion.frames and self._trend is not None and self.parameters.hiding.gate:
+            logs -= 0.5 * self._off_trend(particles, self._trend)
+        weights, sound = from_log(logs)
+        return replace(particles, weights=weights), sound
 
-    def _with_peak(self, frame: Frame, view: View, swarm: Swarm, elapsed: float) -> Swarm:
-        """Put half of the particles where the image is most alike: the speed is not known yet."""
-        far = 1e3 * self._side * self._scale
-        peak = view.peaks(1, swarm.place, far, 1.0)[0]
-        half = len(swarm.weights) // 2
-        positions, velocities = swarm.positions.copy(), swarm.velocities.copy()
-        jumps = np.asarray(peak.place) - positions[:half]
-        positions[:half] += jumps + sample_normal(self._rng, half, 0.02 * self._side * self._scale)
-        velocities[:half] += jumps / max(elapsed, 0.5) / (1.0 + self._frames) * 2
-        return self._kept(frame, replace(swarm, positions=positions, velocities=velocities))
+    def _off_trend(self, particles: Particles, trend: Trend) -> Array:
+        """Squared Mahalanobis distance from where clear frames foretell the target, (N,)."""
+        place, scale = trend.now()
+        within = max(_ON_TREND, _ON_TREND_INNOVATIONS * self._suspicion.innovation) * self._extent
+        away = ((particles.positions - place) ** 2).sum(axis=1) / within**2
+        if not self.parameters.motion.scale:
+            return np.asarray(away)
+        return np.asarray(away + (np.log(particles.scales / scale) / _TREND_SCALE) ** 2)
+
+    def _take(
+        self, frame: Frame, particles: Particles, place: Place, scale: float, elapsed: float
+    ) -> None:
+        """Move on to the estimate; the velocity takes its share of the displacement."""
+        gain, motion = self.parameters.motion.gain, self._velocity
+        gain = max(gain, 0.8 / self._frames)
+        x, y = keep_inside(frame, np.asarray(place)).tolist()
+        moved = (x - self._place[0]) / elapsed, (y - self._place[1]) / elapsed
+        self._velocity = (
+            motion[0] + gain * (moved[0] - motion[0]),
+            motion[1] + gain * (moved[1] - motion[1]),
+        )
+        self._particles = particles.drawn_towards((x, y), self._velocity, particles.place)
+        self._place, self._scale = (x, y), scale
+
+    def _judge_looks(self, view: View, likeness: Likeness) -> Verdict:
+        if self._frames == 1:
+            self._suspicion.settle(likeness)
+        hiding = self.parameters.hiding
+        before = 1.0 if self._suspicion.is_clear(likeness) else 1.0 + _DOUBTED
+        self._trend = self._history.trend(before, projective=hiding.projective)
+        off = 0.0 if self._trend is None else math.dist(self._trend.now()[0], self._place)
+        return self._suspicion.judge(
+            likeness,
+            off / self._extent,
+            lambda: self._appearance.best_half(view, self._place, self._scale),
+            gate=hiding.gate,
+            grey=self._appearance.grey,
+            patience=hiding.patience,
+        )
 
     def _learn_from(self, view: View, likeness: Likeness, verdict: Verdict) -> None:
-        if verdict.sure:
-            self._history.see(self._place, self._scale)
-        if not verdict.learns:
-            return
-        cues = self.parameters.cues
-        if verdict.fluent:
-            self._history.forget_all_but(_SIGHTINGS_IN_TURNS)
-            self._appearance.learn(view, self._place, self._scale, _RATE_IN_TURNS, 0)
-        else:
-            self._conviction.levels.follow(likeness, self.parameters.evidence.level_rate)
-            self._appearance.learn(view, self._place, self._scale, cues.template_rate, cues.delay)
-        self._appearance.weigh_cues(view, self._place, self._scale)
+        place, scale = self._place, self._scale
+        if verdict.turning:
+            self._appearance.learn(view, place, scale, _RATE_IN_TURNS)
+        if verdict.clear:
+            self._history.see(place, scale)
+            self._appearance.learn(view, place, scale, self.parameters.cues.template_rate)
+            self._appearance.learn_colours(view, place, scale)
+            self._appearance.weigh_cues(view, place, scale)
+
+    def _evidence(self, likeness: Likeness, verdict: Verdict) -> float:
+        """Give what the mode is judged by: the looks, of their clear level, unless in doubt."""
+        share = self._suspicion.share(likeness)
+        if verdict.hidden or (self._suspicion.frames >= 2 and not verdict.turning):
+            return min(share, self._ceiling)
+        return max(share, self.parameters.evidence.clear_above)
+
+    @property
+    def _ceiling(self) -> float:
+        """Evidence that no mode but `TRACKING` is left with."""
+        return 0.99 * self.parameters.evidence.occluded_below * self._judge.level
 
     # ---- hidden
 
-    def _lose_sight(self) -> ProjectiveMotion:
+    def _lose_sight(self, frame: Frame) -> None:
         """Go back to the confident frames, and foretell the motion from them."""
         hiding = self.parameters.hiding
-        path, self._hidden_for = self._history.fit(
-            self._side, retrospect=hiding.retrospect, projective=hiding.projective
+        back = _ROLLED_BACK if hiding.retrospect else 0.0
+        self._trend = (
+            self._history.trend(back, projective=hiding.projective)
+            or self._history.trend(0.0, projective=hiding.projective)
+            or Trend.still(self._place, self._scale)
         )
         self._candidates = Candidates()
-        self._appearance.forget_pending()
-        self._conviction.doubted = 0
-        self._path = path
-        count = self.parameters.num_particles
-        place, scale = path.at(self._hidden_for)
-        self._swarm = Swarm.around(
-            self._rng, count, place, path.velocity, scale, self._side * scale
-        )
-        return path
+        self._suspicion.reset()
+        self._hidden_for = 0.0
+        self._scatter_on(self._trend)
+        self._foretell(frame, self._trend)
 
-    def _search(self, frame: Frame, path: ProjectiveMotion, elapsed: float) -> Outcome:
-        self._hidden_for += elapsed
-        place, scale = path.at(self._hidden_for)
-        velocity = path.velocity_at(self._hidden_for)
-        x, y = keep_inside(frame, np.asarray(place)).tolist()
+    def _scatter_on(self, trend: Trend) -> None:
+        place, scale = trend.now()
+        spread = Spread(0.1 * self._side * scale, 0.0, 0.0)
+        count = self.parameters.num_particles
+        self._particles = Particles.around(
+            self._rng, count, place, trend.velocity(), scale, spread
+        )
+
+    def _foretell(self, frame: Frame, trend: Trend) -> bool:
+        """Move on to the foretold state; tells whether its place is in the image."""
+        place, scale = trend.now()
         low, high = self._scale_bounds(frame)
         self._scale = min(max(scale, low), high) if self.parameters.motion.scale else 1.0
-        self._place, self._velocity = (x, y), velocity
-        self._drift(frame, velocity, elapsed)
-        uncertainty = 0.3 * self._side * self._scale + 1.0 + 0.5 * self._swarm.width
-        found = self._find(frame, uncertainty)
-        followed = self._candidates.follow(found, velocity, elapsed, self._side * self._scale)
-        evidence, hiding = self.parameters.evidence, self.parameters.hiding
-        least = max(evidence.clear_above, evidence.minimum)
-        certain = [
-            one for one in followed if one.is_certain((x, y), uncertainty, hiding.confirm, least)
-        ]
-        if certain:
-            return self._come_back(frame, max(certain, key=lambda one: one.share))
-        share = max((one.share for one in followed), default=0.0)
-        ceiling = 0.99 * evidence.occluded_below * self._judge.level
-        left_image = is_outside(frame, *place)
+        self._velocity = trend.velocity()
+        x, y = keep_inside(frame, np.asarray(place)).tolist()
+        self._place = x, y
+        return not are_outside(frame, np.asarray(place))
+
+    def _search(self, frame: Frame, elapsed: float) -> Outcome:
+        assert self._trend is not None and self._hidden_for is not None
+        self._hidden_for += elapsed
+        inside = self._foretell(frame, self._trend)
+        self._drift(frame, elapsed)
+        peak_share = self._find(frame)
+        chain = self._candidates.chain(self._extent)
+        if chain is not None and self._is_proof(chain):
+            return self._come_back(frame, chain)
         return Outcome(
-            self._swarm.cloud(), (x, y), velocity, "hidden", min(share, ceiling), {},
-            left_image=left_image,
+            self._particles.cloud(), self._place, self._velocity, "hidden",
+            min(peak_share, self._ceiling), {}, left_image=not inside,
         )  # fmt: skip
 
-    def _drift(self, frame: Frame, velocity: Place, elapsed: float) -> None:
+    def _drift(self, frame: Frame, elapsed: float) -> None:
         """Move hidden particles along the motion (P1 eq. 11), or evenly around it."""
-        count, speed = len(self._swarm.weights), math.hypot(*velocity)
-        across = 0.03 * self._side * self._scale * math.sqrt(elapsed)
+        count, velocity = len(self._particles.weights), self._velocity
+        across = 0.03 * self._extent * math.sqrt(elapsed)
         if self.parameters.hiding.drift:
-            along = speed * elapsed / RAYLEIGH_MEAN
+            along = math.hypot(*velocity) * elapsed / RAYLEIGH_MEAN
             moves = sample_normal_rayleigh(self._rng, count, velocity, along, across)
         else:
             moves = np.asarray(velocity) * elapsed + sample_normal(self._rng, count, across)
-        self._swarm = replace(
-            self._swarm,
-            positions=keep_inside(frame, self._swarm.positions + moves),
+        self._particles = replace(
+            self._particles,
+            positions=keep_inside(frame, self._particles.positions + moves),
             velocities=np.tile(velocity, (count, 1)),
             scales=np.full(count, self._scale),
         )
 
-    def _find(self, frame: Frame, uncertainty: float) -> list[Candidate]:
-        """Places that look like the target, by a dense search around the foretold place."""
-        reach = 4.0 * uncertainty if self.parameters.hiding.search else 0.5 * uncertainty
-        sizes = _SIZES_OF_SEARCH if self.parameters.motion.scale else (1.0,)
-        limit = max(frame_size(frame))
-        within = min(reach, limit), min(reach, limit)
-        look = self._appearance
-        view = look.look(frame, self._place, self._scale, within, sizes)
-        levels, evidence = self._conviction.levels, self.parameters.evidence
-        found = []
-        for peak in view.peaks(4, self._place, reach, 0.4 * look.inner_side):
-            likeness = look.compare(view, peak.place, peak.scale)
-            share = levels.share(likeness.template)
-            if likeness.whole >= 0.75 * levels.whole and share >= 0.9 * evidence.clear_above:
-                found.append(Candidate(peak.place, peak.place, peak.scale, share))
-        return found
+    def _find(self, frame: Frame) -> float:
+        """Look for a candidate by a dense search; returns its looks, of their clear level."""
+        assert self._hidden_for is not None
+        extent, hidden_for = self._extent, self._hidden_for
+        widened = min(extent * (0.5 + 0.05 * hidden_for) + 1.5 * self._particles.width, 4 * extent)
+        reach = 0.3 * max(self._size) * self._scale
+        reach += widened if self.parameters.hiding.search else 0.0
+        sizes = _SIZES_OF_SEARCH if hidden_for > _SIZES_AT_FIRST else _SIZES
+        limit = float(max(frame_size(frame)))
+        view = self._appearance.look(
+            frame, self._place, self._scale, min(reach, limit),
+            sizes if self.parameters.motion.scale else (1.0,),
+        )  # fmt: skip
+        peak = view.best(self._place, widened, frame_size(frame))
+        likeness = self._appearance.compare(view, peak.place, peak.scale)
+        strong = self._suspicion.is_strong(likeness)
+        if strong or (
+            self._suspicion.is_fair(likeness)
+            and math.dist(peak.place, self._place) < self._near(hidden_for)
+        ):
+            self._candidates.add(Candidate(peak.place, peak.scale, strong))
+        return self._suspicion.share(likeness)
 
-    def _come_back(self, frame: Frame, found: Candidate) -> Outcome:
+    def _near(self, hidden_for: float) -> float:
+        """Distance from the foretold place within which looks need only be fair, px."""
+        return max(0.3 + 0.03 * hidden_for, 3 * self._suspicion.innovation) * self._extent + 2
+
+    def _is_proof(self, chain: Chain) -> bool:
+        speed = math.hypot(*self._velocity)
+        noise = max(0.03, 2 * self._suspicion.innovation) * self._extent
+        tolerance = max(1.0, 0.35 * speed, noise)
+        return chain.proves(self._velocity, tolerance, self.parameters.hiding.confirm)
+
+    def _come_back(self, frame: Frame, chain: Chain) -> Outcome:
         """Follow a candidate from now on."""
+        found = chain.last
         x, y = keep_inside(frame, np.asarray(found.place)).tolist()
-        measured = found.velocity or self._velocity
-        velocity = (
-            0.5 * (self._velocity[0] + measured[0]),
-            0.5 * (self._velocity[1] + measured[1]),
+        self._place, self._scale = (x, y), found.scale
+        self._velocity = (
+            0.5 * (self._velocity[0] + chain.velocity[0]),
+            0.5 * (self._velocity[1] + chain.velocity[1]),
         )
-        self._place, self._scale, self._velocity = (x, y), found.scale, velocity
-        self._begin((x, y), found.scale, velocity)
-        self._swarm = self._kept(frame, self._swarm)
-        self._frames = 3
-        return Outcome(self._swarm.cloud(), (x, y), velocity, "found", found.share, {})
+        spread = Spread(0.05 * self._extent, 0.0, 0.0)
+        count = self.parameters.num_particles
+        particles = Particles.around(
+            self._rng, count, self._place, self._velocity, self._scale, spread
+        )
+        self._particles = self._kept(frame, particles)
+        self._hidden_for, self._trend = None, None
+        self._suspicion.reset()
+        cloud = self._particles.cloud()
+        return Outcome(cloud, self._place, self._velocity, "found", 1.0, {})
 
     def _box(self, place: Place) -> Box:
         return Box.around(place, self._size[0] * self._scale, self._size[1] * self._scale)
@@ -334,6 +412,5 @@ def _told(likeness: Likeness) -> dict[str, float]:
     return {
         "anchor": likeness.anchor,
         "following": likeness.following,
-        "part": likeness.part,
         "colour": likeness.colour,
     }

@@ -30,7 +30,7 @@ class CueParameters:
         source="P2 (8)",
     )
     side: float = parameter(
-        24.0,
+        32.0,
         "Larger: the target is compared at a finer resolution, at more time per frame.",
         minimum=8.0,
         maximum=96.0,
@@ -38,25 +38,18 @@ class CueParameters:
         effect="relearns",
     )
     template_rate: float = parameter(
-        0.05,
+        0.06,
         "Higher: the following template takes on changed looks faster, and occluders too.",
         minimum=0.0,
         maximum=1.0,
         unit="per frame",
     )
-    delay: int = parameter(
-        1,
-        "Longer: an occlusion has more time to be noticed before the template learns from it.",
-        minimum=0,
-        maximum=100,
-        unit="frames",
-    )
     colour_rate: float = parameter(
-        0.02,
+        0.05,
         "Higher: the histograms take on changed colours faster, and occluders too.",
         minimum=0.0,
         maximum=1.0,
-        unit="per frame",
+        unit="per four frames",
     )
 
 
@@ -69,21 +62,28 @@ class VehicleMotionParameters:
     )
     scale: bool = parameter(True, "Off: the box keeps its first size.")
     sigma: float = parameter(
-        0.05,
-        "Larger: follows swifter changes of speed; steadier if smaller.",
+        0.1,
+        "Larger: follows jumps of the place; steadier if smaller.",
         minimum=0.001,
         maximum=2.0,
         unit="of the size, per frame",
     )
+    velocity_sigma: float = parameter(
+        0.04,
+        "Larger: follows swifter changes of speed; steadier if smaller.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="of the size, per frame and frame",
+    )
     scale_sigma: float = parameter(
-        0.015,
+        0.02,
         "Larger: follows swifter changes of size; steadier if smaller.",
         minimum=0.0,
         maximum=0.5,
         unit="of the size, per frame",
     )
     gain: float = parameter(
-        0.25,
+        0.35,
         "Higher: the velocity takes on more of each displacement.",
         minimum=0.0,
         maximum=1.0,
@@ -109,18 +109,25 @@ class HidingParameters:
     )
     gate: bool = parameter(
         True,
-        "Off: a target that looks less alike may also leave its path or stop, as one does that "
-        "has been taken over by an occluder.",
+        "Off: particles are not held to the foretold motion in doubt, and leaving it tells of no "
+        "occlusion.",
     )
     search: bool = parameter(
         True, "Off: a hidden target is looked for at its predicted place alone."
     )
     confirm: int = parameter(
-        4,
-        "More: a candidate has to agree in place, size and looks for longer before it is taken "
-        "for the target.",
+        3,
+        "More: a candidate has to agree in place, size, motion and looks for longer before it is "
+        "taken for the target.",
+        minimum=2,
+        maximum=24,
+        unit="frames",
+    )
+    patience: int = parameter(
+        25,
+        "Longer: changed looks are doubted for longer before they are taken for the target's.",
         minimum=1,
-        maximum=100,
+        maximum=1000,
         unit="frames",
     )
 
@@ -130,13 +137,13 @@ class FusionParameters(ParticleParameters):
     """Parameters of `fusion`."""
 
     sharpness: float = parameter(
-        30.0,
+        25.0,
         "Higher: particles that are less alike lose weight faster.",
         minimum=0.1,
         maximum=1000.0,
     )
     resampling_passes: int = parameter(
-        4,
+        1,
         "More: low weights are drawn anew more often within a frame, which sharpens the estimate; "
         "0: never.",
         minimum=0,

@@ -6,18 +6,18 @@ After P2's principle, a cue that stops telling the target from its surroundings 
 from __future__ import annotations
 
 import math
-from collections import deque
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
 from vehicle_pf_tracker.features.colour_share import (
-    Bins,
     Histogram,
+    bin_count,
     colour_bins,
-    contrast_map,
     histogram,
+    is_grey,
+    mean_share_map,
     shares,
 )
 from vehicle_pf_tracker.features.frame import Frame
@@ -25,28 +25,34 @@ from vehicle_pf_tracker.features.region import Region, cut_region
 from vehicle_pf_tracker.features.template import (
     Map,
     Patch,
-    coefficient,
+    best_coefficient,
     correlate,
-    half_coefficients,
+    halves,
     have_structure,
 )
 from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.fusion_parameters import CueParameters
-from vehicle_pf_tracker.trackers.fusion_parts.view import CUES, Level, View
+from vehicle_pf_tracker.trackers.fusion_parts.view import CUES, View
 
 Place = tuple[float, float]
 
+_LEAST_TEMPLATE = 5
+"""px of the region."""
 _INNER = 0.75
 """Share of the box along each side that templates cover: its border is background."""
-_RING = 0.35
-"""Width of the ring around the box that colours are held against, of its shorter side."""
-_FIRST_COLOUR_LEVEL = 0.5
-_LEAST_COLOUR_LEVEL = 0.05
-_COLOUR_TRUSTED = (0.5, 0.75)
-"""Margins over the surroundings between which colour alone begins to be evidence."""
-_MARGIN_RATE = 0.1
-_LEAST_MARGIN = 0.02
-_ALIKE_BY_COLOUR = 0.95
+_COLOURED = 0.85
+"""Share of the box along each side that colours are averaged in."""
+_TARGET = 0.42
+_SURROUNDINGS = 0.55
+"""Distance from the centre, in sizes of the box, up to and from which histograms count."""
+_BASE_WEIGHTS = np.array([0.25, 0.5, 0.25])
+_WEIGHT_RATE = 0.05
+_LEAST_MARGIN = 0.1
+_SLACK = 2
+"""px of the region by which a half may be off its place in the whole."""
+_COLOURS_LEARNT_EVERY = 4
+_BACKGROUND_RATE = 3.0
+"""The surroundings change more often than the target."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,31 +63,13 @@ class Likeness:
     ----------
     anchor, following : float
         Correlation with the first template, and with the one that follows.
-    part : float
-        Largest correlation of a half with either.
     colour : float
-        Contrast of the colours, of its usual level, as far as colour can be trusted here.
+        Mean share of the colours in the box.
     """
 
     anchor: float
     following: float
-    part: float
     colour: float
-
-    @property
-    def whole(self) -> float:
-        """Correlation of the whole with the template that fits better."""
-        return max(self.anchor, self.following)
-
-    @property
-    def template(self) -> float:
-        """Evidence by templates: half of it is left when half of the target is hidden."""
-        return 0.5 * self.whole + 0.5 * self.part
-
-    @property
-    def evidence(self) -> float:
-        """Evidence by templates, or by colours where these are rare around."""
-        return max(self.template, _ALIKE_BY_COLOUR * self.colour)
 
 
 class Appearance:
@@ -95,40 +83,30 @@ class Appearance:
         Of the target in it, px.
     size : (float, float)
         Of the target's box, px.
-    side : float
-        Geometric mean of the sides of the box at canonical size, in px of a region.
     cues : CueParameters
-        Which cues take part.
+        Which cues take part, and how they are learnt.
     """
 
-    def __init__(
-        self, frame: Frame, centre: Place, size: Place, side: float, cues: CueParameters
-    ) -> None:
+    def __init__(self, frame: Frame, centre: Place, size: Place, cues: CueParameters) -> None:
         self.size = size
         self.cues = cues
-        self._zoom = side / math.sqrt(size[0] * size[1])
-        self._inner = (
-            max(round(_INNER * size[0] * self._zoom), 3),
-            max(round(_INNER * size[1] * self._zoom), 3),
+        self._zoom = cues.side / math.sqrt(size[0] * size[1])
+        self._shape = (
+            max(round(size[0] * self._zoom), _LEAST_TEMPLATE),
+            max(round(size[1] * self._zoom), _LEAST_TEMPLATE),
         )
-        used = np.array([cues.anchor, cues.following, cues.colour], np.float64)
-        self._used = used if used.any() else np.ones(len(CUES))
-        self.weights = self._used / self._used.sum()
-        self._colour_level = _FIRST_COLOUR_LEVEL
-        self._colour_margin = 0.0
-        self._pending: deque[Patch] = deque()
-        region = self._cut(frame, centre, 1.0, size)
+        used = _BASE_WEIGHTS * [cues.anchor, cues.following, cues.colour]
+        self._base = used / used.sum() if used.any() else _BASE_WEIGHTS
+        self.weights = self._base.copy()
+        self._frames = 0
+        region = self._cut(frame, centre, 1.0, (0.75 * size[0], 0.75 * size[1]))
+        self.grey = is_grey(region.image)
         self._anchor = self._patch(region, centre, 1.0)
         self._following = self._anchor.copy()
         self._target, self._background = self._histograms(region, centre, 1.0)
 
-    @property
-    def inner_side(self) -> float:
-        """Shorter side of the templates in px of a region."""
-        return float(min(self._inner))
-
     def look(
-        self, frame: Frame, centre: Place, scale: float, reach: Place, steps: tuple[float, ...]
+        self, frame: Frame, centre: Place, scale: float, reach: float, steps: tuple[float, ...]
     ) -> View:
         """Map the similarity around `centre`.
 
@@ -140,111 +118,121 @@ class Appearance:
             In px.
         scale : float
             Size that the region is resampled for, relative to the first box.
-        reach : (float, float)
-            What is looked at beyond the box of this size to either side, px.
+        reach : float
+            What is looked at beyond the box of this size to every side, px.
         steps : tuple of float
-            Sizes to look for, ascending, relative to `scale`.
+            Sizes to look for, ascending by a constant factor, relative to `scale`.
         """
-        region = self._cut(frame, centre, scale, reach)
+        region = self._cut(frame, centre, scale, (reach, reach))
         grey = region.grey.astype(np.float32)
-        share = shares(self._target, self._background)[colour_bins(region.image)]
-        return View(region, tuple(self._level(grey, share, scale, step) for step in steps))
+        bins = colour_bins(region.image, grey=self.grey)
+        share = shares(self._target, self._background)[bins]
+        cues = np.zeros((len(CUES), len(steps), *grey.shape), np.float32)
+        for number, step in enumerate(steps):
+            self._correlate(grey, step, cues[:2, number])
+            cues[2, number] = mean_share_map(share, self._odd(_COLOURED, step))
+        fused = np.tensordot(self.weights.astype(np.float32), cues, axes=1)
+        return View(region, scale * np.array(steps), cues, fused)
 
-    def _level(self, grey: Map, share: Map, scale: float, step: float) -> Level:
+    def _correlate(self, grey: Map, step: float, maps: Map) -> None:
+        """Fill the maps (2, h, w) of both templates; windows over the border stay at zero."""
+        width, height = self._odd(_INNER, step)
         rows, columns = grey.shape
-        size = (
-            min(max(round(self._inner[0] * step), 3), columns),
-            min(max(round(self._inner[1] * step), 3), rows),
+        if height > rows or width > columns:
+            return
+        structured = have_structure(grey, (width, height))
+        top, left = height // 2, width // 2
+        inside = np.s_[top : top + rows - height + 1, left : left + columns - width + 1]
+        for template, into in zip((self._anchor, self._following), maps, strict=True):
+            found = correlate(grey, self._inner(template, step), structured)
+            into[inside] = np.maximum(found, 0)
+
+    def _odd(self, share: float, step: float) -> tuple[int, int]:
+        """Give the odd size of a part of the target in px of a region."""
+        width, height = (
+            max(round(side * share * step), _LEAST_TEMPLATE) | 1 for side in self._shape
         )
-        structured = have_structure(grey, size)
-        maps = [
-            correlate(grey, _resized(template, size), structured)
-            for template in (self._anchor, self._following)
-        ]
-        contrast = contrast_map(share, size, max(round(_RING * min(size)), 2))
-        maps.append(np.minimum(contrast / np.float32(self._colour_level), np.float32(1)))
-        fused = sum(
-            (np.float32(weight) * one for weight, one in zip(self.weights, maps, strict=True)),
-            np.zeros_like(maps[0]),
+        return width, height
+
+    def _inner(self, template: Patch, step: float) -> Patch:
+        """Inner part of a template, `step` times as large."""
+        width, height = self._odd(_INNER, step)
+        across, down = self._shape
+        # Sampled at exactly 1 / step, so that neighbouring sizes differ though both are odd.
+        matrix = np.array(
+            [
+                [1 / step, 0.0, (across - 1) / 2 - (width - 1) / (2 * step)],
+                [0.0, 1 / step, (down - 1) / 2 - (height - 1) / (2 * step)],
+            ]
         )
-        return Level(scale * step, tuple(maps), fused, (size[0] / 2, size[1] / 2))
+        return _warped(template, matrix, (width, height))
 
     def compare(self, view: View, centre: Place, scale: float) -> Likeness:
-        """Hold the image at one place and size against the references."""
-        patch = self._patch(view.region, centre, scale)
-        used = [
-            template
-            for template, on in (
-                (self._anchor, self.cues.anchor),
-                (self._following, self.cues.following),
-            )
-            if on
-        ] or [self._anchor]
-        wholes = [max(coefficient(patch, template), 0.0) for template in used]
-        part = max(wholes)
-        if self.cues.parts:
-            part = max(part, *(max(half_coefficients(patch, template)) for template in used))
-        return Likeness(wholes[0], wholes[-1], min(part, 1.0), self._colour(view, centre, scale))
+        """Read all cues at one place and size."""
+        anchor, following, colour = view.read(
+            view.cues, np.array([centre]), np.array([scale])
+        )[:, 0].tolist()
+        return Likeness(anchor, following, colour)
 
-    def _colour(self, view: View, centre: Place, scale: float) -> float:
-        if not self.cues.colour:
-            return 0.0
-        low, high = _COLOUR_TRUSTED
-        trust = min(max((self._colour_margin - low) / (high - low), 0.0), 1.0)
-        return trust * min(max(self._read(view, 2, centre, scale), 0.0), 1.0)
+    def best_half(self, view: View, centre: Place, scale: float) -> float:
+        """Largest correlation of a half of the following template near its place.
 
-    def _read(self, view: View, cue: int, centre: Place, scale: float) -> float:
-        return float(view.cue(cue, np.array([centre]), np.array([scale]))[0])
-
-    def learn(self, view: View, centre: Place, scale: float, rate: float, delay: int) -> None:
-        """Let the following template and the colours follow.
-
-        Parameters
-        ----------
-        view, centre, scale
-            Where the target is.
-        rate : float
-            Share of the new template, 0 to 1.
-        delay : int
-            Frames that it waits for, so that an occlusion noticed meanwhile is not learnt.
+        A vehicle that is half hidden is still half alike; 1 with `cues.parts` off would call it
+        whole, so then it is 0.
         """
-        self._pending.append(self._patch(view.region, centre, scale))
-        while len(self._pending) > delay:
-            self._following += np.float32(rate) * (self._pending.popleft() - self._following)
-        target, background = self._histograms(view.region, centre, scale)
-        slow = self.cues.colour_rate
-        fast = min(4 * slow, 1.0)  # the surroundings change more often than the target
-        self._target += slow * (target - self._target)
-        self._background += fast * (background - self._background)
-        contrast = self._read(view, 2, centre, scale) * self._colour_level
-        level = self._colour_level + _MARGIN_RATE * (contrast - self._colour_level)
-        self._colour_level = max(level, _LEAST_COLOUR_LEVEL)
+        if not self.cues.parts:
+            return 0.0
+        region = view.region
+        inner = self._inner(self._following, scale * region.zoom[0] / self._zoom)
+        height, width = inner.shape
+        x, y = region.to_canonical(np.asarray(centre)).tolist()
+        left, top = round(x - width / 2), round(y - height / 2)
+        found = [0.0]
+        for rows, columns in halves(inner.shape):
+            half = inner[rows, columns]
+            first_row, first_column = top + (rows.start or 0), left + (columns.start or 0)
+            around = region.grey[
+                max(first_row - _SLACK, 0) : max(first_row + half.shape[0] + _SLACK, 0),
+                max(first_column - _SLACK, 0) : max(first_column + half.shape[1] + _SLACK, 0),
+            ]
+            found.append(best_coefficient(around, half))
+        return max(found)
 
-    def forget_pending(self) -> None:
-        """Drop what waits to be learnt."""
-        self._pending.clear()
+    def learn(self, view: View, centre: Place, scale: float, rate: float) -> None:
+        """Let the following template take on `rate` of what is seen at a place and size."""
+        seen = self._patch(view.region, centre, scale)
+        self._following += np.float32(rate) * (seen - self._following)
+
+    def learn_colours(self, view: View, centre: Place, scale: float) -> None:
+        """Let the histograms follow, every few frames."""
+        self._frames += 1
+        if self._frames % _COLOURS_LEARNT_EVERY:
+            return
+        target, background = self._histograms(view.region, centre, scale)
+        rate = self.cues.colour_rate
+        self._target += rate * (target - self._target)
+        self._background += min(_BACKGROUND_RATE * rate, 1.0) * (background - self._background)
 
     def weigh_cues(self, view: View, centre: Place, scale: float) -> None:
-        """Give weight to cues by how far the target stands out from its surroundings."""
-        width, height = self.size[0] * scale, self.size[1] * scale
-        around = np.array(centre) + np.vstack([_RING_PLACES, 1.4 * _RING_PLACES]) * [width, height]
-        scales = np.full(len(around), scale)
-        beyond = [np.sort(view.cue(cue, around, scales))[_HIGH] for cue in range(len(CUES))]
-        here = [self._read(view, cue, centre, scale) for cue in range(len(CUES))]
-        margin = np.array(here) - np.array(beyond)
-        self._colour_margin += _MARGIN_RATE * (float(margin[2]) - self._colour_margin)
-        if self.cues.adaptive:
-            wanted = self._used * np.maximum(margin, _LEAST_MARGIN)
-            self.weights += _MARGIN_RATE * (wanted / wanted.sum() - self.weights)
+        """Give weight to cues by how far the target stands out from its surroundings (P2 eq. 8)."""
+        if not self.cues.adaptive:
+            return
+        size = np.array(self.size) * scale
+        around = np.asarray(centre) + _RING * size
+        places = np.vstack([centre, around])
+        values = view.read(view.cues, places, np.full(len(places), scale))
+        margins = values[:, 0] - np.sort(values[:, 1:], axis=1)[:, _HIGH]
+        wanted = self._base * np.maximum(margins, _LEAST_MARGIN)
+        self.weights += _WEIGHT_RATE * (wanted / wanted.sum() - self.weights)
 
     def _cut(self, frame: Frame, centre: Place, scale: float, reach: Place) -> Region:
         size = self.size[0] * scale + 2 * reach[0], self.size[1] * scale + 2 * reach[1]
         return cut_region(frame, centre, size, self._zoom / scale)
 
     def _patch(self, region: Region, centre: Place, scale: float) -> Patch:
-        """Inner part of the box at a place and size, at canonical size."""
-        x, y = region.to_canonical(np.asarray(centre))
-        width, height = self._inner
+        """Cut the box at a place and size out of a region, at canonical size."""
+        x, y = region.to_canonical(np.asarray(centre)).tolist()
+        width, height = self._shape
         ax, ay = region.zoom[0] * scale / self._zoom, region.zoom[1] * scale / self._zoom
         matrix = np.array(
             [
@@ -252,38 +240,36 @@ class Appearance:
                 [0.0, ay, y - 0.5 - ay * (height - 1) / 2],
             ]
         )
-        patch = cv2.warpAffine(
-            region.grey, matrix, self._inner, flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
-            borderMode=cv2.BORDER_REPLICATE,
-        )  # fmt: skip
-        return np.asarray(patch, np.float32)
+        return _warped(region.grey, matrix, self._shape)
 
     def _histograms(
         self, region: Region, centre: Place, scale: float
     ) -> tuple[Histogram, Histogram]:
         """Histograms of the box and of what is around it."""
-        bins: Bins = colour_bins(region.image)
-        x, y = region.to_canonical(np.asarray(centre))
+        bins = colour_bins(region.image, grey=self.grey)
+        x, y = region.to_canonical(np.asarray(centre)).tolist()
         width = self.size[0] * scale * region.zoom[0]
         height = self.size[1] * scale * region.zoom[1]
         across = np.abs(np.arange(bins.shape[1]) + 0.5 - x) / width
         down = np.abs(np.arange(bins.shape[0]) + 0.5 - y) / height
         away = np.maximum(across[np.newaxis], down[:, np.newaxis])
-        return histogram(bins[away < 0.42]), histogram(bins[(away > 0.55) & (away < 1.2)])
+        count = bin_count(grey=self.grey)
+        return histogram(bins[away < _TARGET], count), histogram(bins[away > _SURROUNDINGS], count)
 
 
-def _ring_places() -> Array:
+def _warped(image: np.ndarray, matrix: Array, size: tuple[int, int]) -> Patch:
+    """Sample an image (h, w) at ``matrix @ (x, y, 1)`` for each pixel of the outcome."""
+    flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    patch = cv2.warpAffine(image, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
+    return np.asarray(patch, np.float32)
+
+
+def _ring() -> Array:
     angles = np.arange(16) * (2 * np.pi / 16)
-    return 0.6 * np.column_stack([np.cos(angles), np.sin(angles)])
+    return 0.7 * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
-_RING_PLACES = _ring_places()
+_RING = _ring()
 """Places around the target that it has to stand out from, in sizes of its box."""
-_HIGH = 28
-"""Index of the 0.9 quantile of the 32 places, in ascending order."""
-
-
-def _resized(patch: Patch, size: tuple[int, int]) -> Patch:
-    if (patch.shape[1], patch.shape[0]) == size:
-        return patch
-    return np.asarray(cv2.resize(patch, size, interpolation=cv2.INTER_LINEAR), np.float32)
+_HIGH = 13
+"""Index of the 0.85 quantile of them, in ascending order."""

@@ -1,144 +1,152 @@
-"""Places that a hidden target may have come back at, followed until one of them is certain."""
+"""Places that a hidden target may have come back at, until one chain of them is proof enough."""
 
 from __future__ import annotations
 
 import math
+from collections import deque
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from vehicle_pf_tracker.features.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion_parts.history import carried
 
 Place = tuple[float, float]
 
-_FAR_TAKES_LONGER = 0.5
-_FAR_MUST_BE_MORE_ALIKE = 0.04
-_SAME_SIZE = 0.3
-"""Largest change of the logarithm of the size from frame to frame."""
+_KEPT = 24
+_LARGEST_GAP = 2.0
+"""Frame periods between two candidates of one chain."""
+_SAME_SIZE = 0.2
+"""Largest change of the logarithm of the size between two of them."""
+_PLAUSIBLE_FRAMES = 5
+_PLAUSIBLE_SHARE = 0.7
+_LOOKS_ALONE_FRAMES = 12
+_LOOKS_ALONE_SHARE = 0.8
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A place that has looked like the target for some frames.
+    """A place in px and a scale that look like the target, `age` frames ago.
 
-    Attributes
-    ----------
-    place, origin : (float, float)
-        Now, and where it was found first, px.
-    scale : float
-        Relative to the first box.
-    share : float
-        Running similarity, of the clear level.
-    frames : int
-        How many it has been followed for.
-    time : float
-        The same in frame periods.
+    `strong` ones look as the target does in clear frames.
     """
 
     place: Place
-    origin: Place
     scale: float
-    share: float
-    frames: int = 1
-    time: float = 0.0
+    strong: bool
+    age: float = 0.0
 
-    @property
-    def velocity(self) -> Place | None:
-        """Mean velocity since it was found, px per frame; None at first."""
-        if self.time <= 0:
-            return None
-        return (
-            (self.place[0] - self.origin[0]) / self.time,
-            (self.place[1] - self.origin[1]) / self.time,
-        )
 
-    def carried(self, motion: CameraMotion) -> Candidate:
-        """Take it along with the background."""
-        return replace(
-            self,
-            place=carried(self.place, motion),
-            origin=carried(self.origin, motion),
-            scale=self.scale * motion.scale,
-        )
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """Candidates of successive frames that move smoothly.
 
-    def is_certain(self, expected: Place, uncertainty: float, confirm: int, least: float) -> bool:
-        """Whether it may be taken for the target.
+    Attributes
+    ----------
+    last : Candidate
+        Of the present frame.
+    frames : int
+        Number of candidates.
+    strong : float
+        Share of strong ones among them.
+    velocity : (float, float)
+        Their mean velocity, px per frame.
+    """
+
+    last: Candidate
+    frames: int
+    strong: float
+    velocity: Place
+
+    def proves(self, expected: Place, tolerance: float, confirm: int) -> bool:
+        """Whether these are the target.
+
+        One that moves as foretold is believed soon; one that is only plausible has to look right
+        for longer, and one that moves against all expectation for longest.
 
         Parameters
         ----------
         expected : (float, float)
-            Where the target should be, px.
-        uncertainty : float
-            Of that, px: further away it has to be more alike, and for longer.
+            Velocity that the target should have, px per frame.
+        tolerance : float
+            Difference from it that is within the noise, px per frame.
         confirm : int
-            Frames that it has to be followed for at the expected place.
-        least : float
-            Share of the clear level that it has to reach there.
+            Frames needed at best.
         """
-        away = math.dist(self.place, expected) / uncertainty
-        return (
-            self.frames >= confirm * (1 + _FAR_TAKES_LONGER * away)
-            and self.share >= least + _FAR_MUST_BE_MORE_ALIKE * away
-        )
+        if self.frames < confirm:
+            return False
+        if math.dist(self.velocity, expected) < tolerance:
+            return True
+        if self.strong > _PLAUSIBLE_SHARE and self.frames >= _PLAUSIBLE_FRAMES:
+            return _is_plausible(self.velocity, expected) or (
+                self.strong > _LOOKS_ALONE_SHARE and self.frames >= _LOOKS_ALONE_FRAMES
+            )
+        return False
+
+
+def _is_plausible(velocity: Place, expected: Place) -> bool:
+    """Whether a vehicle may have braked, sped up or swerved that far."""
+    speed = math.hypot(*expected)
+    if speed < 1:
+        return True
+    along = (velocity[0] * expected[0] + velocity[1] * expected[1]) / speed
+    across = abs(velocity[0] * expected[1] - velocity[1] * expected[0]) / speed
+    return 0.3 * speed < along < 2 * speed and across < 0.6 * speed
 
 
 class Candidates:
-    """All that are followed at present."""
+    """The latest candidates, one of a frame at most."""
 
     def __init__(self) -> None:
-        self._all: list[Candidate] = []
+        self._all: deque[Candidate] = deque(maxlen=_KEPT)
 
-    def carry(self, motion: CameraMotion) -> None:
-        """Take them along with the background."""
-        self._all = [one.carried(motion) for one in self._all]
+    def age(self, elapsed: float, motion: CameraMotion) -> None:
+        """Let `elapsed` frames pass in which the camera made `motion`."""
+        for index, one in enumerate(self._all):
+            place = one.place if motion.still else carried(one.place, motion)
+            self._all[index] = replace(
+                one, place=place, scale=one.scale * motion.scale, age=one.age + elapsed
+            )
 
-    def follow(
-        self, found: list[Candidate], velocity: Place, elapsed: float, size: float
-    ) -> list[Candidate]:
-        """Link what was found in this frame to the candidates of the last one.
+    def add(self, found: Candidate) -> None:
+        """Keep what was found in this frame."""
+        self._all.append(found)
 
-        Parameters
-        ----------
-        found : list of Candidate
-            Places alike enough in this frame.
-        velocity : (float, float)
-            That the target should have, px per frame: what moves otherwise is none.
-        elapsed : float
-            Frames since the last one.
-        size : float
-            Of the target, px.
+    def chain(self, size: float) -> Chain | None:
+        """Link the newest candidates; `size` is the target's in px.
 
-        Returns
-        -------
-        list of Candidate
-            All that are followed now.
+        None where this frame has no candidate, or none before it that it agrees with.
         """
-        linked = (self._link(one, velocity, elapsed, size) for one in found)
-        self._all = [one for one in linked if one is not None]
-        return self._all
-
-    def _link(
-        self, found: Candidate, velocity: Place, elapsed: float, size: float
-    ) -> Candidate | None:
-        speed = math.hypot(*velocity)
-        near = 0.12 * size + 0.5 * speed * elapsed + 1
-        before = [
-            one
-            for one in self._all
-            if math.dist(found.place, _along(one.place, velocity, elapsed)) < near
-            and abs(math.log(found.scale / one.scale)) < _SAME_SIZE
-        ]
-        if not before:
-            return found
-        best = max(before, key=lambda one: one.frames)
-        time = best.time + elapsed
-        off = math.dist(found.place, _along(best.origin, velocity, time))
-        if off > 0.5 * speed * time + 0.1 * size + 1:
+        newest_first = list(reversed(self._all))
+        if not newest_first or newest_first[0].age > 0:
             return None
-        return Candidate(
-            found.place, best.origin, found.scale, 0.5 * (best.share + found.share),
-            best.frames + 1, time,
-        )  # fmt: skip
+        chain = newest_first[:1]
+        for later, earlier in pairwise(newest_first):
+            if not _agree(chain, later, earlier, size):
+                break
+            chain.append(earlier)
+        if len(chain) < 2:
+            return None
+        velocity = _velocity(chain[-1], chain[0])
+        strong = sum(one.strong for one in chain) / len(chain)
+        return Chain(chain[0], len(chain), strong, velocity)
 
 
-def _along(place: Place, velocity: Place, time: float) -> Place:
-    return place[0] + velocity[0] * time, place[1] + velocity[1] * time
+def _agree(chain: list[Candidate], later: Candidate, earlier: Candidate, size: float) -> bool:
+    """Whether `earlier` continues the chain backwards."""
+    if not 0 < earlier.age - later.age <= _LARGEST_GAP:
+        return False
+    if abs(math.log(later.scale / earlier.scale)) > _SAME_SIZE:
+        return False
+    if len(chain) < 2:
+        return True
+    reference = _velocity(chain[-1], chain[0])
+    off = math.dist(_velocity(earlier, later), reference)
+    return off <= max(2.0, 0.08 * size, 0.5 * math.hypot(*reference))
+
+
+def _velocity(earlier: Candidate, later: Candidate) -> Place:
+    time = earlier.age - later.age
+    return (
+        (later.place[0] - earlier.place[0]) / time,
+        (later.place[1] - earlier.place[1]) / time,
+    )

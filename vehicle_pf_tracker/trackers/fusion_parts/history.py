@@ -1,10 +1,9 @@
-"""Where the target was seen, in px of the present frame."""
+"""Where the target was seen, in px of the present frame, and where that leads."""
 
 from __future__ import annotations
 
-import math
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,12 +12,15 @@ from vehicle_pf_tracker.trackers.fusion_parts.projective_motion import Projectiv
 
 Place = tuple[float, float]
 
-_KEPT = 30
-_FITTED = 26
+_KEPT = 60
+_FITTED = 24
 """Latest sightings that a motion is fitted to."""
-_DISTRUSTED = 4
-"""Latest sightings that are left out in retrospect: an occluder may have dragged them along."""
-_TRAIL = 5
+_FEWEST = 4
+_GROWTH_OVER = 12
+_GROWTH_NEEDS = 8
+_LARGEST_GROWTH = 0.03
+_GROWTH_GAIN = 0.8
+"""Of a measured growth, what is believed: it is noisy."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +32,35 @@ class Sighting:
     age: float = 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class Trend:
+    """A motion, and how long ago in frames its time 0 was."""
+
+    motion: ProjectiveMotion
+    age: float
+
+    @classmethod
+    def still(cls, place: Place, scale: float) -> Trend:
+        """Stay where it is, since nothing better is known."""
+        return cls(ProjectiveMotion(place, (0.0, 0.0), scale, 0.0), 0.0)
+
+    def now(self) -> tuple[Place, float]:
+        """Place in px and scale in the present frame."""
+        return self.motion.at(self.age)
+
+    def velocity(self) -> Place:
+        """Velocity in the present frame, px per frame."""
+        return self.motion.velocity_at(self.age)
+
+    def after(self, elapsed: float) -> Trend:
+        """Let `elapsed` frames pass."""
+        return Trend(self.motion, self.age + elapsed)
+
+    def carried(self, motion: CameraMotion) -> Trend:
+        """Take it along with the background."""
+        return Trend(self.motion.moved(motion.shift, motion.scale), self.age)
+
+
 def carried(place: Place, motion: CameraMotion) -> Place:
     """Take a place along with the background."""
     x, y = motion.apply(np.array(place)).tolist()
@@ -37,74 +68,53 @@ def carried(place: Place, motion: CameraMotion) -> Place:
 
 
 class History:
-    """The last confident sightings, and the trail of all last estimates."""
+    """The last confident sightings.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    size : float
+        Of the target at scale 1, px.
+    """
+
+    def __init__(self, size: float) -> None:
+        self._size = size
         self._sightings: deque[Sighting] = deque(maxlen=_KEPT)
-        self._trail: deque[Sighting] = deque(maxlen=_TRAIL)
-
-    def __len__(self) -> int:
-        return len(self._sightings)
 
     def age(self, elapsed: float, motion: CameraMotion) -> None:
         """Let `elapsed` frames pass in which the camera made `motion`."""
-        for kept in (self._sightings, self._trail):
-            for index, one in enumerate(kept):
-                kept[index] = Sighting(
-                    carried(one.place, motion), one.scale * motion.scale, one.age + elapsed
-                )
+        for index, one in enumerate(self._sightings):
+            place = one.place if motion.still else carried(one.place, motion)
+            self._sightings[index] = Sighting(place, one.scale * motion.scale, one.age + elapsed)
 
     def see(self, place: Place, scale: float) -> None:
         """Keep a confident sighting of this frame."""
         self._sightings.append(Sighting(place, scale))
 
-    def forget_all_but(self, count: int) -> None:
-        """Keep the latest `count` sightings only: the motion has changed."""
-        while len(self._sightings) > count:
-            self._sightings.popleft()
+    def trend(self, before: float, *, projective: bool) -> Trend | None:
+        """Fit a motion to the sightings that are at least `before` frames old.
 
-    def follow(self, place: Place) -> float:
-        """Keep an estimate of this frame; returns the speed over the last few, px per frame."""
-        self._trail.append(Sighting(place, 1.0))
-        first = self._trail[0]
-        return math.dist(first.place, place) / first.age if first.age > 0 else 0.0
-
-    def fit(
-        self, size: float, *, retrospect: bool, projective: bool
-    ) -> tuple[ProjectiveMotion, float]:
-        """Fit a motion to the sightings.
-
-        Parameters
-        ----------
-        size : float
-            Of the target at scale 1, px.
-        retrospect : bool
-            Leave the latest ones out.
-        projective : bool
-            Let the size change.
-
-        Returns
-        -------
-        motion : ProjectiveMotion
-            With time 0 at the last sighting that it was fitted to.
-        time : float
-            Frames since then.
+        None where these are too few.
         """
-        sightings = list(self._sightings)[-_FITTED:]
-        if retrospect and len(sightings) > 2 * _DISTRUSTED:
-            sightings = sightings[:-_DISTRUSTED]
-        last = sightings[-1].age
+        chosen = [one for one in self._sightings if one.age >= before][-_FITTED:]
+        if len(chosen) < _FEWEST:
+            return None
+        last = chosen[-1].age
         motion = fit_motion(
-            np.array([last - one.age for one in sightings]),
-            np.array([one.place for one in sightings]),
-            np.array([one.scale for one in sightings]),
-            size,
+            np.array([last - one.age for one in chosen]),
+            np.array([one.place for one in chosen]),
+            np.array([one.scale for one in chosen]),
+            self._size,
             projective=projective,
         )
-        return motion, last
+        return Trend(motion, last)
 
-    def restarted(self, sighting: Sighting) -> History:
-        """Begin anew from one sighting."""
-        other = History()
-        other._sightings.append(replace(sighting))
-        return other
+    def growth(self) -> float:
+        """Rate at which the logarithm of the scale changed lately, per frame."""
+        latest = list(self._sightings)[-_GROWTH_OVER:]
+        if len(latest) < _GROWTH_NEEDS:
+            return 0.0
+        times = np.array([-one.age for one in latest])
+        times -= times.mean()
+        logs = np.log([one.scale for one in latest])
+        slope = float(times @ logs) / max(float(times @ times), 1e-9)
+        return _GROWTH_GAIN * min(max(slope, -_LARGEST_GROWTH), _LARGEST_GROWTH)

@@ -8,14 +8,20 @@ import numpy as np
 
 from vehicle_pf_tracker.trackers.estimate import Array
 
-_RATES = np.linspace(-0.04, 0.04, 81)
-_PLACE_SIGMA = 0.04
+_RATES = np.linspace(-0.04, 0.04, 33)
+_RATE_NEEDS = 8
+"""Sightings below which the size is taken to stay."""
+_MEMORY = 10.0
+"""Frames after which an older sighting counts for 1 / e."""
+_PLACE_SIGMA = 0.03
 """Standard deviation of a position, of the size."""
-_SIZE_SIGMA = 0.06
+_SIZE_SIGMA = 0.04
 """Standard deviation of the logarithm of a size."""
-_RATE_SIGMA = 0.01
+_RATE_SIGMA = 0.02
 """Rates of change of the size are small; per frame."""
 _LEAST_DIVISOR = 0.25
+_LARGEST_CHANGE = 0.7
+"""What the rate may have changed the size by while it was seen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,12 +67,12 @@ class ProjectiveMotion:
 def fit_motion(
     times: Array, places: Array, scales: Array, size: float, *, projective: bool = True
 ) -> ProjectiveMotion:
-    """Fit to what was seen, by least squares over a grid of rates.
+    """Fit to what was seen, by weighted least squares over a grid of rates.
 
     Parameters
     ----------
     times : (N,) array
-        In frames, at most 0.
+        In frames, ascending, the last of them 0.
     places : (N, 2) array
         In px.
     scales : (N,) array
@@ -75,30 +81,31 @@ def fit_motion(
         Of the vehicle at scale 1 in px, which errors of places are measured by.
     projective : bool
         False holds the rate at 0: constant velocity and size in the image.
+
+    Returns
+    -------
+    ProjectiveMotion
+        Its place is half way between the fitted and the last one.
     """
-    rates = _RATES if projective else np.zeros(1)
-    sigma = _PLACE_SIGMA * size * float(scales.mean()) + 0.3
-    exact = 1.0 - rates[:, np.newaxis] * times
-    divisors = np.maximum(exact, _LEAST_DIVISOR)
-    shares = times / divisors
-    origins, velocities = _lines(shares, places)
-    logs = np.log(scales * divisors)
-    log_scales = logs.mean(axis=1)
-    off_places = (
-        places - origins[:, np.newaxis] - shares[..., np.newaxis] * velocities[:, np.newaxis]
-    )
-    costs = (off_places**2).sum(axis=(1, 2)) / sigma**2 + (rates / _RATE_SIGMA) ** 2
-    costs += ((logs - log_scales[:, np.newaxis]) ** 2).sum(axis=1) / _SIZE_SIGMA**2
-    possible = exact.min(axis=1) >= _LEAST_DIVISOR
-    best = int(np.argmin(np.where(possible, costs, np.inf)))
-    (x, y), (vx, vy) = origins[best].tolist(), velocities[best].tolist()
-    return ProjectiveMotion((x, y), (vx, vy), float(np.exp(log_scales[best])), float(rates[best]))
-
-
-def _lines(shares: Array, places: Array) -> tuple[Array, Array]:
-    """Regress places (N, 2) on each row of `shares` (R, N): places at zero and slopes, (R, 2)."""
-    middles, centre = shares.mean(axis=1, keepdims=True), places.mean(axis=0)
-    off = shares - middles
+    rates = _RATES if projective and len(times) >= _RATE_NEEDS else np.zeros(1)
+    weights = np.exp(times / _MEMORY)
+    total = weights.sum()
+    divisors = 1.0 - rates[:, np.newaxis] * times
+    shares = times / np.maximum(divisors, _LEAST_DIVISOR)
+    centres, middle = shares @ weights / total, weights @ places / total
+    off = shares - centres[:, np.newaxis]
     # The small summand keeps simultaneous frames solvable, with a slope of zero.
-    slopes = off @ (places - centre) / ((off**2).sum(axis=1, keepdims=True) + 1e-6)
-    return centre - middles * slopes, slopes
+    spread = off**2 @ weights + 1e-9
+    velocities = (off * weights) @ (places - middle) / spread[:, np.newaxis]
+    residuals = places - middle - off[..., np.newaxis] * velocities[:, np.newaxis]
+    logs = np.log(scales * np.maximum(divisors, _LEAST_DIVISOR))
+    log_scales = logs @ weights / total
+    sigma = _PLACE_SIGMA * size * float(scales.mean())
+    costs = (residuals**2).sum(axis=2) @ weights / sigma**2 + (rates / _RATE_SIGMA) ** 2
+    costs += (logs - log_scales[:, np.newaxis]) ** 2 @ weights / _SIZE_SIGMA**2
+    possible = rates * times[0] <= _LARGEST_CHANGE
+    best = int(np.argmin(np.where(possible, costs, np.inf)))
+    fitted = middle - centres[best] * velocities[best]
+    x, y = (0.5 * (fitted + places[-1])).tolist()
+    vx, vy = velocities[best].tolist()
+    return ProjectiveMotion((x, y), (vx, vy), float(np.exp(log_scales[best])), float(rates[best]))

@@ -11,132 +11,126 @@ from vehicle_pf_tracker.features.region import Region
 from vehicle_pf_tracker.features.template import Map
 from vehicle_pf_tracker.trackers.estimate import Array
 
+Place = tuple[float, float]
+
 CUES = ("anchor", "following", "colour")
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Level:
-    """What one size looks like.
-
-    Attributes
-    ----------
-    scale : float
-        Size relative to the first box.
-    cues : tuple of (h, w) arrays
-        Similarity of each window by each cue of `CUES`, at most 1.
-    fused : (h, w) array
-        Their weighted sum.
-    offset : (float, float)
-        Centre of the first window in px of the region.
-    """
-
-    scale: float
-    cues: tuple[Map, ...]
-    fused: Map
-    offset: tuple[float, float]
+_FAR = 0.1
+"""What a place at the distance `reach` of the expected one counts less."""
+_CLIMB = 3
+"""Half side of the windows that the refinement climbs by, px of the region; and their number."""
+_CLIMB_SHARPNESS = 40.0
 
 
 @dataclass(frozen=True, slots=True)
 class Peak:
-    """A place in px of the frame and a size, where the fused similarity is largest."""
+    """A place in px of the frame and a scale, with the fused similarity there."""
 
-    place: tuple[float, float]
+    place: Place
     scale: float
     height: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
-    """One frame around a place, levels in order of their sizes."""
+    """One frame around a place.
+
+    Attributes
+    ----------
+    region : Region
+        What was looked at.
+    scales : (S,) array
+        Sizes that were looked for, ascending by a constant factor, relative to the first box.
+    cues : (3, S, h, w) array
+        Similarity of the window around each pixel of the region by each cue of `CUES`, 0 to 1.
+    fused : (S, h, w) array
+        Their weighted sum.
+    """
 
     region: Region
-    levels: tuple[Level, ...]
+    scales: Array
+    cues: Map
+    fused: Map
 
-    def fused(self, positions: Array, scales: Array) -> Array:
-        """Fused similarity of particles at `positions` (N, 2) in px, of `scales` (N,)."""
-        return self._read(positions, scales, [level.fused for level in self.levels])
-
-    def cue(self, index: int, positions: Array, scales: Array) -> Array:
-        """Similarity by one cue, for the same."""
-        return self._read(positions, scales, [level.cues[index] for level in self.levels])
-
-    def _read(self, positions: Array, scales: Array, maps: list[Map]) -> Array:
-        places = self.region.to_canonical(positions)
-        if len(maps) == 1:
-            return _interpolate(maps[0], places - np.array(self.levels[0].offset))
-        first, step = self.levels[0].scale, self.levels[1].scale / self.levels[0].scale
-        index = np.clip(np.log(scales / first) / math.log(step), 0.0, len(maps) - 1.0)
-        total = np.zeros(len(places))
-        for number, (level, values) in enumerate(zip(self.levels, maps, strict=True)):
-            share = np.maximum(1.0 - np.abs(index - number), 0.0)
-            total += share * _interpolate(values, places - np.array(level.offset))
-        return total
-
-    def peaks(
-        self, count: int, around: tuple[float, float], reach: float, apart: float
-    ) -> list[Peak]:
-        """Find the most alike places, best first.
+    def read(self, maps: Map, positions: Array, scales: Array) -> Array:
+        """Read between the entries of maps (..., S, h, w).
 
         Parameters
         ----------
-        count : int
-            How many at most.
-        around : (float, float)
-            Where the target is expected, in px.
-        reach : float
-            Distance from there in px at which a peak counts for `_FAR` less.
-        apart : float
-            Least distance between two of them, in px of the region.
+        positions : (N, 2) array
+            In px of the frame; beyond the region nothing is alike.
+        scales : (N,) array
+            Relative to the first box.
+
+        Returns
+        -------
+        (..., N) array
         """
-        found = [
-            peak
-            for level in self.levels
-            for peak in self._peaks(level, count, around, reach, apart)
-        ]
-        found.sort(key=lambda peak: -peak.height)
-        kept: list[Peak] = []
-        for peak in found:
-            if all(math.dist(peak.place, one.place) * self.region.zoom[0] > apart for one in kept):
-                kept.append(peak)
-        return kept[:count]
+        count, height, width = maps.shape[-3:]
+        places = self.region.to_canonical(positions) - 0.5
+        x = np.minimum(np.maximum(places[:, 0], 0.0), width - 1.001)
+        y = np.minimum(np.maximum(places[:, 1], 0.0), height - 1.001)
+        left, top = x.astype(np.intp), y.astype(np.intp)
+        across, down = x - left, y - top
+        start = top * width + left
+        flat = maps.reshape(*maps.shape[:-3], -1)
 
-    def _peaks(
-        self, level: Level, count: int, around: tuple[float, float], reach: float, apart: float
-    ) -> list[Peak]:
-        height, width = level.fused.shape
-        x, y = self.region.to_canonical(np.asarray(around)) - np.array(level.offset)
-        far = ((np.arange(width) - x) ** 2)[np.newaxis] + ((np.arange(height) - y) ** 2)[
-            :, np.newaxis
-        ]
-        heights = level.fused - _FAR * far / (reach * self.region.zoom[0]) ** 2
-        side = int(apart) + 1
-        found = []
-        for _ in range(count):
-            row, column = divmod(int(heights.argmax()), width)
-            place = self.region.to_frame(np.array([column, row]) + np.array(level.offset))
-            top = float(heights[row, column])
-            found.append(Peak((float(place[0]), float(place[1])), level.scale, top))
-            heights[
-                max(row - side, 0) : row + side + 1, max(column - side, 0) : column + side + 1
-            ] = -np.inf
-        return found
+        def level(number: np.ndarray) -> Array:
+            first = number * (height * width) + start
+            upper = flat[..., first] * (1 - across) + flat[..., first + 1] * across
+            lower = flat[..., first + width] * (1 - across) + flat[..., first + width + 1] * across
+            return np.asarray(upper * (1 - down) + lower * down)
 
+        if count == 1:
+            values = level(np.zeros(len(x), np.intp))
+        else:
+            step = math.log(self.scales[1] / self.scales[0])
+            index = np.log(scales / self.scales[0]) / step
+            index = np.minimum(np.maximum(index, 0.0), count - 1.0)
+            below = np.minimum(index.astype(np.intp), count - 2)
+            part = index - below
+            values = level(below) * (1 - part) + level(below + 1) * part
+        beyond = (np.abs(places - [(width - 1) / 2, (height - 1) / 2]) > [width / 2, height / 2]).any(
+            axis=1
+        )
+        return np.where(beyond, 0.0, values)
 
-_FAR = 0.1
+    def refine(self, place: Place, scale: float) -> Place:
+        """Climb from `place` (px) to the nearest peak of the map for `scale` by mean shift."""
+        fused = self.fused[int(np.argmin(np.abs(np.log(self.scales / scale))))]
+        u, v = self.region.to_canonical(np.asarray(place)).tolist()
+        for _ in range(_CLIMB):
+            left, top = max(int(u) - _CLIMB, 0), max(int(v) - _CLIMB, 0)
+            around = fused[top : int(v) + _CLIMB + 1, left : int(u) + _CLIMB + 1]
+            if min(around.shape) < _CLIMB:
+                break
+            weights = np.exp(_CLIMB_SHARPNESS * (around - around.max()))
+            columns, rows = weights.sum(axis=0), weights.sum(axis=1)
+            total = float(rows.sum())
+            u = left + 0.5 + float(columns @ np.arange(len(columns))) / total
+            v = top + 0.5 + float(rows @ np.arange(len(rows))) / total
+        x, y = self.region.to_frame(np.array([u, v])).tolist()
+        return x, y
 
+    def best(self, expected: Place, reach: float, frame_size: tuple[int, int]) -> Peak:
+        """Find the most alike place in the image.
 
-def _interpolate(values: Map, places: Array) -> Array:
-    """Read a map between its entries, at (N, 2) places; beyond them the nearest."""
-    height, width = values.shape
-    x = np.minimum(np.maximum(places[:, 0], 0.0), width - 1.0)
-    y = np.minimum(np.maximum(places[:, 1], 0.0), height - 1.0)
-    left, top = (
-        np.minimum(x.astype(np.intp), max(width - 2, 0)),
-        np.minimum(y.astype(np.intp), max(height - 2, 0)),
-    )
-    across, down = min(1, width - 1), width * min(1, height - 1)
-    u, v = x - left, y - top
-    flat, first = values.ravel(), top * width + left
-    upper = flat[first] * (1 - u) + flat[first + across] * u
-    lower = flat[first + down] * (1 - u) + flat[first + down + across] * u
-    return np.asarray(upper * (1 - v) + lower * v, np.float64)
+        Parameters
+        ----------
+        expected : (float, float)
+            Where the target should be, px.
+        reach : float
+            Distance from there at which a place counts for `_FAR` less, px.
+        frame_size : (int, int)
+            Width and height of the image, px.
+        """
+        _, height, width = self.fused.shape
+        x = self.region.origin[0] + (np.arange(width) + 0.5) / self.region.zoom[0]
+        y = self.region.origin[1] + (np.arange(height) + 0.5) / self.region.zoom[1]
+        away_x = np.where((x < 0) | (x >= frame_size[0]), np.inf, (x - expected[0]) ** 2)
+        away_y = np.where((y < 0) | (y >= frame_size[1]), np.inf, (y - expected[1]) ** 2)
+        away = away_x[np.newaxis] + away_y[:, np.newaxis]
+        heights = self.fused - _FAR * away / max(reach, 1.0) ** 2
+        level, row, column = np.unravel_index(int(heights.argmax()), heights.shape)
+        place = float(x[column]), float(y[row])
+        return Peak(place, float(self.scales[level]), float(heights[level, row, column]))
