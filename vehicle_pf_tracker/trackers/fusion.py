@@ -37,7 +37,7 @@ from vehicle_pf_tracker.trackers.fusion_parts.view import View
 Place: TypeAlias = tuple[float, float]
 
 _SIZES = tuple(1.04**step for step in (-2, -1, 0, 1, 2))
-_SIZES_OF_SEARCH = tuple(1.07**step for step in (-3, -2, -1, 0, 1, 2, 3))
+_SIZES_OF_SEARCH = tuple(1.12**step for step in (-3, -2, -1, 0, 1, 2, 3))
 _SIZES_AT_FIRST = 4.0
 """Frames hidden in which the size cannot have changed much."""
 _LONGEST_STEP = 30.0

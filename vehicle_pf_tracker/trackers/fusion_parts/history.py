@@ -12,8 +12,8 @@ from vehicle_pf_tracker.trackers.fusion_parts.projective_motion import Projectiv
 
 Place = tuple[float, float]
 
-_KEPT = 60
-_FITTED = 24
+_KEPT = 80
+_FITTED = 40
 """Latest sightings that a motion is fitted to."""
 _FEWEST = 4
 _GROWTH_OVER = 12

@@ -11,7 +11,7 @@ from vehicle_pf_tracker.trackers.estimate import Array
 _RATES = np.linspace(-0.04, 0.04, 33)
 _RATE_NEEDS = 8
 """Sightings below which the size is taken to stay."""
-_MEMORY = 10.0
+_MEMORY = 20.0
 """Frames after which an older sighting counts for 1 / e."""
 _PLACE_SIGMA = 0.03
 """Standard deviation of a position, of the size."""
