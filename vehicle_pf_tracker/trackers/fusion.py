@@ -205,9 +205,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             passes, redrawn = passes + 1, redrawn + drawn
         return particles, sound, passes, redrawn
 
-    def _weigh(
-        self, view: View, particles: Particles, expected: Place
-    ) -> tuple[Particles, bool]:
+    def _weigh(self, view: View, particles: Particles, expected: Place) -> tuple[Particles, bool]:
         """Likelihood of the looks, times how well each particle agrees with the motion."""
         logs = self.parameters.sharpness * view.read(
             view.fused, particles.positions, particles.scales
@@ -302,9 +300,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         place, scale = trend.now()
         spread = Spread(0.1 * self._side * scale, 0.0, 0.0)
         count = self.parameters.num_particles
-        self._particles = Particles.around(
-            self._rng, count, place, trend.velocity(), scale, spread
-        )
+        self._particles = Particles.around(self._rng, count, place, trend.velocity(), scale, spread)
 
     def _foretell(self, frame: Frame, trend: Trend) -> bool:
         """Move on to the foretold state; tells whether its place is in the image."""

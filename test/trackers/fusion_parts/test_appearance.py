@@ -8,6 +8,7 @@ from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance
 
 SIZE = (30.0, 20.0)
 CENTRE = (80.0, 60.0)
+STEPS = (1 / 1.06, 1.0, 1.06)
 
 
 def street(x=80, hidden=0):
@@ -20,42 +21,51 @@ def street(x=80, hidden=0):
 
 
 def appearance(**cues):
-    return Appearance(street(), CENTRE, SIZE, 24.0, CueParameters(**cues))
+    return Appearance(street(), CENTRE, SIZE, CueParameters(**cues))
 
 
 def look(one, frame, centre=CENTRE):
-    return one.look(frame, centre, 1.0, (25.0, 20.0), (1 / 1.06, 1.0, 1.06))
+    return one.look(frame, centre, 1.0, 22.0, STEPS)
 
 
 def test_the_peak_is_where_the_target_went():
-    one = appearance()
-    view = look(one, street(x=91))
-    peak = view.peaks(1, CENTRE, 1e6, 5.0)[0]
+    view = look(appearance(), street(x=91))
+    peak = view.best(CENTRE, 1e6, (160, 120))
     assert peak.place == pytest.approx((91.0, 60.0), abs=1.0)
     assert peak.scale == pytest.approx(1.0, abs=0.07)
 
 
-def test_particles_read_the_map_at_their_places_and_sizes():
-    view = look(appearance(), street(x=91))
-    places = np.array([[91.0, 60.0], [94.0, 60.0], [80.0, 60.0]])
-    near, beside, before = view.fused(places, np.ones(3))
-    assert near > beside > before
-    larger = view.fused(places[:1], np.array([1.06]))[0]
-    between = view.fused(places[:1], np.array([1.03]))[0]
-    assert min(near, larger) < between < max(near, larger)
-
-
-def test_half_of_the_target_is_still_alike_by_its_parts():
+def test_the_target_itself_is_wholly_alike_and_gone_it_is_not():
     one = appearance()
-    whole = one.compare(look(one, street()), CENTRE, 1.0)
-    half = one.compare(look(one, street(hidden=15)), CENTRE, 1.0)
-    gone = one.compare(look(one, street(hidden=32)), CENTRE, 1.0)
-    assert whole.template > 0.95
-    assert half.part > 0.9
-    assert half.whole < 0.8
-    assert gone.template < 0.4
+    there, gone = (one.compare(look(one, street(hidden=h)), CENTRE, 1.0) for h in (0, 32))
+    assert min(there.anchor, there.following) > 0.95
+    assert there.colour > 0.8
+    assert max(gone.anchor, gone.following) < 0.4
+    assert gone.colour < 0.4
+
+
+def test_half_of_the_target_is_still_alike_by_its_best_half():
+    one = appearance()
+    half, gone = (look(one, street(hidden=h)) for h in (15, 32))
+    assert one.compare(half, CENTRE, 1.0).following < 0.8
+    assert one.best_half(half, CENTRE, 1.0) > 0.9
+    assert one.best_half(gone, CENTRE, 1.0) < 0.6
     without = appearance(parts=False)
-    assert without.compare(look(without, street(hidden=15)), CENTRE, 1.0).part < 0.8
+    assert without.best_half(look(without, street(hidden=15)), CENTRE, 1.0) == 0
+
+
+def test_a_half_beside_the_region_is_not_alike():
+    one = appearance()
+    assert one.best_half(look(one, street()), (2.0, 2.0), 1.0) == 0
+
+
+def test_neighbouring_sizes_differ():
+    one = appearance()
+    view = one.look(street(), CENTRE, 1.0, 22.0, tuple(1.02**step for step in range(-3, 4)))
+    centre = np.array([CENTRE]).repeat(7, axis=0)
+    values = view.read(view.cues[:1], centre, view.scales)[0]
+    assert int(values.argmax()) == 3
+    assert len(set(values.tolist())) == 7
 
 
 def test_a_cue_that_does_not_tell_the_target_from_its_surroundings_loses_weight():
@@ -64,7 +74,7 @@ def test_a_cue_that_does_not_tell_the_target_from_its_surroundings_loses_weight(
     frame[:] = frame.mean(axis=2, keepdims=True).astype(np.uint8)
     frame[20:48] = frame[50:70].repeat(2, axis=0)[:28]
     frame[72:110] = frame[50:70].repeat(2, axis=0)[:38]
-    one = Appearance(frame, CENTRE, SIZE, 24.0, CueParameters())
+    one = Appearance(frame, CENTRE, SIZE, CueParameters())
     before = one.weights.copy()
     for _ in range(20):
         one.weigh_cues(look(one, frame), CENTRE, 1.0)
@@ -72,28 +82,31 @@ def test_a_cue_that_does_not_tell_the_target_from_its_surroundings_loses_weight(
     assert one.weights.sum() == pytest.approx(1.0)
 
 
-def test_what_waits_to_be_learnt_can_be_forgotten():
-    one, other = appearance(), appearance()
-    strange = look(one, street(hidden=32))
-    for _ in range(3):
-        one.learn(strange, CENTRE, 1.0, 0.5, delay=6)
-    one.forget_pending()
-    for _ in range(6):
-        one.learn(look(one, street()), CENTRE, 1.0, 0.5, delay=6)
-    seen = look(one, street())
-    assert one.compare(seen, CENTRE, 1.0).following == pytest.approx(
-        other.compare(seen, CENTRE, 1.0).following, abs=1e-6
-    )
+def test_cues_that_are_off_have_no_weight():
+    assert appearance(colour=False).weights == pytest.approx([1 / 3, 2 / 3, 0])
+    assert appearance(anchor=False, following=False).weights == pytest.approx([0, 0, 1])
 
 
-def test_without_delay_the_following_template_follows():
+def test_the_following_template_follows_and_the_anchor_stays():
     one = appearance()
     frame = np.ascontiguousarray(street()[:, ::-1])  # the vehicle seen from its other side
     changed = look(one, frame)
-    before = one.compare(changed, CENTRE, 1.0).following
+    before = one.compare(changed, CENTRE, 1.0)
     for _ in range(10):
-        one.learn(changed, CENTRE, 1.0, 0.3, delay=0)
-    after = one.compare(changed, CENTRE, 1.0)
-    assert before < 0.6
+        one.learn(changed, CENTRE, 1.0, 0.3)
+    after = one.compare(look(one, frame), CENTRE, 1.0)
+    assert before.following < 0.6
     assert after.following > 0.9
-    assert after.anchor == pytest.approx(before, abs=1e-6)
+    assert after.anchor == pytest.approx(before.anchor, abs=1e-6)
+
+
+def test_colours_are_learnt_every_fourth_frame():
+    one = appearance(colour_rate=0.5)
+    frame = street()
+    frame[50:70, 65:95] = 255 - frame[50:70, 65:95]
+    shares = []
+    for _ in range(4):
+        one.learn_colours(look(one, frame), CENTRE, 1.0)
+        shares.append(one.compare(look(one, frame), CENTRE, 1.0).colour)
+    assert shares[0] == shares[1] == shares[2]
+    assert shares[3] > shares[2] + 0.1

@@ -169,9 +169,9 @@ class Appearance:
 
     def compare(self, view: View, centre: Place, scale: float) -> Likeness:
         """Read all cues at one place and size."""
-        anchor, following, colour = view.read(
-            view.cues, np.array([centre]), np.array([scale])
-        )[:, 0].tolist()
+        anchor, following, colour = view.read(view.cues, np.array([centre]), np.array([scale]))[
+            :, 0
+        ].tolist()
         return Likeness(anchor, following, colour)
 
     def best_half(self, view: View, centre: Place, scale: float) -> float:

@@ -130,9 +130,7 @@ class Suspicion:
             return Verdict(clear=True)
         self.frames += 1
         turning = (
-            not grey
-            and likeness.colour >= _ALIKE_BY_COLOUR * self._colour
-            and off < _TURNING_OFF
+            not grey and likeness.colour >= _ALIKE_BY_COLOUR * self._colour and off < _TURNING_OFF
         )
         dragged = gate and off > max(_OFF, _OFF_INNOVATIONS * self.innovation)
         unlike = likeness.following < _GONE * self.level and best_half() < _GONE

@@ -6,12 +6,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.features.region import Region
 from vehicle_pf_tracker.features.template import Map
 from vehicle_pf_tracker.trackers.estimate import Array
 
 Place = tuple[float, float]
+Indices = npt.NDArray[np.intp]
 
 CUES = ("anchor", "following", "colour")
 
@@ -20,6 +22,8 @@ _FAR = 0.1
 _CLIMB = 3
 """Half side of the windows that the refinement climbs by, px of the region; and their number."""
 _CLIMB_SHARPNESS = 40.0
+_INSIDE = 1.001
+"""Keeps the right and the lower neighbour of every place that is read within the map."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,34 +70,26 @@ class View:
         -------
         (..., N) array
         """
-        count, height, width = maps.shape[-3:]
+        height, width = maps.shape[-2:]
         places = self.region.to_canonical(positions) - 0.5
-        x = np.minimum(np.maximum(places[:, 0], 0.0), width - 1.001)
-        y = np.minimum(np.maximum(places[:, 1], 0.0), height - 1.001)
-        left, top = x.astype(np.intp), y.astype(np.intp)
-        across, down = x - left, y - top
-        start = top * width + left
-        flat = maps.reshape(*maps.shape[:-3], -1)
-
-        def level(number: np.ndarray) -> Array:
-            first = number * (height * width) + start
-            upper = flat[..., first] * (1 - across) + flat[..., first + 1] * across
-            lower = flat[..., first + width] * (1 - across) + flat[..., first + width + 1] * across
-            return np.asarray(upper * (1 - down) + lower * down)
-
-        if count == 1:
-            values = level(np.zeros(len(x), np.intp))
+        if len(self.scales) == 1:
+            values = _bilinear(maps, np.zeros(len(places), np.intp), places)
         else:
-            step = math.log(self.scales[1] / self.scales[0])
-            index = np.log(scales / self.scales[0]) / step
-            index = np.minimum(np.maximum(index, 0.0), count - 1.0)
-            below = np.minimum(index.astype(np.intp), count - 2)
+            steps = len(self.scales) - 1
+            index = np.log(scales / self.scales[0]) * (steps / self._range)
+            index = np.minimum(np.maximum(index, 0.0), steps)
+            below = np.minimum(index.astype(np.intp), steps - 1)
             part = index - below
-            values = level(below) * (1 - part) + level(below + 1) * part
-        beyond = (np.abs(places - [(width - 1) / 2, (height - 1) / 2]) > [width / 2, height / 2]).any(
-            axis=1
-        )
+            values = _bilinear(maps, below, places) * (1 - part)
+            values += _bilinear(maps, below + 1, places) * part
+        middle = np.array([width / 2, height / 2])
+        beyond = (np.abs(places - (middle - 0.5)) > middle).any(axis=1)
         return np.where(beyond, 0.0, values)
+
+    @property
+    def _range(self) -> float:
+        """Logarithm of the largest scale over the smallest."""
+        return math.log(self.scales[-1] / self.scales[0])
 
     def refine(self, place: Place, scale: float) -> Place:
         """Climb from `place` (px) to the nearest peak of the map for `scale` by mean shift."""
@@ -134,3 +130,17 @@ class View:
         level, row, column = np.unravel_index(int(heights.argmax()), heights.shape)
         place = float(x[column]), float(y[row])
         return Peak(place, float(self.scales[level]), float(heights[level, row, column]))
+
+
+def _bilinear(maps: Map, levels: Indices, places: Array) -> Array:
+    """Read maps (..., S, h, w) at `levels` (N,) and places (N, 2); beyond them the nearest."""
+    height, width = maps.shape[-2:]
+    x = np.minimum(np.maximum(places[:, 0], 0.0), width - _INSIDE)
+    y = np.minimum(np.maximum(places[:, 1], 0.0), height - _INSIDE)
+    left, top = x.astype(np.intp), y.astype(np.intp)
+    u, v = x - left, y - top
+    flat = maps.reshape(*maps.shape[:-3], -1)
+    first = (levels * height + top) * width + left
+    upper = flat[..., first] * (1 - u) + flat[..., first + 1] * u
+    lower = flat[..., first + width] * (1 - u) + flat[..., first + width + 1] * u
+    return np.asarray(upper * (1 - v) + lower * v)
