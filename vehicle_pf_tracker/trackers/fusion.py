@@ -147,10 +147,14 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         likeness = self._appearance.compare(view, self._place, scale)
         verdict = self._judge_looks(view, likeness)
         self._learn_from(view, likeness, verdict)
+        told = self._place
         if verdict.hidden:
             self._lose_sight(frame)
+            told = self._place
+        elif verdict.gone and self._trend is not None:
+            told = self._inside(frame, self._trend.now()[0])
         return Outcome(
-            self._particles.cloud(sound=sound), self._place, self._velocity,
+            self._particles.cloud(sound=sound), told, self._velocity,
             "hidden" if verdict.hidden else "seen", self._evidence(likeness, verdict),
             _told(likeness), passes, redrawn, left_image,
         )  # fmt: skip
@@ -311,6 +315,10 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         x, y = keep_inside(frame, np.asarray(place)).tolist()
         self._place = x, y
         return not are_outside(frame, np.asarray(place))
+
+    def _inside(self, frame: Frame, place: Place) -> Place:
+        x, y = keep_inside(frame, np.asarray(place)).tolist()
+        return x, y
 
     def _search(self, frame: Frame, elapsed: float) -> Outcome:
         assert self._trend is not None and self._hidden_for is not None

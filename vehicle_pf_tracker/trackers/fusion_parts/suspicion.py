@@ -41,12 +41,15 @@ class Verdict:
         Whether looks leave no doubt, so that it counts as a sighting and references learn.
     turning : bool
         Whether looks have changed but the colours and the path have not.
+    gone : bool
+        Whether it is not what is seen here.
     hidden : bool
-        Whether the target is to be taken for hidden from now on.
+        Whether that has lasted, so that the target is to be taken for hidden from now on.
     """
 
     clear: bool
     turning: bool = False
+    gone: bool = False
     hidden: bool = False
 
 
@@ -141,7 +144,7 @@ class Suspicion:
             self._level, self._deviation = likeness.following, 0.05
             self._colour = likeness.colour
             return Verdict(clear=True, turning=turning)
-        return Verdict(clear=False, turning=turning, hidden=self._gone >= _HIDDEN_AFTER)
+        return Verdict(False, turning, gone, self._gone >= _HIDDEN_AFTER)
 
     def reset(self) -> None:
         """Forget the doubts; the levels stay."""
