@@ -84,7 +84,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         """Take new parameters; see `Tracker.reconfigure`."""
         super().reconfigure(parameters)
         if self._target is not None:
-            self._appearance.cues = parameters.cues
+            if parameters.cues != self._appearance.cues:
+                self._appearance.use(parameters.cues)
             if len(self._particles.weights) != parameters.num_particles:
                 self._particles = self._particles.resampled(self._rng, parameters.num_particles)
 
@@ -237,12 +238,14 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         gain, motion = self.parameters.motion.gain, self._velocity
         gain = max(gain, 0.8 / self._frames)
         x, y = keep_inside(frame, np.asarray(place)).tolist()
-        moved = (x - self._place[0]) / elapsed, (y - self._place[1]) / elapsed
-        self._velocity = (
-            motion[0] + gain * (moved[0] - motion[0]),
-            motion[1] + gain * (moved[1] - motion[1]),
-        )
-        self._particles = particles.drawn_towards((x, y), self._velocity, particles.place)
+        if elapsed > 0:
+            moved = (x - self._place[0]) / elapsed, (y - self._place[1]) / elapsed
+            self._velocity = (
+                motion[0] + gain * (moved[0] - motion[0]),
+                motion[1] + gain * (moved[1] - motion[1]),
+            )
+        drawn = particles.drawn_towards((x, y), self._velocity, particles.place)
+        self._particles = self._kept(frame, drawn)
         self._place, self._scale = (x, y), scale
 
     def _judge_looks(self, view: View, likeness: Likeness) -> Verdict:
@@ -274,7 +277,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
     def _evidence(self, likeness: Likeness, verdict: Verdict) -> float:
         """Give what the mode is judged by: the looks, of their clear level, unless in doubt."""
         share = self._suspicion.share(likeness)
-        if verdict.hidden or (self._suspicion.frames >= 2 and not verdict.turning):
+        if verdict.gone or (self._suspicion.frames >= 2 and not verdict.turning):
             return min(share, self._ceiling)
         return max(share, self.parameters.evidence.clear_above)
 

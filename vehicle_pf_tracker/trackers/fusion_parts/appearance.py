@@ -89,21 +89,24 @@ class Appearance:
 
     def __init__(self, frame: Frame, centre: Place, size: Place, cues: CueParameters) -> None:
         self.size = size
-        self.cues = cues
         self._zoom = cues.side / math.sqrt(size[0] * size[1])
         self._shape = (
             max(round(size[0] * self._zoom), _LEAST_TEMPLATE),
             max(round(size[1] * self._zoom), _LEAST_TEMPLATE),
         )
-        used = _BASE_WEIGHTS * [cues.anchor, cues.following, cues.colour]
-        self._base = used / used.sum() if used.any() else _BASE_WEIGHTS
-        self.weights = self._base.copy()
+        self.use(cues)
         self._frames = 0
         region = self._cut(frame, centre, 1.0, (0.75 * size[0], 0.75 * size[1]))
         self.grey = is_grey(region.image)
         self._anchor = self._patch(region, centre, 1.0)
         self._following = self._anchor.copy()
         self._target, self._background = self._histograms(region, centre, 1.0)
+
+    def use(self, cues: CueParameters) -> None:
+        """Let other cues take part from now on."""
+        used = _BASE_WEIGHTS * [cues.anchor, cues.following, cues.colour]
+        base = used / used.sum() if used.any() else _BASE_WEIGHTS
+        self.cues, self._base, self.weights = cues, base, base.copy()
 
     def look(
         self, frame: Frame, centre: Place, scale: float, reach: float, steps: tuple[float, ...]
