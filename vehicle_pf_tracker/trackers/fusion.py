@@ -300,14 +300,15 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._candidates = Candidates()
         self._suspicion.reset()
         self._hidden_for = 0.0
-        self._scatter_on(self._trend)
+        self._scatter_on(frame, self._trend)
         self._foretell(frame, self._trend)
 
-    def _scatter_on(self, trend: Trend) -> None:
+    def _scatter_on(self, frame: Frame, trend: Trend) -> None:
         place, scale = trend.now()
         spread = Spread(0.1 * self._side * scale, 0.0, 0.0)
         count = self.parameters.num_particles
-        self._particles = Particles.around(self._rng, count, place, trend.velocity(), scale, spread)
+        particles = Particles.around(self._rng, count, place, trend.velocity(), scale, spread)
+        self._particles = self._kept(frame, particles)
 
     def _foretell(self, frame: Frame, trend: Trend) -> bool:
         """Move on to the foretold state; tells whether its place is in the image."""

@@ -26,6 +26,8 @@ _OFF = 0.45
 """Distance from the foretold place, of the size, that an occluder has dragged the estimate by."""
 _OFF_INNOVATIONS = 4.0
 _TURNING_OFF = 0.3
+_STILL_ALIKE = 0.2
+"""Share of the clear level that a vehicle keeps from one frame of its turn to the next."""
 _HIDDEN_AFTER = 3
 _FORGIVEN_OFF = 0.35
 _INNOVATION_RATE = 0.1
@@ -133,7 +135,10 @@ class Suspicion:
             return Verdict(clear=True)
         self.frames += 1
         turning = (
-            not grey and likeness.colour >= _ALIKE_BY_COLOUR * self._colour and off < _TURNING_OFF
+            not grey
+            and likeness.following >= _STILL_ALIKE * self.level
+            and likeness.colour >= _ALIKE_BY_COLOUR * self._colour
+            and off < _TURNING_OFF
         )
         dragged = gate and off > max(_OFF, _OFF_INNOVATIONS * self.innovation)
         unlike = likeness.following < _GONE * self.level and best_half() < _GONE
