@@ -165,7 +165,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         particles = self._particles.resampled(self._rng, len(self._particles.weights))
         growth = self._history.growth() if self.parameters.motion.scale else 0.0
         moved = particles.moved(self._rng, elapsed, growth, self._spread())
-        left_image = bool(are_outside(frame, moved.positions.mean(axis=0)))
+        left_image = is_outside(frame, *moved.positions.mean(axis=0).tolist())
         return self._kept(frame, moved), left_image
 
     def _spread(self) -> Spread:
@@ -318,7 +318,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._velocity = trend.velocity()
         x, y = keep_inside(frame, np.asarray(place)).tolist()
         self._place = x, y
-        return not are_outside(frame, np.asarray(place))
+        return not is_outside(frame, *place)
 
     def _inside(self, frame: Frame, place: Place) -> Place:
         x, y = keep_inside(frame, np.asarray(place)).tolist()
