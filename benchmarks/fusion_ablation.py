@@ -44,7 +44,6 @@ OFF: dict[str, dict[str, object]] = {
     "no colour": {"cues.colour": False},
     "no parts": {"cues.parts": False},
     "fixed weights of cues": {"cues.adaptive": False},
-    "no delay of learning": {"cues.delay": 0},
     "no scale": {"motion.scale": False},
     "no camera motion": {"motion.camera": False},
     "no retrospect": {"hiding.retrospect": False},

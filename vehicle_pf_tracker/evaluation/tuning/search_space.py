@@ -48,8 +48,8 @@ SEARCHED: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "motion.sigma",
             "motion.gain=0.05:0.8",
             "cues.template_rate=0.01:0.2",
-            "cues.delay=0:8",
-            "hiding.confirm",
+            "motion.scale_sigma",
+            "hiding.confirm=2:8",
             # Up to evidence.clear_above, which it must not exceed.
             "evidence.occluded_below=0.5:0.8",
         ),
