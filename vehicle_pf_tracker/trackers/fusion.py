@@ -28,18 +28,16 @@ from vehicle_pf_tracker.trackers.base import Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance, Likeness
-from vehicle_pf_tracker.trackers.fusion_parts.candidates import Candidate, Candidates, Chain
+from vehicle_pf_tracker.trackers.fusion_parts.candidates import Chain
 from vehicle_pf_tracker.trackers.fusion_parts.history import History, Trend, carried
 from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles, Spread
+from vehicle_pf_tracker.trackers.fusion_parts.search import Foretold, Search
 from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion, Verdict
 from vehicle_pf_tracker.trackers.fusion_parts.view import View
 
 Place: TypeAlias = tuple[float, float]
 
 _SIZES = tuple(1.04**step for step in (-2, -1, 0, 1, 2))
-_SIZES_OF_SEARCH = tuple(1.12**step for step in (-3, -2, -1, 0, 1, 2, 3))
-_SIZES_AT_FIRST = 4.0
-"""Frames hidden in which the size cannot have changed much."""
 _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
 _LEAST_SIDE = 6.0
@@ -72,11 +70,10 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._particles = Particles.around(self._rng, count, self._place, (0.0, 0.0), 1.0, still)
         self._history = History(self._side)
         self._suspicion = Suspicion()
-        self._candidates = Candidates()
+        self._search: Search | None = None
         self._flow = CameraFlow()
         self._flow.measure(frame, box)
         self._trend: Trend | None = None
-        self._hidden_for: float | None = None
         self._frames = 0
         return estimate
 
@@ -113,9 +110,9 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         elapsed = min(elapsed, _LONGEST_STEP)
         self._carry(self._camera_motion(frame), elapsed)
         self._frames += 1
-        if self._hidden_for is None:
+        if self._search is None or self._trend is None:
             return self._follow(frame, elapsed)
-        return self._search(frame, elapsed)
+        return self._look_for(frame, self._trend, self._search, elapsed)
 
     def _camera_motion(self, frame: Frame) -> CameraMotion:
         if not self.parameters.motion.camera:
@@ -125,7 +122,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
     def _carry(self, motion: CameraMotion, elapsed: float) -> None:
         """Take everything that is known along with the background and with time."""
         self._history.age(elapsed, motion)
-        self._candidates.age(elapsed, motion)
+        if self._search is not None:
+            self._search.age(elapsed, motion)
         if self._trend is not None:
             self._trend = self._trend.after(elapsed)
         if motion.still:
@@ -297,9 +295,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             or self._history.trend(0.0, projective=hiding.projective)
             or Trend.still(self._place, self._scale)
         )
-        self._candidates = Candidates()
+        self._search = Search(self._appearance, self._suspicion)
         self._suspicion.reset()
-        self._hidden_for = 0.0
         self._scatter_on(frame, self._trend)
         self._foretell(frame, self._trend)
 
@@ -324,18 +321,23 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         x, y = keep_inside(frame, np.asarray(place)).tolist()
         return x, y
 
-    def _search(self, frame: Frame, elapsed: float) -> Outcome:
-        assert self._trend is not None and self._hidden_for is not None
-        self._hidden_for += elapsed
-        inside = self._foretell(frame, self._trend)
+    def _look_for(self, frame: Frame, trend: Trend, search: Search, elapsed: float) -> Outcome:
+        """Let the particles drift on, and look for the target where they are."""
+        inside = self._foretell(frame, trend)
         self._drift(frame, elapsed)
-        peak_share = self._find(frame)
-        chain = self._candidates.chain(self._extent)
-        if chain is not None and self._is_proof(chain):
+        parameters = self.parameters
+        foretold = Foretold(
+            self._place, self._velocity, self._scale, self._extent, self._particles.width
+        )
+        share = search.look(
+            frame, foretold, wide=parameters.hiding.search, sizes=parameters.motion.scale
+        )
+        chain = search.proof(foretold, parameters.hiding.confirm)
+        if chain is not None:
             return self._come_back(frame, chain)
         return Outcome(
             self._particles.cloud(), self._place, self._velocity, "hidden",
-            min(peak_share, self._ceiling), {}, left_image=not inside,
+            min(share, self._ceiling), {}, left_image=not inside,
         )  # fmt: skip
 
     def _drift(self, frame: Frame, elapsed: float) -> None:
@@ -354,39 +356,6 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             scales=np.full(count, self._scale),
         )
 
-    def _find(self, frame: Frame) -> float:
-        """Look for a candidate by a dense search; returns its looks, of their clear level."""
-        assert self._hidden_for is not None
-        extent, hidden_for = self._extent, self._hidden_for
-        widened = min(extent * (0.5 + 0.05 * hidden_for) + 1.5 * self._particles.width, 4 * extent)
-        reach = 0.3 * max(self._size) * self._scale
-        reach += widened if self.parameters.hiding.search else 0.0
-        sizes = _SIZES_OF_SEARCH if hidden_for > _SIZES_AT_FIRST else _SIZES
-        limit = float(max(frame_size(frame)))
-        view = self._appearance.look(
-            frame, self._place, self._scale, min(reach, limit),
-            sizes if self.parameters.motion.scale else (1.0,),
-        )  # fmt: skip
-        peak = view.best(self._place, widened, frame_size(frame))
-        likeness = self._appearance.compare(view, peak.place, peak.scale)
-        strong = self._suspicion.is_strong(likeness)
-        if strong or (
-            self._suspicion.is_fair(likeness)
-            and math.dist(peak.place, self._place) < self._near(hidden_for)
-        ):
-            self._candidates.add(Candidate(peak.place, peak.scale, strong))
-        return self._suspicion.share(likeness)
-
-    def _near(self, hidden_for: float) -> float:
-        """Distance from the foretold place within which looks need only be fair, px."""
-        return max(0.3 + 0.03 * hidden_for, 3 * self._suspicion.innovation) * self._extent + 2
-
-    def _is_proof(self, chain: Chain) -> bool:
-        speed = math.hypot(*self._velocity)
-        noise = max(0.03, 2 * self._suspicion.innovation) * self._extent
-        tolerance = max(1.0, 0.35 * speed, noise)
-        return chain.proves(self._velocity, tolerance, self.parameters.hiding.confirm)
-
     def _come_back(self, frame: Frame, chain: Chain) -> Outcome:
         """Follow a candidate from now on."""
         found = chain.last
@@ -402,7 +371,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             self._rng, count, self._place, self._velocity, self._scale, spread
         )
         self._particles = self._kept(frame, particles)
-        self._hidden_for, self._trend = None, None
+        self._search = self._trend = None
         self._suspicion.reset()
         cloud = self._particles.cloud()
         return Outcome(cloud, self._place, self._velocity, "found", 1.0, {})
