@@ -19,6 +19,7 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.ros.serialized_image import read_serialized
 
 ImageCallback = Callable[[Any, Mapping[str, Any]], None]
 
@@ -43,7 +44,7 @@ class ImageInput:
     depth : int
         Images that may wait.
     callback : callable
-        Takes the message and its info.
+        Takes the message, or a `SerializedImage` in place of an `Image`, and its info.
 
     Raises
     ------
@@ -60,9 +61,10 @@ class ImageInput:
             self._subscription = node.create_subscription(
                 self._kind,
                 self.topic,
-                callback,
+                _reading(callback) if self._kind is Image else callback,
                 QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT),
                 qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+                raw=self._kind is Image,
             )
         except rclpy_implementation.RCLError as error:
             raise InputError(f"cannot subscribe to {self.topic}: {error}") from None
@@ -130,3 +132,12 @@ class ImageInput:
         own = self._node.get_name(), self._node.get_namespace()
         publishers = self._node.get_publishers_info_by_topic(topic)
         return any((one.node_name, one.node_namespace) != own for one in publishers)
+
+
+def _reading(callback: ImageCallback) -> ImageCallback:
+    """Make a callback for serialized images of one for images."""
+
+    def read(message: Any, info: Mapping[str, Any]) -> None:
+        callback(read_serialized(message), info)
+
+    return read

@@ -7,9 +7,10 @@ from sensor_msgs.msg import CompressedImage, Image
 from vehicle_pf_tracker.features.compressed_image import decode_compressed
 from vehicle_pf_tracker.features.encodings import to_rgb
 from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.ros.serialized_image import SerializedImage
 
 
-def read_image(message: Image | CompressedImage) -> Frame:
+def read_image(message: Image | SerializedImage | CompressedImage) -> Frame:
     """Return the RGB frame of `message`; for rgb8 a view of its data.
 
     Raises

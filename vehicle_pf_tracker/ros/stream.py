@@ -18,6 +18,7 @@ from vehicle_pf_tracker.ros.health import Health
 from vehicle_pf_tracker.ros.images import read_image
 from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns
 from vehicle_pf_tracker.ros.outputs import Outputs
+from vehicle_pf_tracker.ros.serialized_image import SerializedImage
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session
@@ -93,7 +94,7 @@ class Stream:
         """The present box: that of the estimate, else the configured one."""
         return self.estimate.box if self.estimate else self._configuration.session.target.box
 
-    def take(self, message: Image | CompressedImage) -> None:
+    def take(self, message: Image | SerializedImage | CompressedImage) -> None:
         """Answer an image with exactly one `~/mode`, and with an estimate where there is one."""
         try:
             frame = read_image(message)

@@ -1,0 +1,66 @@
+"""Serialized `sensor_msgs/Image` messages, whose pixels are used where they lie.
+
+Rclpy copies the pixels of an image two times more on their way into a message of Python, which is
+a tenth of all that a tracker node does for a 640x480 image besides tracking.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import NamedTuple
+
+from builtin_interfaces.msg import Time
+from std_msgs.msg import Header
+
+from vehicle_pf_tracker.features.errors import InputError
+
+_BODY = 4
+"""Bytes before the message, the second of which tells the byte order."""
+
+
+class SerializedImage(NamedTuple):
+    """The fields of a `sensor_msgs/Image`; `data` is a view of the serialized message."""
+
+    header: Header
+    height: int
+    width: int
+    encoding: str
+    is_bigendian: int
+    step: int
+    data: memoryview
+
+
+def read_serialized(message: bytes) -> SerializedImage:
+    """Read a `sensor_msgs/Image` in CDR, its encapsulation header included.
+
+    Raises
+    ------
+    InputError
+        If it is cut off.
+    """
+    try:
+        order = "<" if message[1] & 1 else ">"
+        seconds, nanoseconds, length = struct.unpack_from(f"{order}iII", message, _BODY)
+        frame_id, at = _text(message, _BODY + 12, length)
+        at = _aligned(at)
+        height, width, length = struct.unpack_from(f"{order}III", message, at)
+        encoding, at = _text(message, at + 12, length)
+        is_bigendian = message[at]
+        at = _aligned(at + 1)
+        step, size = struct.unpack_from(f"{order}II", message, at)
+    except (struct.error, IndexError):
+        raise InputError("a serialized image is cut off before its pixels") from None
+    data = memoryview(message)[at + 8 : at + 8 + size]
+    header = Header(stamp=Time(sec=seconds, nanosec=nanoseconds), frame_id=frame_id)
+    return SerializedImage(header, height, width, encoding, is_bigendian, step, data)
+
+
+def _text(message: bytes, at: int, length: int) -> tuple[str, int]:
+    """Text of `length` bytes with the zero at its end, and where the next field begins."""
+    text = message[at : at + max(length - 1, 0)]
+    return text.decode("utf-8", "replace"), at + length
+
+
+def _aligned(at: int) -> int:
+    """Where a number of four bytes begins at or after `at`."""
+    return at + -at % 4
