@@ -9,6 +9,7 @@ multinomial is the importance sampling of P1's Algorithm 2.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
@@ -52,13 +53,16 @@ def residual(weights: Weights, count: int, rng: np.random.Generator) -> Ancestor
 
 
 def _search(weights: Weights, points: npt.NDArray[np.float64]) -> Ancestors:
-    """Index of the first cumulative weight above each point of [0, 1)."""
-    weights, _ = normalise(weights)
+    """Index of the first cumulative weight above each point of [0, 1), a share of all weight."""
     cumulative = weights.cumsum()
-    # ``side="right"`` steps over particles of weight zero; rounding may leave the last sum below
-    # one, so that a point can lie past it: clamp to the last particle that adds to it (READINGS 9).
+    total = cumulative[-1]
+    if not (0 < total < math.inf and weights.min() >= 0):
+        cumulative = normalise(weights)[0].cumsum()
+        total = cumulative[-1]
+    # ``side="right"`` steps over particles of weight zero; a point may round up to the whole sum,
+    # and past all particles: clamp to the last one that adds to it (READINGS 9).
     last = cumulative.argmax()
-    return np.minimum(cumulative.searchsorted(points, side="right"), last)
+    return np.minimum(cumulative.searchsorted(points * total, side="right"), last)
 
 
 SCHEMES: Mapping[str, Scheme] = {

@@ -48,4 +48,4 @@ def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Wei
     distance = hellinger_distance(coefficients)
     if parameters.squared_distance:
         distance = np.square(distance)
-    return np.asarray(-distance / (2 * parameters.sigma_v**2))
+    return np.asarray(distance / (-2 * parameters.sigma_v**2))
