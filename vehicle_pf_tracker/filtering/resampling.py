@@ -62,7 +62,7 @@ def _search(weights: Weights, points: npt.NDArray[np.float64]) -> Ancestors:
     # ``side="right"`` steps over particles of weight zero; a point may round up to the whole sum,
     # and past all particles: clamp to the last one that adds to it (READINGS 9).
     last = cumulative.argmax()
-    return np.minimum(cumulative.searchsorted(points * total, side="right"), last)
+    return np.asarray(np.minimum(cumulative.searchsorted(points * total, side="right"), last))
 
 
 SCHEMES: Mapping[str, Scheme] = {
