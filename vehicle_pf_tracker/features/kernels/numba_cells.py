@@ -28,20 +28,6 @@ RECTANGLES = types.int64[:, ::1]
 
 
 @compiled(CELLS(FRAME, types.int64, TABLE))
-def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
-    """Cells of joint RGB bins, one plane."""
-    height, width, _ = pixels.shape
-    cells = np.empty((1, height, width), np.uint16)
-    drop = 8 - bits
-    for y in range(height):
-        for x in range(width):
-            red, green, blue = pixels[y, x, 0], pixels[y, x, 1], pixels[y, x, 2]
-            number = ((red >> drop) << (2 * bits)) | ((green >> drop) << bits) | (blue >> drop)
-            cells[0, y, x] = table[number]
-    return cells
-
-
-@compiled(CELLS(FRAME, types.int64, TABLE))
 def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     """Cells of each channel's own bins, a plane each; channel `c` has bins from ``c * levels``."""
     height, width, _ = pixels.shape

@@ -8,7 +8,6 @@ from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.kernels.numba_cells import (
     Cells,
-    joint_cells,
     marginal_cells,
     pair_cells,
     stack_windows,
@@ -18,16 +17,23 @@ from vehicle_pf_tracker.features.kernels.numba_reference import CellTable, roots
 from vehicle_pf_tracker.features.kernels.numba_windows import (
     Counts,
     Reals,
+    compare_joint,
     compare_rectangles,
     compare_windows,
     window_rectangles,
 )
 from vehicle_pf_tracker.features.rgb_marginals import CHANNEL_BINS, RgbMarginals
+from vehicle_pf_tracker.features.window import Positions, Window
 from vehicle_pf_tracker.features.window_feature import WindowFeature, to_grey
 
 
 def compare_pixels(
-    feature: WindowFeature, frame: Frame, place: Place, table: CellTable, counts: Counts
+    feature: WindowFeature,
+    frame: Frame,
+    positions: Positions,
+    window: Window,
+    table: CellTable,
+    counts: Counts,
 ) -> Reals:
     """Compare windows from the region that they cover, or apart where that is less work.
 
@@ -35,6 +41,10 @@ def compare_pixels(
     ----------
     feature : WindowFeature
         Joint colours, marginals or co-occurrences.
+    frame, positions, window
+        As for `Kernels.similarity`.
+    table : CellTable
+        Of the reference, or of what to count.
     counts : (N or 0, K) array
         Filled with each window's counts, if it has room.
 
@@ -43,12 +53,16 @@ def compare_pixels(
     (N,) array
         Bhattacharyya coefficients.
     """
+    area = window.width * window.height
+    scale = table.values, roots_up_to(planes_of(feature) * area)
+    if isinstance(feature, JointColour):
+        half = window.half_width, window.half_height
+        return compare_joint(frame, positions, feature.bits, half, table.cells, scale, counts)
+    place = Place.of(feature, frame, positions, window)
     left, top, right, bottom = place.covered()
-    area = (place.reach[0] * 2 + 1) * (place.reach[2] * 2 + 1)
     if (right - left) * (bottom - top) > len(place.pixels) * area:
         return _compare_apart(feature, frame, place, table, counts)
     cells = _cells(feature, frame[top:bottom, left:right], table)
-    scale = table.values, roots_up_to(planes_of(feature) * area)
     return compare_windows(
         cells, place.pixels, place.extent, (left, top), place.reach, scale, counts
     )
@@ -73,8 +87,6 @@ def _compare_apart(
 
 
 def _cells(feature: WindowFeature, pixels: Frame, table: CellTable) -> Cells:
-    if isinstance(feature, JointColour):
-        return joint_cells(pixels, feature.bits, table.cells)
     if isinstance(feature, RgbMarginals):
         return marginal_cells(pixels, CHANNEL_BINS, table.cells)
     return pair_cells(to_grey(pixels), table.cells)

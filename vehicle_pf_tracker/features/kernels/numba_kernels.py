@@ -13,7 +13,7 @@ from vehicle_pf_tracker.features.gradients import GradientDirections
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.kernels import numba_jit
 from vehicle_pf_tracker.features.kernels.interface import Kernels, PixelRange, SimilarityMap
-from vehicle_pf_tracker.features.kernels.numba_cells import Cells, joint_cells
+from vehicle_pf_tracker.features.kernels.numba_cells import Cells
 from vehicle_pf_tracker.features.kernels.numba_counting import compare_pixels, planes_of
 from vehicle_pf_tracker.features.kernels.numba_gradients import count_directions
 from vehicle_pf_tracker.features.kernels.numba_mean_shift import (
@@ -29,7 +29,12 @@ from vehicle_pf_tracker.features.kernels.numba_reference import (
     table_of,
     table_of_all,
 )
-from vehicle_pf_tracker.features.kernels.numba_windows import Counts, compare_counts, map_windows
+from vehicle_pf_tracker.features.kernels.numba_windows import (
+    Counts,
+    compare_counts,
+    joint_cells,
+    map_windows,
+)
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
 from vehicle_pf_tracker.features.window import Positions, Window
@@ -70,7 +75,7 @@ class NumbaKernels(Kernels):
         if counts_pixels(feature):
             place = Place.of(feature, frame, positions, window)
             counts = np.empty((len(positions), table.active), np.int32)
-            compare_pixels(feature, frame, place, table, counts)
+            compare_pixels(feature, frame, positions, window, table, counts)
             left, top, right, bottom = place.rectangles((0, 0)).T
             return Counted(counts, planes_of(feature) * (right - left) * (bottom - top))
         assert isinstance(feature, CountedFeature)
@@ -82,9 +87,8 @@ class NumbaKernels(Kernels):
         """Describe windows; see `Kernels.histograms`."""
         if not counts_pixels(feature):
             return super().histograms(feature, frame, positions, window)
-        place, table = Place.of(feature, frame, positions, window), table_of_all(feature.bins)
         counts = np.empty((len(positions), feature.bins), np.int32)
-        compare_pixels(feature, frame, place, table, counts)
+        compare_pixels(feature, frame, positions, window, table_of_all(feature.bins), counts)
         return np.asarray(counts / np.maximum(counts.sum(axis=1, keepdims=True), 1))
 
     def similarity(
@@ -97,8 +101,8 @@ class NumbaKernels(Kernels):
     ) -> Coefficients:
         """Compare windows; see `Kernels.similarity`."""
         if counts_pixels(feature):
-            place = Place.of(feature, frame, positions, window)
-            return compare_pixels(feature, frame, place, table_of(reference), _NO_COUNTS)
+            table = table_of(reference)
+            return compare_pixels(feature, frame, positions, window, table, _NO_COUNTS)
         if counts_edges(feature):
             place, table = Place.of(feature, frame, positions, window), table_of(reference)
             cells, totals = count_directions(feature, frame, place, table)

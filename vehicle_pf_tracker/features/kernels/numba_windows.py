@@ -15,7 +15,16 @@ import numpy as np
 import numpy.typing as npt
 from numba import types
 
-from vehicle_pf_tracker.features.kernels.numba_cells import CELLS, RECTANGLES, Cells, Rectangles
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.kernels.numba_cells import (
+    CELLS,
+    FRAME,
+    RECTANGLES,
+    TABLE,
+    Cells,
+    Rectangles,
+    Table,
+)
 from vehicle_pf_tracker.features.kernels.numba_jit import compiled, inlined
 from vehicle_pf_tracker.features.window import Positions
 
@@ -83,6 +92,20 @@ def window_rectangles(
         rectangles[i, 2] = min(x + right, last) - origin[0]
         rectangles[i, 3] = min(y + up + 1, size[1]) - origin[1]
     return rectangles
+
+
+@compiled(CELLS(FRAME, types.int64, TABLE))
+def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
+    """Cells of joint RGB bins, one plane."""
+    height, width, _ = pixels.shape
+    cells = np.empty((1, height, width), np.uint16)
+    drop = 8 - bits
+    for y in range(height):
+        for x in range(width):
+            red, green, blue = pixels[y, x, 0], pixels[y, x, 1], pixels[y, x, 2]
+            number = ((red >> drop) << (2 * bits)) | ((green >> drop) << bits) | (blue >> drop)
+            cells[0, y, x] = table[number]
+    return cells
 
 
 @inlined
@@ -290,6 +313,40 @@ def compare_windows(
         rectangles[i, 0], rectangles[i, 1] = max(x - left, 0), max(y - up, 0)
         rectangles[i, 2], rectangles[i, 3] = min(x + right, width), min(y + up + 1, height)
     return compare_rectangles(cells, rectangles, scale, counts)
+
+
+@compiled(types.float64[::1](FRAME, _POSITIONS, types.int64, PAIR, TABLE, SCALE, _COUNTS))
+def compare_joint(
+    frame: Frame,
+    positions: Positions,
+    bits: int,
+    half: tuple[int, int],
+    table: Table,
+    scale: Scale,
+    counts: Counts,
+) -> Reals:
+    """Compare windows of joint colours from beginning to end, which most trackers' steps do.
+
+    `half` is the width and height of a window left and right of, above and below its middle; the
+    rest is as for `joint_cells` and `compare_windows`.
+    """
+    height, width, _ = frame.shape
+    pixels, extent = window_pixels(positions, width, height)
+    beside, above = half
+    left, top = max(extent[0] - beside, 0), max(extent[1] - above, 0)
+    right, bottom = min(extent[2] + beside + 1, width), min(extent[3] + above + 1, height)
+    reach = beside, beside + 1, above
+    if (right - left) * (bottom - top) <= len(pixels) * (2 * beside + 1) * (2 * above + 1):
+        cells = joint_cells(frame[top:bottom, left:right], bits, table)
+        return compare_windows(cells, pixels, extent, (left, top), reach, scale, counts)
+    result = np.empty(len(pixels))
+    for i in range(len(pixels)):  # they share few pixels
+        x, y = pixels[i]
+        left, top = max(x - beside, 0), max(y - above, 0)
+        cells = joint_cells(frame[top : y + above + 1, left : x + beside + 1], bits, table)
+        rectangle = np.array([[0, 0, cells.shape[2], cells.shape[1]]])
+        result[i] = compare_rectangles(cells, rectangle, scale, counts[i : i + 1])[0]
+    return result
 
 
 @compiled(
