@@ -9,13 +9,26 @@ from __future__ import annotations
 import struct
 from typing import NamedTuple
 
-from builtin_interfaces.msg import Time
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.features.errors import InputError
 
 _BODY = 4
 """Bytes before the message, the second of which tells the byte order."""
+
+
+class _Layout(NamedTuple):
+    """The numbers before the frame_id, before the encoding, and before the pixels."""
+
+    stamp: struct.Struct
+    size: struct.Struct
+    step: struct.Struct
+
+
+_LAYOUTS = [
+    _Layout(*(struct.Struct(order + kinds) for kinds in ("iII", "III", "II"))) for order in "><"
+]
+"""For a big-endian and for a little-endian message."""
 
 
 class SerializedImage(NamedTuple):
@@ -39,19 +52,20 @@ def read_serialized(message: bytes) -> SerializedImage:
         If it is cut off.
     """
     try:
-        order = "<" if message[1] & 1 else ">"
-        seconds, nanoseconds, length = struct.unpack_from(f"{order}iII", message, _BODY)
+        layout = _LAYOUTS[message[1] & 1]
+        seconds, nanoseconds, length = layout.stamp.unpack_from(message, _BODY)
         frame_id, at = _text(message, _BODY + 12, length)
         at = _aligned(at)
-        height, width, length = struct.unpack_from(f"{order}III", message, at)
+        height, width, length = layout.size.unpack_from(message, at)
         encoding, at = _text(message, at + 12, length)
         is_bigendian = message[at]
         at = _aligned(at + 1)
-        step, size = struct.unpack_from(f"{order}II", message, at)
+        step, size = layout.step.unpack_from(message, at)
     except (struct.error, IndexError):
         raise InputError("a serialized image is cut off before its pixels") from None
     data = memoryview(message)[at + 8 : at + 8 + size]
-    header = Header(stamp=Time(sec=seconds, nanosec=nanoseconds), frame_id=frame_id)
+    header = Header()
+    header.stamp.sec, header.stamp.nanosec, header.frame_id = seconds, nanoseconds, frame_id
     return SerializedImage(header, height, width, encoding, is_bigendian, step, data)
 
 
