@@ -9,12 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.features.small_grey import SmallGrey
 
 Points = npt.NDArray[np.float64]
 
-_LARGEST_SIDE = 320
-"""Frames are reduced to this before flow is measured, px."""
 _LEAST_SIDE = 32
 _GRID = (8, 6)
 """Cells along x and y that give one corner each, so that no lorry gives most of them."""
@@ -63,6 +61,9 @@ def fit_camera_motion(before: Points, after: Points) -> CameraMotion:
     if len(before) < _LEAST_CORNERS:
         return CameraMotion()
     flow = after - before
+    standing = int((np.hypot(flow[:, 0], flow[:, 1]) < 2 * _AGREEING_PX).sum())
+    if standing >= _PREFERENCE * len(flow):  # no other guess can have more than all
+        return CameraMotion()
     guesses = np.vstack([np.zeros(2), np.median(flow, axis=0), flow])
     distances = np.linalg.norm(flow[np.newaxis] - guesses[:, np.newaxis], axis=2)
     supports = (distances < 2 * _AGREEING_PX).sum(axis=1)
@@ -97,17 +98,17 @@ class CameraFlow:
         self._corners = np.empty((0, 1, 2), np.float32)
         self._age = 0
 
-    def measure(self, frame: Frame, target: Box) -> CameraMotion:
+    def measure(self, small: SmallGrey, target: Box) -> CameraMotion:
         """Motion since the last frame shown; none for the first one.
 
         Parameters
         ----------
-        frame : (H, W, 3) array
-            RGB.
+        small : SmallGrey
+            The reduced frame.
         target : Box
-            Corners in and close to it take no part.
+            In px of the whole frame; corners in and close to it take no part.
         """
-        reduced, zoom = _reduce(frame)
+        reduced, zoom = small.image, small.zoom
         last, self._last = self._last, reduced
         if last is None or last.shape != reduced.shape or min(reduced.shape) < _LEAST_SIDE:
             return CameraMotion()
@@ -134,16 +135,6 @@ class CameraFlow:
         outside = np.abs(x - middle_x) > _CLEARANCE * target.width
         outside |= np.abs(y - middle_y) > _CLEARANCE * target.height
         return np.ascontiguousarray(self._corners[outside])
-
-
-def _reduce(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:
-    width, height = frame_size(frame)
-    zoom = min(_LARGEST_SIDE / max(width, height), 1.0)
-    small = np.ascontiguousarray(frame)
-    if zoom < 1:
-        size = max(round(width * zoom), 1), max(round(height * zoom), 1)
-        small = np.asarray(cv2.resize(small, size, interpolation=cv2.INTER_LINEAR), np.uint8)
-    return np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY), np.uint8), zoom
 
 
 def _track(

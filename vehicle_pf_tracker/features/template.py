@@ -31,7 +31,7 @@ def correlate(image: Map, template: Patch, structured: npt.NDArray[np.bool_]) ->
         Coefficients from -1 to 1, 0 where window or template has no structure. Entry (r, c)
         belongs to the window whose top-left pixel is (r, c).
     """
-    if float(template.std()) < LEAST_DEVIATION:
+    if float(cv2.meanStdDev(template)[1][0, 0]) < LEAST_DEVIATION:
         return np.zeros(structured.shape, np.float32)
     found = cv2.matchTemplate(image, template, cv2.TM_CCOEFF_NORMED)
     # Where there is next to no variance OpenCV divides rounding by rounding.

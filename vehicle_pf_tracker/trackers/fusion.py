@@ -17,6 +17,7 @@ import numpy as np
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.camera_motion import CameraFlow, CameraMotion
 from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.features.small_grey import small_grey
 from vehicle_pf_tracker.features.window import is_outside, keep_inside
 from vehicle_pf_tracker.filtering.motion import (
     RAYLEIGH_MEAN,
@@ -28,7 +29,9 @@ from vehicle_pf_tracker.trackers.base import Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance, Likeness
+from vehicle_pf_tracker.trackers.fusion_parts.background import Background
 from vehicle_pf_tracker.trackers.fusion_parts.candidates import Chain
+from vehicle_pf_tracker.trackers.fusion_parts.fine_alignment import FineAlignment
 from vehicle_pf_tracker.trackers.fusion_parts.history import History, Trend, carried
 from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles, Spread
 from vehicle_pf_tracker.trackers.fusion_parts.search import Foretold, Search
@@ -37,11 +40,11 @@ from vehicle_pf_tracker.trackers.fusion_parts.view import View
 
 Place: TypeAlias = tuple[float, float]
 
-_SIZES = tuple(1.04**step for step in (-2, -1, 0, 1, 2))
+_SIZES = tuple(1.07**step for step in (-1, 0, 1))
 _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
-_LEAST_SIDE = 6.0
-"""px that the longer side of the box may shrink to."""
+_LEAST_EXTENT = 7.0
+"""px that the geometric mean of the sides of the box may shrink to."""
 _DEGENERATE = 0.4
 """Share of the particles below which the effective sample size is too small (P3)."""
 _YOUNG_FRAMES = 6
@@ -50,11 +53,13 @@ _NEAR_PREDICTION = 0.4
 """Standard deviation of the weak prior around the predicted mean, of the size."""
 _ON_TREND = 0.2
 _ON_TREND_INNOVATIONS = 3.0
-_TREND_SCALE = 0.08
+_TREND_SCALE = 0.05
 _DOUBTED = 4.0
 """Latest frames that no trend is fitted to in doubt: an occluder may have dragged them along."""
 _ROLLED_BACK = 6.0
 """The same once the target is hidden."""
+_UNSIZED = 3.0
+"""Sightings before the doubt whose sizes are not believed: half covered it looks smaller."""
 _RATE_IN_TURNS = 0.2
 
 
@@ -71,8 +76,11 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._history = History(self._side)
         self._suspicion = Suspicion()
         self._search: Search | None = None
+        self._alignment = FineAlignment()
+        self._background = Background()
         self._flow = CameraFlow()
-        self._flow.measure(frame, box)
+        self._small = small_grey(frame)
+        self._flow.measure(self._small, box)
         self._trend: Trend | None = None
         self._frames = 0
         return estimate
@@ -108,16 +116,17 @@ class FusionTracker(ParticleTracker[FusionParameters]):
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         _ = self.target  # says what is wrong before the start
         elapsed = min(elapsed, _LONGEST_STEP)
-        self._carry(self._camera_motion(frame), elapsed)
+        self._small = small_grey(frame)
+        self._carry(self._camera_motion(), elapsed)
         self._frames += 1
         if self._search is None or self._trend is None:
             return self._follow(frame, elapsed)
         return self._look_for(frame, self._trend, self._search, elapsed)
 
-    def _camera_motion(self, frame: Frame) -> CameraMotion:
+    def _camera_motion(self) -> CameraMotion:
         if not self.parameters.motion.camera:
             return CameraMotion()
-        return self._flow.measure(frame, self._box(self._place))
+        return self._flow.measure(self._small, self._box(self._place))
 
     def _carry(self, motion: CameraMotion, elapsed: float) -> None:
         """Take everything that is known along with the background and with time."""
@@ -128,6 +137,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             self._trend = self._trend.after(elapsed)
         if motion.still:
             return
+        self._background.forget()
         self._particles = self._particles.carried(motion)
         self._place = carried(self._place, motion)
         self._scale *= motion.scale
@@ -138,10 +148,10 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     def _follow(self, frame: Frame, elapsed: float) -> Outcome:
         particles, left_image = self._predicted(frame, elapsed)
-        expected = particles.place
-        view = self._look_around(frame, expected, particles.scale)
+        expected_scale = particles.scale
+        view = self._look_around(frame, particles.place, expected_scale)
         particles, sound, passes, redrawn = self._weighed(frame, view, particles)
-        place, scale = view.refine(particles.place, particles.scale), particles.scale
+        place, scale = self._refined(frame, view, particles, expected_scale)
         self._take(frame, particles, place, scale, elapsed)
         likeness = self._appearance.compare(view, self._place, scale)
         verdict = self._judge_looks(view, likeness)
@@ -183,8 +193,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         return replace(particles, positions=keep_inside(frame, particles.positions), scales=scales)
 
     def _scale_bounds(self, frame: Frame) -> tuple[float, float]:
-        longer = max(self._size)
-        return min(_LEAST_SIDE / longer, 1.0), max(2.0 * max(frame_size(frame)) / longer, 1.0)
+        largest = 2.0 * max(frame_size(frame)) / max(self._size)
+        return min(_LEAST_EXTENT / self._side, 1.0), max(largest, 1.0)
 
     def _look_around(self, frame: Frame, place: Place, scale: float) -> View:
         reach = 0.6 * max(self._size) * scale
@@ -229,6 +239,18 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             return np.asarray(away)
         return np.asarray(away + (np.log(particles.scales / scale) / _TREND_SCALE) ** 2)
 
+    def _refined(
+        self, frame: Frame, view: View, particles: Particles, expected_scale: float
+    ) -> tuple[Place, float]:
+        """Climb from the particles' mean to the peak, and align there while nothing is in doubt."""
+        scale = particles.scale
+        place = view.refine(particles.place, scale)
+        if not self.parameters.cues.alignment or self._suspicion.frames:
+            return place, scale
+        place, scale = self._alignment.improve(self._appearance, view, place, scale, expected_scale)
+        low, high = self._scale_bounds(frame)
+        return place, min(max(scale, low), high) if self.parameters.motion.scale else 1.0
+
     def _take(
         self, frame: Frame, particles: Particles, place: Place, scale: float, elapsed: float
     ) -> None:
@@ -242,7 +264,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
                 motion[0] + gain * (moved[0] - motion[0]),
                 motion[1] + gain * (moved[1] - motion[1]),
             )
-        drawn = particles.drawn_towards((x, y), self._velocity, particles.place)
+        drawn = particles.drawn_towards((x, y), self._velocity, scale)
         self._particles = self._kept(frame, drawn)
         self._place, self._scale = (x, y), scale
 
@@ -250,8 +272,15 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         if self._frames == 1:
             self._suspicion.settle(likeness)
         hiding = self.parameters.hiding
-        before = 1.0 if self._suspicion.is_clear(likeness) else 1.0 + _DOUBTED
-        self._trend = self._history.trend(before, projective=hiding.projective)
+        background = hiding.background and self._background.shows(
+            self._small, self._box(self._place)
+        )
+        if self._suspicion.is_clear(likeness) and not background:
+            self._trend = self._history.trend(1.0, projective=hiding.projective)
+        else:
+            self._trend = self._history.trend(
+                1.0 + _DOUBTED, projective=hiding.projective, unsized=_UNSIZED
+            )
         off = 0.0 if self._trend is None else math.dist(self._trend.now()[0], self._place)
         return self._suspicion.judge(
             likeness,
@@ -260,14 +289,18 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             gate=hiding.gate,
             grey=self._appearance.grey,
             patience=hiding.patience,
+            background=background,
         )
 
     def _learn_from(self, view: View, likeness: Likeness, verdict: Verdict) -> None:
         place, scale = self._place, self._scale
         if verdict.turning:
             self._appearance.learn(view, place, scale, _RATE_IN_TURNS)
+        if verdict.renewed:
+            self._alignment.forget()
         if verdict.clear:
             self._history.see(place, scale)
+            self._background.keep(self._small, self._box(place))
             self._appearance.learn(view, place, scale, self.parameters.cues.template_rate)
             self._appearance.learn_colours(view, place, scale)
             self._appearance.weigh_cues(view, place, scale)
@@ -275,7 +308,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
     def _evidence(self, likeness: Likeness, verdict: Verdict) -> float:
         """Give what the mode is judged by: the looks, of their clear level, unless in doubt."""
         share = self._suspicion.share(likeness)
-        if verdict.gone or (self._suspicion.frames >= 2 and not verdict.turning):
+        if verdict.gone or self._suspicion.doubtful:
             return min(share, self._ceiling)
         return max(share, self.parameters.evidence.clear_above)
 
@@ -290,12 +323,13 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         """Go back to the confident frames, and foretell the motion from them."""
         hiding = self.parameters.hiding
         back = _ROLLED_BACK if hiding.retrospect else 0.0
+        unsized = _UNSIZED if hiding.retrospect else 0.0
         self._trend = (
-            self._history.trend(back, projective=hiding.projective)
+            self._history.trend(back, projective=hiding.projective, unsized=unsized)
             or self._history.trend(0.0, projective=hiding.projective)
             or Trend.still(self._place, self._scale)
         )
-        self._search = Search(self._appearance, self._suspicion)
+        self._search = Search(self._appearance, self._suspicion, self._background)
         self._suspicion.reset()
         self._scatter_on(frame, self._trend)
         self._foretell(frame, self._trend)
@@ -330,8 +364,9 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             self._place, self._velocity, self._scale, self._extent, self._particles.width
         )
         share = search.look(
-            frame, foretold, wide=parameters.hiding.search, sizes=parameters.motion.scale
-        )
+            frame, self._small, foretold,
+            wide=parameters.hiding.search, sizes=parameters.motion.scale,
+        )  # fmt: skip
         chain = search.proof(foretold, parameters.hiding.confirm)
         if chain is not None:
             return self._come_back(frame, chain)
@@ -358,7 +393,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     def _come_back(self, frame: Frame, chain: Chain) -> Outcome:
         """Follow a candidate from now on."""
-        found = chain.last
+        found = chain.links[-1]
         x, y = keep_inside(frame, np.asarray(found.place)).tolist()
         self._place, self._scale = (x, y), found.scale
         self._velocity = (
@@ -371,6 +406,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             self._rng, count, self._place, self._velocity, self._scale, spread
         )
         self._particles = self._kept(frame, particles)
+        for one in chain.links:
+            self._history.see(one.place, one.scale, one.age)
         self._search = self._trend = None
         self._suspicion.reset()
         cloud = self._particles.cloud()

@@ -23,6 +23,9 @@ class CueParameters:
     parts: bool = parameter(
         True, "Off: halves of the template are not compared; half hidden counts as hidden sooner."
     )
+    alignment: bool = parameter(
+        True, "Off: place and size are not refined to fractions of a pixel; the size lags behind."
+    )
     adaptive: bool = parameter(
         True,
         "Off: all cues keep the same weight, also where one does not tell the target from its "
@@ -111,6 +114,10 @@ class HidingParameters:
         True,
         "Off: particles are not held to the foretold motion in doubt, and leaving it tells of no "
         "occlusion.",
+    )
+    background: bool = parameter(
+        True,
+        "Off: what a still camera saw at a place before the vehicle came there tells nothing.",
     )
     search: bool = parameter(
         True, "Off: a hidden target is looked for at its predicted place alone."

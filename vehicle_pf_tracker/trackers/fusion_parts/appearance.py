@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from vehicle_pf_tracker.features.alignment import Alignment, Step
 from vehicle_pf_tracker.features.colour_share import (
     Histogram,
     bin_count,
@@ -48,6 +49,13 @@ _SURROUNDINGS = 0.55
 _BASE_WEIGHTS = np.array([0.25, 0.5, 0.25])
 _WEIGHT_RATE = 0.05
 _LEAST_MARGIN = 0.1
+_ALIGNING_STEPS = 3
+_FARTHEST_ALIGNED = 0.2
+"""Of the size."""
+_LARGEST_ALIGNED = 0.06
+"""Change of the logarithm of the scale."""
+_EXPECTED_SIGMA = 0.02
+_WORSE = 0.02
 _SLACK = 2
 """px of the region by which a half may be off its place in the whole."""
 _COLOURS_LEARNT_EVERY = 4
@@ -70,6 +78,15 @@ class Likeness:
     anchor: float
     following: float
     colour: float
+
+
+@dataclass(frozen=True, slots=True)
+class Aligned:
+    """Place in px and scale that the following template fits best, and its correlation there."""
+
+    place: Place
+    scale: float
+    coefficient: float
 
 
 class Appearance:
@@ -175,7 +192,41 @@ class Appearance:
         anchor, following, colour = view.read(view.cues, np.array([centre]), np.array([scale]))[
             :, 0
         ].tolist()
+        if not self.cues.following:
+            following = anchor if self.cues.anchor else colour
+        if not self.cues.anchor:
+            anchor = following
         return Likeness(anchor, following, colour)
+
+    def align(self, view: View, centre: Place, scale: float, expected: float) -> Aligned:
+        """Align the following template, from a place and size on, to fractions of a pixel.
+
+        Parameters
+        ----------
+        view, centre, scale
+            Where to begin.
+        expected : float
+            Scale that the motion foretells, which the outcome is drawn to.
+        """
+        alignment = Alignment(self._following)
+        far = _FARTHEST_ALIGNED * math.sqrt(self.size[0] * self.size[1]) * scale
+        (x, y), growth, best = centre, 0.0, Aligned(centre, scale, -1.0)
+        for number in range(_ALIGNING_STEPS + 1):
+            now = scale * math.exp(growth)
+            step = alignment.step(
+                self._patch(view.region, (x, y), now), math.log(now / expected), _EXPECTED_SIGMA
+            )
+            if step.coefficient > best.coefficient:
+                best = Aligned((x, y), now, step.coefficient)
+            elif step.coefficient < best.coefficient - _WORSE:
+                break
+            x += now / self._zoom * step.place[0]
+            y += now / self._zoom * step.place[1]
+            growth += step.log_scale
+            away = max(abs(x - centre[0]), abs(y - centre[1]))
+            if away > far or abs(growth) > _LARGEST_ALIGNED or (number and _is_tiny(step)):
+                break
+        return best
 
     def best_half(self, view: View, centre: Place, scale: float) -> float:
         """Largest correlation of a half of the following template near its place.
@@ -265,6 +316,11 @@ def _warped(image: np.ndarray, matrix: Array, size: tuple[int, int]) -> Patch:
     flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
     patch = cv2.warpAffine(image, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
     return np.asarray(patch, np.float32)
+
+
+def _is_tiny(step: Step) -> bool:
+    x, y = step.place
+    return abs(x) + abs(y) < 0.02 and abs(step.log_scale) < 0.001
 
 
 def _ring() -> Array:

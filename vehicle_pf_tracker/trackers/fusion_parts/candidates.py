@@ -42,20 +42,26 @@ class Chain:
 
     Attributes
     ----------
-    last : Candidate
-        Of the present frame.
-    frames : int
-        Number of candidates.
-    strong : float
-        Share of strong ones among them.
-    velocity : (float, float)
-        Their mean velocity, px per frame.
+    links : tuple of Candidate
+        From the first to that of the present frame, at least two.
     """
 
-    last: Candidate
-    frames: int
-    strong: float
-    velocity: Place
+    links: tuple[Candidate, ...]
+
+    @property
+    def frames(self) -> int:
+        """Number of candidates."""
+        return len(self.links)
+
+    @property
+    def strong(self) -> float:
+        """Share of strong ones among them."""
+        return sum(one.strong for one in self.links) / len(self.links)
+
+    @property
+    def velocity(self) -> Place:
+        """Their mean velocity, px per frame."""
+        return _velocity(self.links[0], self.links[-1])
 
     def proves(self, expected: Place, tolerance: float, confirm: int) -> bool:
         """Whether these are the target.
@@ -124,11 +130,7 @@ class Candidates:
             if not _agree(chain, later, earlier, size):
                 break
             chain.append(earlier)
-        if len(chain) < 2:
-            return None
-        velocity = _velocity(chain[-1], chain[0])
-        strong = sum(one.strong for one in chain) / len(chain)
-        return Chain(chain[0], len(chain), strong, velocity)
+        return Chain(tuple(reversed(chain))) if len(chain) > 1 else None
 
 
 def _agree(chain: list[Candidate], later: Candidate, earlier: Candidate, size: float) -> bool:

@@ -13,7 +13,7 @@ from vehicle_pf_tracker.trackers.fusion_parts.projective_motion import Projectiv
 Place = tuple[float, float]
 
 _KEPT = 80
-_FITTED = 40
+_FITTED = 24
 """Latest sightings that a motion is fitted to."""
 _FEWEST = 4
 _GROWTH_OVER = 12
@@ -25,11 +25,11 @@ _GROWTH_GAIN = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """Place in px and scale of the target, `age` frames ago."""
+    """Place in px of the present frame and scale of the target, and when it was seen, in frames."""
 
     place: Place
     scale: float
-    age: float = 0.0
+    time: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,42 +78,59 @@ class History:
 
     def __init__(self, size: float) -> None:
         self._size = size
+        self._now = 0.0
         self._sightings: deque[Sighting] = deque(maxlen=_KEPT)
 
     def age(self, elapsed: float, motion: CameraMotion) -> None:
         """Let `elapsed` frames pass in which the camera made `motion`."""
+        self._now += elapsed
+        if motion.still:
+            return
         for index, one in enumerate(self._sightings):
-            place = one.place if motion.still else carried(one.place, motion)
-            self._sightings[index] = Sighting(place, one.scale * motion.scale, one.age + elapsed)
+            place = carried(one.place, motion)
+            self._sightings[index] = Sighting(place, one.scale * motion.scale, one.time)
 
-    def see(self, place: Place, scale: float) -> None:
-        """Keep a confident sighting of this frame."""
-        self._sightings.append(Sighting(place, scale))
+    def see(self, place: Place, scale: float, age: float = 0.0) -> None:
+        """Keep a confident sighting, of this frame or of one `age` frames ago."""
+        self._sightings.append(Sighting(place, scale, self._now - age))
 
-    def trend(self, before: float, *, projective: bool) -> Trend | None:
+    def trend(self, before: float, *, projective: bool, unsized: float = 0.0) -> Trend | None:
         """Fit a motion to the sightings that are at least `before` frames old.
 
-        None where these are too few.
+        Parameters
+        ----------
+        before : float
+            In frames.
+        projective : bool
+            Let the size change.
+        unsized : float
+            Frames before the last sighting in which sizes are not believed.
+
+        Returns
+        -------
+        Trend or None
+            None where these are too few.
         """
-        chosen = [one for one in self._sightings if one.age >= before][-_FITTED:]
+        chosen = [one for one in self._sightings if self._now - one.time >= before][-_FITTED:]
         if len(chosen) < _FEWEST:
             return None
-        last = chosen[-1].age
+        last = chosen[-1].time
         motion = fit_motion(
-            np.array([last - one.age for one in chosen]),
+            np.array([one.time - last for one in chosen]),
             np.array([one.place for one in chosen]),
             np.array([one.scale for one in chosen]),
             self._size,
             projective=projective,
+            sized_until=self._sightings[-1].time - last - unsized,
         )
-        return Trend(motion, last)
+        return Trend(motion, self._now - last)
 
     def growth(self) -> float:
         """Rate at which the logarithm of the scale changed lately, per frame."""
         latest = list(self._sightings)[-_GROWTH_OVER:]
         if len(latest) < _GROWTH_NEEDS:
             return 0.0
-        times = np.array([-one.age for one in latest])
+        times = np.array([one.time for one in latest])
         times -= times.mean()
         logs = np.log([one.scale for one in latest])
         slope = float(times @ logs) / max(float(times @ times), 1e-9)

@@ -96,13 +96,14 @@ class Particles:
             scales=self.scales * np.exp(growths),
         )
 
-    def drawn_towards(self, place: Place, velocity: Place, mean: Place) -> Particles:
-        """Move half way from their weighted mean position and mean velocity to better ones."""
-        off = np.asarray(place) - np.asarray(mean)
+    def drawn_towards(self, place: Place, velocity: Place, scale: float) -> Particles:
+        """Move their means of place and velocity half way, that of scale wholly, to better ones."""
+        off = np.asarray(place) - np.asarray(self.place)
         return replace(
             self,
             positions=self.positions + 0.5 * off,
             velocities=self.velocities + 0.5 * (velocity - self.velocities.mean(axis=0)),
+            scales=self.scales * (scale / self.scale),
         )
 
     def resampled(self, rng: np.random.Generator, count: int) -> Particles:

@@ -11,7 +11,7 @@ from vehicle_pf_tracker.trackers.estimate import Array
 _RATES = np.linspace(-0.04, 0.04, 33)
 _RATE_NEEDS = 8
 """Sightings below which the size is taken to stay."""
-_MEMORY = 20.0
+_MEMORY = 10.0
 """Frames after which an older sighting counts for 1 / e."""
 _PLACE_SIGMA = 0.03
 """Standard deviation of a position, of the size."""
@@ -65,7 +65,13 @@ class ProjectiveMotion:
 
 
 def fit_motion(
-    times: Array, places: Array, scales: Array, size: float, *, projective: bool = True
+    times: Array,
+    places: Array,
+    scales: Array,
+    size: float,
+    *,
+    projective: bool = True,
+    sized_until: float = 0.0,
 ) -> ProjectiveMotion:
     """Fit to what was seen, by weighted least squares over a grid of rates.
 
@@ -81,6 +87,8 @@ def fit_motion(
         Of the vehicle at scale 1 in px, which errors of places are measured by.
     projective : bool
         False holds the rate at 0: constant velocity and size in the image.
+    sized_until : float
+        Time after which sizes are not believed: a half-covered vehicle looks smaller.
 
     Returns
     -------
@@ -99,10 +107,11 @@ def fit_motion(
     velocities = (off * weights) @ (places - middle) / spread[:, np.newaxis]
     residuals = places - middle - off[..., np.newaxis] * velocities[:, np.newaxis]
     logs = np.log(scales * np.maximum(divisors, _LEAST_DIVISOR))
-    log_scales = logs @ weights / total
+    believed = np.where(times <= max(sized_until, times[min(3, len(times) - 1)]), weights, 0.0)
+    log_scales = logs @ believed / believed.sum()
     sigma = _PLACE_SIGMA * size * float(scales.mean())
     costs = (residuals**2).sum(axis=2) @ weights / sigma**2 + (rates / _RATE_SIGMA) ** 2
-    costs += (logs - log_scales[:, np.newaxis]) ** 2 @ weights / _SIZE_SIGMA**2
+    costs += (logs - log_scales[:, np.newaxis]) ** 2 @ believed / _SIZE_SIGMA**2
     possible = rates * times[0] <= _LARGEST_CHANGE
     best = int(np.argmin(np.where(possible, costs, np.inf)))
     fitted = middle - centres[best] * velocities[best]

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.camera_motion import CameraMotion
 from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.features.small_grey import SmallGrey
 from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance
+from vehicle_pf_tracker.trackers.fusion_parts.background import Background
 from vehicle_pf_tracker.trackers.fusion_parts.candidates import Candidate, Candidates, Chain
 from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion
 
@@ -55,11 +58,16 @@ class Search:
         What it looks like.
     suspicion : Suspicion
         What its looks used to be worth.
+    background : Background
+        What was to be seen without it.
     """
 
-    def __init__(self, appearance: Appearance, suspicion: Suspicion) -> None:
+    def __init__(
+        self, appearance: Appearance, suspicion: Suspicion, background: Background
+    ) -> None:
         self._appearance = appearance
         self._suspicion = suspicion
+        self._background = background
         self._candidates = Candidates()
         self._frames = 0.0
 
@@ -68,13 +76,17 @@ class Search:
         self._candidates.age(elapsed, motion)
         self._frames += elapsed
 
-    def look(self, frame: Frame, foretold: Foretold, *, wide: bool, sizes: bool) -> float:
+    def look(
+        self, frame: Frame, small: SmallGrey, foretold: Foretold, *, wide: bool, sizes: bool
+    ) -> float:
         """Look for a candidate by a dense search.
 
         Parameters
         ----------
         frame : (H, W, 3) array
             RGB.
+        small : SmallGrey
+            The same, reduced.
         foretold : Foretold
             Where to look.
         wide : bool
@@ -98,7 +110,10 @@ class Search:
         likeness = self._appearance.compare(view, peak.place, peak.scale)
         strong = self._suspicion.is_strong(likeness)
         near = math.dist(peak.place, foretold.place) < self._near(foretold)
-        if strong or (near and self._suspicion.is_fair(likeness)):
+        alike = strong or (near and self._suspicion.is_fair(likeness))
+        width, height = self._appearance.size
+        box = Box.around(peak.place, width * peak.scale, height * peak.scale)
+        if alike and not self._background.shows(small, box):
             self._candidates.add(Candidate(peak.place, peak.scale, strong))
         return self._suspicion.share(likeness)
 

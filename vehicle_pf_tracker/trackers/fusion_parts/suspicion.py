@@ -19,6 +19,15 @@ _LEAST_FALL_YOUNG = 0.3
 _YOUNG = 15
 """Frames after the start in which looks still settle."""
 _LEAST_COLOUR = 0.6
+_ANCHOR_SETTLED = 20
+_LEAST_ANCHOR = 0.6
+"""Share of its level that the anchor has to keep: what slips over the target slowly changes the
+following template along."""
+_HIGH_ANCHOR = 0.8
+_DOUBTED_AFTER = 2
+_DOUBTED_BELOW = 0.85
+_DOUBTED_ANCHOR = 0.6
+_TRUSTED_ABOVE = 0.9
 _ALIKE_BY_COLOUR = 0.93
 _GONE = 0.75
 """Share of the clear level below which neither the whole nor a half is in sight."""
@@ -47,12 +56,15 @@ class Verdict:
         Whether it is not what is seen here.
     hidden : bool
         Whether that has lasted, so that the target is to be taken for hidden from now on.
+    renewed : bool
+        Whether changed looks are the target's from now on.
     """
 
     clear: bool
     turning: bool = False
     gone: bool = False
     hidden: bool = False
+    renewed: bool = False
 
 
 class Suspicion:
@@ -64,12 +76,16 @@ class Suspicion:
         Number of frames in doubt on end.
     innovation : float
         Usual distance of clear estimates from their foretold place, of the size.
+    doubtful : bool
+        Whether the doubt is such that the target had better not be claimed.
     """
 
     def __init__(self) -> None:
         self.frames = 0
         self.innovation = 0.1
+        self.doubtful = False
         self._level: float | None = None
+        self._anchor = 1.0
         self._deviation = 0.05
         self._colour = 0.5
         self._age = 0
@@ -78,6 +94,7 @@ class Suspicion:
     def settle(self, likeness: Likeness) -> None:
         """Take the first frame's looks for the clear level."""
         self._level, self._colour = likeness.following, likeness.colour
+        self._anchor = likeness.anchor
 
     @property
     def level(self) -> float:
@@ -107,6 +124,7 @@ class Suspicion:
         gate: bool,
         grey: bool,
         patience: int,
+        background: bool,
     ) -> Verdict:
         """Judge one estimate.
 
@@ -124,10 +142,37 @@ class Suspicion:
             Whether the video has no colours.
         patience : int
             Frames of doubt on the foretold path after which the new looks are the target's.
+        background : bool
+            Whether what is seen there was there before the target.
         """
+        verdict = self._verdict(
+            likeness, off, best_half, gate=gate, grey=grey, patience=patience,
+            background=background,
+        )  # fmt: skip
+        self.doubtful = self._had_better_not_be_claimed(likeness)
+        return verdict
+
+    def _had_better_not_be_claimed(self, likeness: Likeness) -> bool:
+        if self.doubtful:
+            alike = likeness.following >= _TRUSTED_ABOVE * self.level
+            return not alike or likeness.anchor < _TRUSTED_ABOVE * self._anchor
+        unlike = likeness.following < _DOUBTED_BELOW * self.level
+        unlike |= likeness.anchor < _DOUBTED_ANCHOR * self._anchor
+        return unlike and self.frames >= _DOUBTED_AFTER
+
+    def _verdict(
+        self,
+        likeness: Likeness,
+        off: float,
+        best_half: Callable[[], float],
+        *,
+        gate: bool,
+        grey: bool,
+        patience: int,
+        background: bool,
+    ) -> Verdict:
         self._age += 1
-        clear = self.is_clear(likeness)
-        if clear:
+        if not background and self.is_clear(likeness):
             self.frames = 0
             self.innovation += _INNOVATION_RATE * (min(off, _TURNING_OFF) - self.innovation)
             self._gone = max(self._gone - 1, 0)
@@ -148,21 +193,28 @@ class Suspicion:
             self.frames = 0
             self._level, self._deviation = likeness.following, 0.05
             self._colour = likeness.colour
-            return Verdict(clear=True, turning=turning)
+            return Verdict(clear=True, turning=turning, renewed=True)
         return Verdict(False, turning, gone, self._gone >= _HIDDEN_AFTER)
 
     def reset(self) -> None:
         """Forget the doubts; the levels stay."""
         self.frames = self._gone = 0
+        self.doubtful = False
 
     def is_clear(self, likeness: Likeness) -> bool:
         """Whether looks are as they use to be."""
         fall = _LEAST_FALL if self._age > _YOUNG else _LEAST_FALL_YOUNG
         least = self.level - max(_DEVIATIONS * self._deviation, fall)
-        return likeness.following >= least and likeness.colour >= _LEAST_COLOUR * self._colour
+        anchor = _LEAST_ANCHOR * min(self._anchor, _HIGH_ANCHOR)
+        return (
+            likeness.following >= least
+            and likeness.colour >= _LEAST_COLOUR * self._colour
+            and (likeness.anchor >= anchor or self._age < _ANCHOR_SETTLED)
+        )
 
     def _follow(self, likeness: Likeness) -> None:
         away = min(abs(likeness.following - self.level), 2 * self._deviation)
         self._deviation += _RATE * (away - self._deviation)
         self._level = self.level + _RATE * (likeness.following - self.level)
         self._colour += _RATE * (likeness.colour - self._colour)
+        self._anchor += _RATE * (likeness.anchor - self._anchor)

@@ -1,0 +1,40 @@
+"""A frame made small and grey, for what needs neither colours nor details."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.features.frame import Frame, frame_size
+
+_LARGEST_SIDE = 320
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SmallGrey:
+    """A reduced frame.
+
+    Attributes
+    ----------
+    image : (h, w) array of uint8
+        Luminance.
+    zoom : float
+        Its px per px of the frame, at most 1.
+    """
+
+    image: npt.NDArray[np.uint8]
+    zoom: float
+
+
+def small_grey(frame: Frame) -> SmallGrey:
+    """Reduce a frame (H, W, 3) until its larger side has 320 px at most."""
+    width, height = frame_size(frame)
+    zoom = min(_LARGEST_SIDE / max(width, height), 1.0)
+    small = np.ascontiguousarray(frame)
+    if zoom < 1:
+        size = max(round(width * zoom), 1), max(round(height * zoom), 1)
+        small = np.asarray(cv2.resize(small, size, interpolation=cv2.INTER_LINEAR), np.uint8)
+    return SmallGrey(np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY), np.uint8), zoom)
