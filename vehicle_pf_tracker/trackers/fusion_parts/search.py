@@ -13,11 +13,17 @@ from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion_parts.background import Background
 from vehicle_pf_tracker.trackers.fusion_parts.candidates import Candidate, Candidates, Chain
 from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion
+from vehicle_pf_tracker.trackers.fusion_parts.view import View
 
 Place = tuple[float, float]
 
 _SIZES_AT_FIRST = tuple(1.04**step for step in (-2, -1, 0, 1, 2))
 _SIZES = tuple(1.12**step for step in (-3, -2, -1, 0, 1, 2, 3))
+_SIZES_CLOSE = tuple(1.04**step for step in (-1, 0, 1))
+_COARSE_BEYOND = 0.8
+"""Distance, of the size, from which on it is looked for coarsely first, and then closely."""
+_CLOSE = 0.25
+"""What is looked at around a place that was found coarsely, of the size."""
 _AT_FIRST = 4.0
 """Frames hidden in which the size cannot have changed much."""
 _MARGIN = 0.3
@@ -101,12 +107,14 @@ class Search:
         """
         reach = self._reach(foretold)
         around = _MARGIN * max(self._appearance.size) * foretold.scale + (reach if wide else 0.0)
-        steps = _SIZES if self._frames > _AT_FIRST else _SIZES_AT_FIRST
-        view = self._appearance.look(
-            frame, foretold.place, foretold.scale, min(around, float(max(frame_size(frame)))),
-            steps if sizes else (1.0,),
-        )  # fmt: skip
+        view = self._view(frame, foretold, min(around, float(max(frame_size(frame)))), sizes=sizes)
         peak = view.best(foretold.place, reach, frame_size(frame))
+        if around > _COARSE_BEYOND * foretold.extent:
+            view = self._appearance.look(
+                frame, peak.place, peak.scale, _CLOSE * foretold.extent,
+                _SIZES_CLOSE if sizes else (1.0,),
+            )  # fmt: skip
+            peak = view.best(peak.place, reach, frame_size(frame))
         likeness = self._appearance.compare(view, peak.place, peak.scale)
         strong = self._suspicion.is_strong(likeness)
         near = math.dist(peak.place, foretold.place) < self._near(foretold)
@@ -116,6 +124,16 @@ class Search:
         if alike and not self._background.shows(small, box):
             self._candidates.add(Candidate(peak.place, peak.scale, strong))
         return self._suspicion.share(likeness)
+
+    def _view(self, frame: Frame, foretold: Foretold, around: float, *, sizes: bool) -> View:
+        """Look all around; at half the resolution where that is far."""
+        steps = _SIZES if self._frames > _AT_FIRST else _SIZES_AT_FIRST
+        steps = steps if sizes else (1.0,)
+        coarser = 2.0 if around > _COARSE_BEYOND * foretold.extent else 1.0
+        return self._appearance.look(
+            frame, foretold.place, coarser * foretold.scale, around,
+            tuple(step / coarser for step in steps),
+        )  # fmt: skip
 
     def _reach(self, foretold: Foretold) -> float:
         """How far the target may be from its foretold place, px; it widens with the particles."""
