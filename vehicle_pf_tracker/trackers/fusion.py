@@ -19,11 +19,7 @@ from vehicle_pf_tracker.features.camera_motion import CameraFlow, CameraMotion
 from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.features.small_grey import small_grey
 from vehicle_pf_tracker.features.window import is_outside, keep_inside
-from vehicle_pf_tracker.filtering.motion import (
-    RAYLEIGH_MEAN,
-    sample_normal,
-    sample_normal_rayleigh,
-)
+from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
 from vehicle_pf_tracker.trackers.base import Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
@@ -33,6 +29,7 @@ from vehicle_pf_tracker.trackers.fusion_parts.background import Background
 from vehicle_pf_tracker.trackers.fusion_parts.candidates import Chain
 from vehicle_pf_tracker.trackers.fusion_parts.fine_alignment import FineAlignment
 from vehicle_pf_tracker.trackers.fusion_parts.history import History, Trend, carried
+from vehicle_pf_tracker.trackers.fusion_parts.likelihood import Prior, log_likelihood
 from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles, Spread
 from vehicle_pf_tracker.trackers.fusion_parts.search import Foretold, Search
 from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion, Verdict
@@ -49,11 +46,6 @@ _DEGENERATE = 0.4
 """Share of the particles below which the effective sample size is too small (P3)."""
 _YOUNG_FRAMES = 6
 _YOUNG_SPREAD = 1.5
-_NEAR_PREDICTION = 0.4
-"""Standard deviation of the weak prior around the predicted mean, of the size."""
-_ON_TREND = 0.2
-_ON_TREND_INNOVATIONS = 3.0
-_TREND_SCALE = 0.05
 _DOUBTED = 4.0
 """Latest frames that no trend is fitted to in doubt: an occluder may have dragged them along."""
 _ROLLED_BACK = 6.0
@@ -186,13 +178,12 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         )
 
     def _kept(self, frame: Frame, particles: Particles) -> Particles:
-        """Keep positions in the image, and sizes between a few px and the image's."""
-        scales = np.clip(particles.scales, *self._scale_bounds(frame))
-        if not self.parameters.motion.scale:
-            scales = np.ones_like(scales)
-        return replace(particles, positions=keep_inside(frame, particles.positions), scales=scales)
+        """Keep places in the image, and sizes between a few px and the image's."""
+        return particles.kept(frame, self._scale_bounds(frame))
 
     def _scale_bounds(self, frame: Frame) -> tuple[float, float]:
+        if not self.parameters.motion.scale:
+            return 1.0, 1.0
         largest = 2.0 * max(frame_size(frame)) / max(self._size)
         return min(_LEAST_EXTENT / self._side, 1.0), max(largest, 1.0)
 
@@ -205,8 +196,12 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self, frame: Frame, view: View, particles: Particles
     ) -> tuple[Particles, bool, int, int]:
         """Weigh the particles; draw those of low weight anew while few carry all (P3)."""
-        expected = particles.place
-        particles, sound = self._weigh(view, particles, expected)
+        doubted = self._suspicion.frames and self.parameters.hiding.gate
+        prior = Prior(
+            particles.place, self._extent, self._trend if doubted else None,
+            self._suspicion.innovation,
+        )  # fmt: skip
+        particles, sound = self._weigh(view, particles, prior)
         passes = redrawn = 0
         least = _DEGENERATE * len(particles.weights)
         while (
@@ -214,30 +209,14 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             and effective_sample_size(particles.weights) < least
         ):
             particles, drawn = particles.renewed(self._rng, self._spread().times(0.4))
-            particles, sound = self._weigh(view, self._kept(frame, particles), expected)
+            particles, sound = self._weigh(view, self._kept(frame, particles), prior)
             passes, redrawn = passes + 1, redrawn + drawn
         return particles, sound, passes, redrawn
 
-    def _weigh(self, view: View, particles: Particles, expected: Place) -> tuple[Particles, bool]:
-        """Likelihood of the looks, times how well each particle agrees with the motion."""
-        logs = self.parameters.sharpness * view.read(
-            view.fused, particles.positions, particles.scales
-        )
-        away = ((particles.positions - expected) ** 2).sum(axis=1)
-        logs -= 0.5 * away / (_NEAR_PREDICTION * self._extent) ** 2
-        if self._suspicion.frames and self._trend is not None and self.parameters.hiding.gate:
-            logs -= 0.5 * self._off_trend(particles, self._trend)
+    def _weigh(self, view: View, particles: Particles, prior: Prior) -> tuple[Particles, bool]:
+        logs = log_likelihood(view, particles, self.parameters.sharpness, prior)
         weights, sound = from_log(logs)
         return replace(particles, weights=weights), sound
-
-    def _off_trend(self, particles: Particles, trend: Trend) -> Array:
-        """Squared Mahalanobis distance from where clear frames foretell the target, (N,)."""
-        place, scale = trend.now()
-        within = max(_ON_TREND, _ON_TREND_INNOVATIONS * self._suspicion.innovation) * self._extent
-        away = ((particles.positions - place) ** 2).sum(axis=1) / within**2
-        if not self.parameters.motion.scale:
-            return np.asarray(away)
-        return np.asarray(away + (np.log(particles.scales / scale) / _TREND_SCALE) ** 2)
 
     def _refined(
         self, frame: Frame, view: View, particles: Particles, expected_scale: float
@@ -249,7 +228,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             return place, scale
         place, scale = self._alignment.improve(self._appearance, view, place, scale, expected_scale)
         low, high = self._scale_bounds(frame)
-        return place, min(max(scale, low), high) if self.parameters.motion.scale else 1.0
+        return place, min(max(scale, low), high)
 
     def _take(
         self, frame: Frame, particles: Particles, place: Place, scale: float, elapsed: float
@@ -345,7 +324,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         """Move on to the foretold state; tells whether its place is in the image."""
         place, scale = trend.now()
         low, high = self._scale_bounds(frame)
-        self._scale = min(max(scale, low), high) if self.parameters.motion.scale else 1.0
+        self._scale = min(max(scale, low), high)
         self._velocity = trend.velocity()
         x, y = keep_inside(frame, np.asarray(place)).tolist()
         self._place = x, y
@@ -358,7 +337,11 @@ class FusionTracker(ParticleTracker[FusionParameters]):
     def _look_for(self, frame: Frame, trend: Trend, search: Search, elapsed: float) -> Outcome:
         """Let the particles drift on, and look for the target where they are."""
         inside = self._foretell(frame, trend)
-        self._drift(frame, elapsed)
+        self._particles = self._particles.drifted(
+            self._rng, elapsed, self._velocity, self._scale, 0.03 * self._extent,
+            along=self.parameters.hiding.drift,
+        )  # fmt: skip
+        self._particles = self._kept(frame, self._particles)
         parameters = self.parameters
         foretold = Foretold(
             self._place, self._velocity, self._scale, self._extent, self._particles.width
@@ -374,22 +357,6 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             self._particles.cloud(), self._place, self._velocity, "hidden",
             min(share, self._ceiling), {}, left_image=not inside,
         )  # fmt: skip
-
-    def _drift(self, frame: Frame, elapsed: float) -> None:
-        """Move hidden particles along the motion (P1 eq. 11), or evenly around it."""
-        count, velocity = len(self._particles.weights), self._velocity
-        across = 0.03 * self._extent * math.sqrt(elapsed)
-        if self.parameters.hiding.drift:
-            along = math.hypot(*velocity) * elapsed / RAYLEIGH_MEAN
-            moves = sample_normal_rayleigh(self._rng, count, velocity, along, across)
-        else:
-            moves = np.asarray(velocity) * elapsed + sample_normal(self._rng, count, across)
-        self._particles = replace(
-            self._particles,
-            positions=keep_inside(frame, self._particles.positions + moves),
-            velocities=np.tile(velocity, (count, 1)),
-            scales=np.full(count, self._scale),
-        )
 
     def _come_back(self, frame: Frame, chain: Chain) -> Outcome:
         """Follow a candidate from now on."""

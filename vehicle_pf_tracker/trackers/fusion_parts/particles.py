@@ -8,7 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vehicle_pf_tracker.features.camera_motion import CameraMotion
-from vehicle_pf_tracker.filtering.motion import sample_normal
+from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.features.window import keep_inside
+from vehicle_pf_tracker.filtering.motion import (
+    RAYLEIGH_MEAN,
+    sample_normal,
+    sample_normal_rayleigh,
+)
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.trackers.base import Cloud
 from vehicle_pf_tracker.trackers.estimate import Array
@@ -94,6 +100,49 @@ class Particles:
             positions=self.positions + self.velocities * elapsed + noise,
             velocities=self.velocities + change,
             scales=self.scales * np.exp(growths),
+        )
+
+    def drifted(
+        self,
+        rng: np.random.Generator,
+        elapsed: float,
+        velocity: Place,
+        scale: float,
+        across: float,
+        *,
+        along: bool,
+    ) -> Particles:
+        """Let hidden particles drift along the motion (P1 eq. 11), or spread evenly around it.
+
+        Parameters
+        ----------
+        velocity, scale
+            That all of them have now.
+        across : float
+            Standard deviation across the motion after one frame, px.
+        along : bool
+            Whether their advance is Rayleigh distributed; its mean is the velocity.
+        """
+        count, across = len(self.weights), across * math.sqrt(elapsed)
+        if along:
+            parameter = math.hypot(*velocity) * elapsed / RAYLEIGH_MEAN
+            moves = sample_normal_rayleigh(rng, count, velocity, parameter, across)
+        else:
+            moves = np.asarray(velocity) * elapsed + sample_normal(rng, count, across)
+        return Particles(
+            self.positions + moves,
+            np.tile(velocity, (count, 1)),
+            np.full(count, scale),
+            self.weights,
+        )
+
+    def kept(self, frame: Frame, scales: tuple[float, float]) -> Particles:
+        """Keep positions in the image, and scales between two bounds."""
+        low, high = scales
+        return replace(
+            self,
+            positions=keep_inside(frame, self.positions),
+            scales=np.minimum(np.maximum(self.scales, low), high),
         )
 
     def drawn_towards(self, place: Place, velocity: Place, scale: float) -> Particles:
