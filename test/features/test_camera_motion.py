@@ -6,6 +6,7 @@ import pytest
 
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.camera_motion import CameraFlow, CameraMotion, fit_camera_motion
+from vehicle_pf_tracker.features.small_grey import small_grey
 
 RNG = np.random.default_rng(5)
 TEXTURE = cv2.GaussianBlur(RNG.integers(0, 255, (400, 500, 3)).astype(np.uint8), (0, 0), 2)
@@ -17,6 +18,10 @@ def view(x, y, lorry=None):
     if lorry is not None:
         frame[40:200, lorry : lorry + 120] = TEXTURE[:160, :120][::-1]
     return frame
+
+
+def seen(x, y, lorry=None):
+    return small_grey(view(x, y, lorry))
 
 
 def corners():
@@ -53,28 +58,28 @@ def test_too_few_corners_say_nothing():
 @pytest.mark.parametrize(("x", "y"), [(3, -2), (-12, 7), (20, 0)])
 def test_the_flow_of_a_shifted_view_is_its_shift(x, y):
     flow = CameraFlow()
-    assert flow.measure(view(0, 0), NOWHERE) == CameraMotion()
-    motion = flow.measure(view(x, y), NOWHERE)
+    assert flow.measure(seen(0, 0), NOWHERE) == CameraMotion()
+    motion = flow.measure(seen(x, y), NOWHERE)
     assert motion.shift == pytest.approx((-x, -y), abs=0.5)
     assert motion.scale == pytest.approx(1.0, abs=0.005)
 
 
 def test_a_lorry_that_passes_does_not_disturb_the_flow():
     flow = CameraFlow()
-    flow.measure(view(0, 0, lorry=60), NOWHERE)
-    motion = flow.measure(view(4, 2, lorry=67), NOWHERE)
+    flow.measure(seen(0, 0, lorry=60), NOWHERE)
+    motion = flow.measure(seen(4, 2, lorry=67), NOWHERE)
     assert motion.shift == pytest.approx((-4, -2), abs=0.5)
 
 
 def test_a_standing_camera_is_still_while_a_lorry_passes():
     flow = CameraFlow()
-    flow.measure(view(0, 0, lorry=60), NOWHERE)
-    assert flow.measure(view(0, 0, lorry=67), NOWHERE).still
+    flow.measure(seen(0, 0, lorry=60), NOWHERE)
+    assert flow.measure(seen(0, 0, lorry=67), NOWHERE).still
 
 
 def test_tiny_and_changed_images_are_borne():
     flow = CameraFlow()
     tiny = np.zeros((3, 4, 3), np.uint8)
-    assert flow.measure(tiny, NOWHERE).still
-    assert flow.measure(tiny, NOWHERE).still
-    assert flow.measure(view(0, 0), NOWHERE).still
+    assert flow.measure(small_grey(tiny), NOWHERE).still
+    assert flow.measure(small_grey(tiny), NOWHERE).still
+    assert flow.measure(seen(0, 0), NOWHERE).still

@@ -24,7 +24,7 @@ def test_a_steady_run_is_one_chain_with_its_mean_velocity():
     assert chain.frames == 4
     assert chain.velocity == pytest.approx((13 / 3, 0.0))
     assert chain.strong == 1.0
-    assert chain.last.place == (113.0, 50.0)
+    assert [one.place[0] for one in chain.links] == [100, 104, 108, 113]
 
 
 def test_one_missed_frame_is_borne_and_two_are_not():
@@ -55,7 +55,14 @@ def proves(chain, expected, confirm=3):
 
 
 def chain(frames, velocity, strong):
-    return Chain(Candidate((0.0, 0.0), 1.0, True), frames, strong, velocity)
+    """A chain of so many frames, with that share of strong candidates."""
+    count = round(strong * frames)
+    return Chain(
+        tuple(
+            Candidate((velocity[0] * t, velocity[1] * t), 1.0, t < count, frames - 1.0 - t)
+            for t in range(frames)
+        )
+    )
 
 
 def test_what_moves_as_foretold_is_believed_soon():

@@ -54,3 +54,20 @@ def test_growth_is_measured_cautiously_and_bounded():
     assert drive(12, growth=1.01).growth() == pytest.approx(0.8 * 0.00995, abs=1e-4)
     assert drive(12, growth=1.1).growth() == pytest.approx(0.8 * 0.03)
     assert drive(7, growth=1.01).growth() == 0
+
+
+def test_sizes_of_the_last_sightings_can_be_left_out():
+    history = History(30.0)
+    for t in range(30):
+        history.age(1.0, STILL)
+        history.see((100.0 + 3 * t, 50.0), 1.0 if t < 25 else 0.6)
+    assert history.trend(0.0, projective=True, unsized=5.0).now()[1] == pytest.approx(1.0, abs=0.02)
+    assert history.trend(0.0, projective=True).now()[1] < 0.95
+
+
+def test_sightings_may_be_told_late():
+    late = History(30.0)
+    late.age(12.0, STILL)
+    for t in range(12):
+        late.see((100.0 + 3 * t, 50.0), 1.0, 11.0 - t)
+    assert late.trend(0.0, projective=True).now()[0] == pytest.approx((133.0, 50.0), abs=0.5)

@@ -58,10 +58,30 @@ def test_equal_weights_are_all_kept():
     assert (renewed.positions == base.positions).all()
 
 
-def test_they_go_half_way_to_a_better_estimate():
-    moved = around().drawn_towards((104.0, 50.0), (4.0, -1.0), (100.0, 50.0))
+def test_they_go_half_way_to_a_better_estimate_and_all_the_way_to_its_scale():
+    moved = around().drawn_towards((104.0, 50.0), (4.0, -1.0), 1.2)
     assert moved.place == pytest.approx((102.0, 50.0))
     assert moved.velocities.mean(axis=0) == pytest.approx([3.0, -1.0])
+    assert moved.scale == pytest.approx(1.2)
+
+
+@pytest.mark.parametrize("along", [True, False])
+def test_hidden_ones_advance_with_the_velocity_and_spread_along_it(along):
+    drifted = around().drifted(rng(), 1.0, (4.0, 0.0), 1.1, 0.5, along=along)
+    assert drifted.place == pytest.approx((104.0, 50.0), abs=0.15)
+    # A Rayleigh variable of mean m has a standard deviation of m sqrt(4 / pi - 1).
+    expected = 4.0 * (4 / np.pi - 1) ** 0.5 if along else 0.5
+    assert drifted.positions.std(axis=0) == pytest.approx([expected, 0.5], rel=0.05)
+    assert (drifted.scales == 1.1).all()
+
+
+def test_they_are_kept_in_the_image_and_between_sizes():
+    frame = np.zeros((40, 90, 3), np.uint8)
+    kept = around(Spread(30.0, 0.0, 0.5)).kept(frame, (1.0, 2.0))
+    assert kept.positions.min() >= 0.5
+    assert (kept.positions.max(axis=0) <= [89.5, 39.5]).all()
+    assert kept.scales.min() == 1.0
+    assert kept.scales.max() == 2.0
 
 
 def test_they_are_resampled_by_weight():

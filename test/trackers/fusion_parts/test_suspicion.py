@@ -6,8 +6,8 @@ from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion
 CLEAR = Likeness(0.95, 0.95, 0.8)
 
 
-def looks(following, colour=0.8):
-    return Likeness(following, following, colour)
+def looks(following, colour=0.8, anchor=0.9):
+    return Likeness(anchor, following, colour)
 
 
 def settled(frames=30):
@@ -20,7 +20,7 @@ def settled(frames=30):
 
 
 def ask(judge, likeness, off=0.05, half=0.9, **values):
-    settings = {"gate": True, "grey": False, "patience": 25, **values}
+    settings = {"gate": True, "grey": False, "patience": 25, "background": False, **values}
     return judge.judge(likeness, off, lambda: half, **settings)
 
 
@@ -91,3 +91,39 @@ def test_candidates_are_strong_or_fair_or_neither():
     assert judge.is_fair(looks(0.8))
     assert not judge.is_fair(looks(0.6))
     assert not judge.is_fair(looks(0.8, colour=0.4))
+
+
+def test_what_was_there_before_the_target_is_not_the_target():
+    verdict = ask(settled(), CLEAR, background=True)
+    assert not verdict.clear
+
+
+def test_an_anchor_that_has_sunk_is_a_doubt_though_the_following_template_went_along():
+    assert ask(settled(), looks(0.95, anchor=0.6)).clear
+    assert not ask(settled(), looks(0.95, anchor=0.4)).clear
+    assert ask(settled(5), looks(0.95, anchor=0.4)).clear
+
+
+def test_doubt_is_told_from_the_second_frame_on_and_until_looks_are_back():
+    judge = settled()
+    told = []
+    for likeness in [looks(0.7), looks(0.7), looks(0.83), looks(0.9), looks(0.7), CLEAR]:
+        ask(judge, likeness, half=0.9)
+        told.append(judge.doubtful)
+    assert told == [False, True, True, False, False, False]
+
+
+def test_a_reset_forgets_the_doubts():
+    judge = settled()
+    for _ in range(2):
+        ask(judge, looks(0.4, colour=0.5), half=0.5)
+    judge.reset()
+    assert judge.frames == 0
+    assert not judge.doubtful
+    assert not ask(judge, looks(0.4, colour=0.5), half=0.5).hidden
+
+
+def test_new_looks_are_told_once():
+    judge = settled()
+    renewed = [ask(judge, looks(0.8, colour=0.7), patience=3).renewed for _ in range(6)]
+    assert renewed == [False, False, False, True, False, False]
