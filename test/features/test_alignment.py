@@ -54,13 +54,13 @@ def test_light_takes_no_part():
     assert coefficient > 0.99
 
 
-def test_a_covered_corner_is_borne():
+def test_a_covered_corner_is_borne_where_the_scale_is_expected():
     def covered(patch):
         patch = patch.copy()
         patch[:8, :8] = 160
         return patch
 
-    x, y, scale, coefficient = aligned(covered)
+    x, y, scale, coefficient = aligned(covered, sigma=0.02)
     assert (x, y) == pytest.approx((0, 0), abs=0.5)
     assert scale == pytest.approx(1.0, abs=0.03)
     assert coefficient < 0.95
