@@ -3,7 +3,8 @@
 While the target is seen: camera motion, constant velocity, fused cues on a canonical region,
 adaptive resampling, judgement, learning. In doubt nothing is learnt, and the particles are held
 to the motion that clear frames foretell. While it is hidden: that motion goes on, particles drift
-along it, and a search widens with them. docs/fusion.md tells what each part is for.
+along it, and a search widens with them. In a turn before a still camera its blob is followed.
+docs/fusion.md tells what each part is for.
 """
 
 from __future__ import annotations
@@ -14,34 +15,26 @@ from typing import TypeAlias
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.camera_motion import CameraFlow, CameraMotion
-from vehicle_pf_tracker.features.frame import Frame, frame_size
-from vehicle_pf_tracker.features.small_grey import small_grey
+from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.window import is_outside, keep_inside
-from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
-from vehicle_pf_tracker.trackers.base import Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
-from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance, Likeness
-from vehicle_pf_tracker.trackers.fusion_parts.background import Background
+from vehicle_pf_tracker.trackers.base import Outcome
+from vehicle_pf_tracker.trackers.fusion_parts.appearance import Likeness
 from vehicle_pf_tracker.trackers.fusion_parts.candidates import Chain
-from vehicle_pf_tracker.trackers.fusion_parts.fine_alignment import FineAlignment
-from vehicle_pf_tracker.trackers.fusion_parts.history import History, Trend, carried
+from vehicle_pf_tracker.trackers.fusion_parts.emergence import Emergence
+from vehicle_pf_tracker.trackers.fusion_parts.history import History, Trend
 from vehicle_pf_tracker.trackers.fusion_parts.likelihood import Prior, log_likelihood
 from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles, Spread
 from vehicle_pf_tracker.trackers.fusion_parts.search import Foretold, Search
-from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion, Verdict
+from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Verdict
 from vehicle_pf_tracker.trackers.fusion_parts.view import View
+from vehicle_pf_tracker.trackers.fusion_state import FusionState
 
 Place: TypeAlias = tuple[float, float]
 
 _SIZES = tuple(1.07**step for step in (-1, 0, 1))
 _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
-_LEAST_EXTENT = 7.0
-"""px that the geometric mean of the sides of the box may shrink to."""
 _DEGENERATE = 0.4
 """Share of the particles below which the effective sample size is too small (P3)."""
 _YOUNG_FRAMES = 6
@@ -53,88 +46,22 @@ _ROLLED_BACK = 6.0
 _UNSIZED = 3.0
 """Sightings before the doubt whose sizes are not believed: half covered it looks smaller."""
 _RATE_IN_TURNS = 0.2
+_LOOKED_EVERY = 3
+"""Clear frames between two looks at the target's blob."""
+_SIGHTINGS_IN_TURNS = 6
 
 
-class FusionTracker(ParticleTracker[FusionParameters]):
+class FusionTracker(FusionState):
     """The flagship."""
-
-    def start(self, frame: Frame, box: Box) -> Estimate:
-        """Learn the target; see `Tracker.start`."""
-        estimate = super().start(frame, box)
-        self._place, self._scale, self._velocity = estimate.position, 1.0, (0.0, 0.0)
-        count = self.parameters.num_particles
-        still = Spread(0.0, 0.0, 0.0)
-        self._particles = Particles.around(self._rng, count, self._place, (0.0, 0.0), 1.0, still)
-        self._history = History(self._side)
-        self._suspicion = Suspicion()
-        self._search: Search | None = None
-        self._alignment = FineAlignment()
-        self._background = Background()
-        self._flow = CameraFlow()
-        self._small = small_grey(frame)
-        self._flow.measure(self._small, box)
-        self._trend: Trend | None = None
-        self._frames = 0
-        return estimate
-
-    def reconfigure(self, parameters: FusionParameters) -> None:
-        """Take new parameters; see `Tracker.reconfigure`."""
-        super().reconfigure(parameters)
-        if self._target is not None:
-            if parameters.cues != self._appearance.cues:
-                self._appearance.use(parameters.cues)
-            if len(self._particles.weights) != parameters.num_particles:
-                self._particles = self._particles.resampled(self._rng, parameters.num_particles)
-
-    def _learn(self) -> None:
-        target, window = self.target, self.parameters.window
-        self._size = target.box.width, target.box.height
-        learnt = window.width or self._size[0], window.height or self._size[1]
-        self._appearance = Appearance(target.patch, target.centre, learnt, self.parameters.cues)
-
-    def _scatter(self, centre: Place) -> Array:
-        return np.asarray(centre) + sample_normal(self._rng, self.parameters.num_particles, 0.5)
-
-    @property
-    def _side(self) -> float:
-        """Geometric mean of the sides of the first box, px."""
-        return math.sqrt(self._size[0] * self._size[1])
-
-    @property
-    def _extent(self) -> float:
-        """The same of the present box."""
-        return self._side * self._scale
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         _ = self.target  # says what is wrong before the start
         elapsed = min(elapsed, _LONGEST_STEP)
-        self._small = small_grey(frame)
-        self._carry(self._camera_motion(), elapsed)
-        self._frames += 1
-        if self._search is None or self._trend is None:
-            return self._follow(frame, elapsed)
-        return self._look_for(frame, self._trend, self._search, elapsed)
-
-    def _camera_motion(self) -> CameraMotion:
-        if not self.parameters.motion.camera:
-            return CameraMotion()
-        return self._flow.measure(self._small, self._box(self._place))
-
-    def _carry(self, motion: CameraMotion, elapsed: float) -> None:
-        """Take everything that is known along with the background and with time."""
-        self._history.age(elapsed, motion)
-        if self._search is not None:
-            self._search.age(elapsed, motion)
-        if self._trend is not None:
-            self._trend = self._trend.after(elapsed)
-        if motion.still:
-            return
-        self._background.forget()
-        self._particles = self._particles.carried(motion)
-        self._place = carried(self._place, motion)
-        self._scale *= motion.scale
-        if self._trend is not None:
-            self._trend = self._trend.carried(motion)
+        self._pass_time(frame, elapsed)
+        if self._search is not None and self._trend is not None:
+            return self._look_for(frame, self._trend, self._search, elapsed)
+        turned = self._turn(frame, elapsed) if self._turns.active else None
+        return turned or self._follow(frame, elapsed)
 
     # ---- in sight
 
@@ -148,6 +75,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         likeness = self._appearance.compare(view, self._place, scale)
         verdict = self._judge_looks(view, likeness)
         self._learn_from(view, likeness, verdict)
+        if self._begins_to_turn(frame, verdict):
+            return self._turned(frame)
         told = self._place
         if verdict.hidden:
             self._lose_sight(frame)
@@ -176,16 +105,6 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             young * motion.velocity_sigma * self._extent,
             motion.scale_sigma,
         )
-
-    def _kept(self, frame: Frame, particles: Particles) -> Particles:
-        """Keep places in the image, and sizes between a few px and the image's."""
-        return particles.kept(frame, self._scale_bounds(frame))
-
-    def _scale_bounds(self, frame: Frame) -> tuple[float, float]:
-        if not self.parameters.motion.scale:
-            return 1.0, 1.0
-        largest = 2.0 * max(frame_size(frame)) / max(self._size)
-        return min(_LEAST_EXTENT / self._side, 1.0), max(largest, 1.0)
 
     def _look_around(self, frame: Frame, place: Place, scale: float) -> View:
         reach = 0.6 * max(self._size) * scale
@@ -248,8 +167,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._place, self._scale = (x, y), scale
 
     def _judge_looks(self, view: View, likeness: Likeness) -> Verdict:
-        if self._frames == 1:
-            self._suspicion.settle(likeness)
+        self._suspicion.settle(likeness)
         hiding = self.parameters.hiding
         background = hiding.background and self._background.shows(
             self._small, self._box(self._place)
@@ -296,6 +214,57 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         """Evidence that no mode but `TRACKING` is left with."""
         return 0.99 * self.parameters.evidence.occluded_below * self._judge.level
 
+    # ---- in a turn
+
+    def _begins_to_turn(self, frame: Frame, verdict: Verdict) -> bool:
+        """Look now and then how the target's blob lies; in doubt, whether it leaves its path."""
+        if not self.parameters.hiding.turns or (verdict.clear and self._frames % _LOOKED_EVERY):
+            return False
+        box = self._turns.notice(
+            frame, self._box(self._place), self._appearance.mean_share, clear=verdict.clear
+        )
+        if box is not None:
+            self._adopt(frame, box)
+        return box is not None
+
+    def _turn(self, frame: Frame, elapsed: float) -> Outcome | None:
+        """Follow the blob of a turning target; None where it is lost."""
+        (x, y), (u, v) = self._place, self._velocity
+        ahead = self._inside(frame, (x + u * elapsed, y + v * elapsed))
+        box = self._turns.follow(frame, self._box(ahead), self._appearance.mean_share)
+        if box is not None:
+            self._adopt(frame, box)
+            if elapsed > 0:
+                moved = (self._place[0] - x) / elapsed, (self._place[1] - y) / elapsed
+                self._velocity = 0.5 * (u + moved[0]), 0.5 * (v + moved[1])
+            self._history.keep(_SIGHTINGS_IN_TURNS)
+            self._history.see(self._place, 1.0)
+        elif self._turns.active:
+            self._place = ahead
+        else:
+            return None
+        return self._turned(frame)
+
+    def _turned(self, frame: Frame) -> Outcome:
+        self._draw_around(frame, 0.05)
+        evidence = max(self._judge.level, self.parameters.evidence.clear_above)
+        cloud = self._particles.cloud()
+        return Outcome(cloud, self._place, self._velocity, "turning", evidence, {})
+
+    def _emerges(self, frame: Frame, trend: Trend, elapsed: float) -> bool:
+        """Look whether the hidden target comes out of a turn, off its foretold path."""
+        if self._emergence is None or not self.parameters.hiding.turns:
+            return False
+        colour = self._appearance.mean_share
+        emerged = self._emergence.look(frame, trend, elapsed, colour)
+        if emerged is None:
+            return False
+        self._turns.begin(emerged.blob.area)
+        self._adopt(frame, self._turns.box_of(emerged.blob))
+        self._velocity = emerged.velocity
+        self._history = History(self._side)
+        return True
+
     # ---- hidden
 
     def _lose_sight(self, frame: Frame) -> None:
@@ -310,15 +279,9 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         )
         self._search = Search(self._appearance, self._suspicion, self._background)
         self._suspicion.reset()
-        self._scatter_on(frame, self._trend)
         self._foretell(frame, self._trend)
-
-    def _scatter_on(self, frame: Frame, trend: Trend) -> None:
-        place, scale = trend.now()
-        spread = Spread(0.1 * self._side * scale, 0.0, 0.0)
-        count = self.parameters.num_particles
-        particles = Particles.around(self._rng, count, place, trend.velocity(), scale, spread)
-        self._particles = self._kept(frame, particles)
+        self._draw_around(frame, 0.1)
+        self._emergence = Emergence(self._turns, self._extent)
 
     def _foretell(self, frame: Frame, trend: Trend) -> bool:
         """Move on to the foretold state; tells whether its place is in the image."""
@@ -329,10 +292,6 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         x, y = keep_inside(frame, np.asarray(place)).tolist()
         self._place = x, y
         return not is_outside(frame, *place)
-
-    def _inside(self, frame: Frame, place: Place) -> Place:
-        x, y = keep_inside(frame, np.asarray(place)).tolist()
-        return x, y
 
     def _look_for(self, frame: Frame, trend: Trend, search: Search, elapsed: float) -> Outcome:
         """Let the particles drift on, and look for the target where they are."""
@@ -353,6 +312,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         chain = search.proof(foretold, parameters.hiding.confirm)
         if chain is not None:
             return self._come_back(frame, chain)
+        if self._emerges(frame, trend, elapsed):
+            return self._turned(frame)
         return Outcome(
             self._particles.cloud(), self._place, self._velocity, "hidden",
             min(share, self._ceiling), {}, left_image=not inside,
@@ -367,26 +328,13 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             0.5 * (self._velocity[0] + chain.velocity[0]),
             0.5 * (self._velocity[1] + chain.velocity[1]),
         )
-        spread = Spread(0.05 * self._extent, 0.0, 0.0)
-        count = self.parameters.num_particles
-        particles = Particles.around(
-            self._rng, count, self._place, self._velocity, self._scale, spread
-        )
-        self._particles = self._kept(frame, particles)
+        self._draw_around(frame, 0.05)
         for one in chain.links:
             self._history.see(one.place, one.scale, one.age)
-        self._search = self._trend = None
+        self._search = self._emergence = self._trend = None
         self._suspicion.reset()
         cloud = self._particles.cloud()
         return Outcome(cloud, self._place, self._velocity, "found", 1.0, {})
-
-    def _box(self, place: Place) -> Box:
-        return Box.around(place, self._size[0] * self._scale, self._size[1] * self._scale)
-
-    def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
-        estimate = super()._estimate(outcome, mode, confidence, began)
-        box = self._box(outcome.position) if outcome.regime != "start" else self.target.box
-        return replace(estimate, box=box)
 
 
 def _told(likeness: Likeness) -> dict[str, float]:

@@ -119,6 +119,11 @@ class HidingParameters:
         True,
         "Off: what a still camera saw at a place before the vehicle came there tells nothing.",
     )
+    turns: bool = parameter(
+        True,
+        "Off: a vehicle that turns before a still camera is not followed by its outline, nor "
+        "looked for where it comes out of a turn.",
+    )
     search: bool = parameter(
         True, "Off: a hidden target is looked for at its predicted place alone."
     )

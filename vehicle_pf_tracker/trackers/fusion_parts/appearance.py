@@ -59,6 +59,9 @@ _WORSE = 0.02
 _SLACK = 2
 """px of the region by which a half may be off its place in the whole."""
 _COLOURS_LEARNT_EVERY = 4
+_OLD_TARGET = 0.9
+_OLD_BACKGROUND = 0.8
+"""What stays of the histograms when the box takes another shape."""
 _BACKGROUND_RATE = 3.0
 """The surroundings change more often than the target."""
 
@@ -102,9 +105,19 @@ class Appearance:
         Of the target's box, px.
     cues : CueParameters
         Which cues take part, and how they are learnt.
+    grey : bool, optional
+        Whether the video has no colours; by default that is seen from the frame.
     """
 
-    def __init__(self, frame: Frame, centre: Place, size: Place, cues: CueParameters) -> None:
+    def __init__(
+        self,
+        frame: Frame,
+        centre: Place,
+        size: Place,
+        cues: CueParameters,
+        *,
+        grey: bool | None = None,
+    ) -> None:
         self.size = size
         self._zoom = cues.side / math.sqrt(size[0] * size[1])
         self._shape = (
@@ -114,10 +127,23 @@ class Appearance:
         self.use(cues)
         self._frames = 0
         region = self._cut(frame, centre, 1.0, (0.75 * size[0], 0.75 * size[1]))
-        self.grey = is_grey(region.image)
+        self.grey = is_grey(region.image) if grey is None else grey
         self._anchor = self._patch(region, centre, 1.0)
         self._following = self._anchor.copy()
         self._target, self._background = self._histograms(region, centre, 1.0)
+
+    def reshaped(self, frame: Frame, centre: Place, size: Place) -> Appearance:
+        """Learn the templates anew in a box of another shape; the colours mostly stay."""
+        other = Appearance(frame, centre, size, self.cues, grey=self.grey)
+        other.weights = self.weights
+        other._target += _OLD_TARGET * (self._target - other._target)
+        other._background += _OLD_BACKGROUND * (self._background - other._background)
+        return other
+
+    def mean_share(self, pixels: Frame) -> float:
+        """Mean share of pixels (n, m, 3) that speaks for the target, 0 to 1."""
+        share = shares(self._target, self._background)
+        return float(share[colour_bins(pixels, grey=self.grey)].mean())
 
     def use(self, cues: CueParameters) -> None:
         """Let other cues take part from now on."""

@@ -94,6 +94,17 @@ class History:
         """Keep a confident sighting, of this frame or of one `age` frames ago."""
         self._sightings.append(Sighting(place, scale, self._now - age))
 
+    def keep(self, count: int) -> None:
+        """Forget all but the latest `count` sightings."""
+        while len(self._sightings) > count:
+            self._sightings.popleft()
+
+    def reshape(self, size: float) -> None:
+        """Count scales from a box of another size on, px."""
+        self._size = size
+        for index, one in enumerate(self._sightings):
+            self._sightings[index] = Sighting(one.place, 1.0, one.time)
+
     def trend(self, before: float, *, projective: bool, unsized: float = 0.0) -> Trend | None:
         """Fit a motion to the sightings that are at least `before` frames old.
 

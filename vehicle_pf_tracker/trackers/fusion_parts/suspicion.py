@@ -92,7 +92,9 @@ class Suspicion:
         self._gone = 0
 
     def settle(self, likeness: Likeness) -> None:
-        """Take the first frame's looks for the clear level."""
+        """Take the first looks for the clear level, at the start and after `renew`."""
+        if self._level is not None:
+            return
         self._level, self._colour = likeness.following, likeness.colour
         self._anchor = likeness.anchor
 
@@ -200,6 +202,11 @@ class Suspicion:
         """Forget the doubts; the levels stay."""
         self.frames = self._gone = 0
         self.doubtful = False
+
+    def renew(self) -> None:
+        """Forget the levels too, since the looks have changed."""
+        self.reset()
+        self._level, self._deviation = None, 0.05
 
     def is_clear(self, likeness: Likeness) -> bool:
         """Whether looks are as they use to be."""
