@@ -53,6 +53,15 @@ def test_comes_back_from_total_occlusions_and_says_when_it_was_hidden(name):
     assert back >= 2
 
 
+@pytest.mark.parametrize("name", ["turn", "turn_occluded"])
+def test_follows_a_turn_and_finds_a_vehicle_behind_one(name):
+    ends = []
+    for seed in (4, 5):
+        estimates, truths = run(make_scene(name, seed=seed))
+        ends.append(estimates[-1].mode is Mode.TRACKING and distance(estimates[-1], truths[-1]) < 8)
+    assert all(ends)
+
+
 def test_never_claims_a_twin():
     estimates, truths = run(make_scene("twin", seed=3))
     assert max(distance(*pair) for pair in zip(estimates, truths, strict=True)) < 10
@@ -92,7 +101,8 @@ def test_goes_back_to_the_confident_frames_when_it_loses_sight():
     [
         "cues.anchor", "cues.following", "cues.colour", "cues.parts", "cues.adaptive",
         "motion.camera", "motion.scale", "hiding.retrospect", "hiding.projective",
-        "hiding.drift", "hiding.gate", "hiding.search",
+        "hiding.drift", "hiding.gate", "hiding.search", "hiding.background", "hiding.turns",
+        "cues.alignment",
     ],
 )  # fmt: skip
 def test_works_with_each_part_switched_off(off):

@@ -78,14 +78,15 @@ class FusionTracker(FusionState):
         if self._begins_to_turn(frame, verdict):
             return self._turned(frame)
         told = self._place
-        if verdict.hidden:
+        hidden = verdict.hidden and not self._turns.undecided
+        if hidden:
             self._lose_sight(frame)
             told = self._place
         elif verdict.gone and self._trend is not None:
             told = self._inside(frame, self._trend.now()[0])
         return Outcome(
             self._particles.cloud(sound=sound), told, self._velocity,
-            "hidden" if verdict.hidden else "seen", self._evidence(likeness, verdict),
+            "hidden" if hidden else "seen", self._evidence(likeness, verdict),
             _told(likeness), passes, redrawn, left_image,
         )  # fmt: skip
 

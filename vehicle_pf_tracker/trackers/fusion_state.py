@@ -38,6 +38,8 @@ _STANDS_STILL = 5
 class FusionState(ParticleTracker[FusionParameters]):
     """Start, reconfiguration and bookkeeping of `fusion`; its steps are in `FusionTracker`."""
 
+    _particles: Particles
+
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `Tracker.start`."""
         estimate = super().start(frame, box)

@@ -110,3 +110,15 @@ def test_colours_are_learnt_every_fourth_frame():
         shares.append(one.compare(look(one, frame), CENTRE, 1.0).colour)
     assert shares[0] == shares[1] == shares[2]
     assert shares[3] > shares[2] + 0.1
+
+
+def test_another_shape_has_its_own_templates_and_mostly_the_old_colours():
+    one = appearance()
+    other = one.reshaped(street(), (80.0, 60.0), (16.0, 24.0))
+    assert other.size == (16.0, 24.0)
+    view = other.look(street(), (80.0, 60.0), 1.0, 12.0, (1.0,))
+    assert other.compare(view, (80.0, 60.0), 1.0).anchor > 0.95
+    vehicle = street()[50:70, 65:95]
+    assert other.mean_share(vehicle) == pytest.approx(one.mean_share(vehicle), abs=0.1)
+    assert one.mean_share(vehicle) > 0.8
+    assert one.mean_share(street()[:20]) < 0.2

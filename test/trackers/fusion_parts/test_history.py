@@ -71,3 +71,11 @@ def test_sightings_may_be_told_late():
     for t in range(12):
         late.see((100.0 + 3 * t, 50.0), 1.0, 11.0 - t)
     assert late.trend(0.0, projective=True).now()[0] == pytest.approx((133.0, 50.0), abs=0.5)
+
+
+def test_another_shape_counts_scales_anew_and_few_sightings_are_kept():
+    history = drive(20, growth=1.02)
+    history.reshape(50.0)
+    assert history.trend(0.0, projective=True).now()[1] == pytest.approx(1.0)
+    history.keep(3)
+    assert history.trend(0.0, projective=True) is None

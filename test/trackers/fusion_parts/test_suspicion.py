@@ -127,3 +127,12 @@ def test_new_looks_are_told_once():
     judge = settled()
     renewed = [ask(judge, looks(0.8, colour=0.7), patience=3).renewed for _ in range(6)]
     assert renewed == [False, False, False, True, False, False]
+
+
+def test_renewed_it_settles_anew():
+    judge = settled()
+    judge.renew()
+    judge.settle(looks(0.6, colour=0.5, anchor=0.6))
+    judge.settle(CLEAR)  # only the first counts
+    assert judge.level == 0.6
+    assert ask(judge, looks(0.58, colour=0.5, anchor=0.6)).clear

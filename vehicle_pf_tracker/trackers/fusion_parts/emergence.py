@@ -95,10 +95,9 @@ class Emergence:
         for track in self._tracks:
             last = track[-1]
             (u, v), (wide, high) = last.blob.centre, last.blob.size
-            near = (
-                abs(x - u) < (width + wide) / 4 + speed and abs(y - v) < (height + high) / 4 + speed
-            )
-            if near and self._time - last.time <= _GAP:
+            near_x = abs(x - u) < (width + wide) / 4 + speed
+            near_y = abs(y - v) < (height + high) / 4 + speed
+            if near_x and near_y and self._time - last.time <= _GAP:
                 return [*track, now]
         return [now]
 

@@ -147,7 +147,7 @@ class Foreground:
             self._unknown = None
 
     def blobs(self, frame: Frame, span: Span, least: float) -> list[Blob]:
-        """Connected foreground of at least `least` px² in a part of the image."""
+        """Find connected foreground of at least `least` px² in a part of the image."""
         width, height = span.right - span.left, span.bottom - span.top
         if min(width, height) < _LEAST_WINDOW:
             return []
@@ -170,7 +170,7 @@ class Foreground:
         known = self._background[rows, columns]
         away = cv2.absdiff(seen, np.ascontiguousarray(known)).max(axis=2)
         mask = ((away > _DIFFERENT) & self._known[rows, columns]).astype(np.uint8)
-        mask = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((2, 2), np.uint8))
-        return np.asarray(
-            cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8)), np.uint8
-        )
+        pair, three = np.ones((2, 2), np.uint8), np.ones((3, 3), np.uint8)
+        # An even kernel is anchored at one corner and then at the other, or it moves the mask.
+        mask = cv2.dilate(cv2.erode(mask, pair, anchor=(0, 0)), pair, anchor=(1, 1))
+        return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, three), np.uint8)

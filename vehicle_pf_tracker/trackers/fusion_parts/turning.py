@@ -101,6 +101,11 @@ class Turns:
             self.foreground.learn(frame, target)
 
     @property
+    def undecided(self) -> bool:
+        """Whether the next frame may show that what seems an occlusion is a turn."""
+        return self._votes > 0
+
+    @property
     def usual_area(self) -> float | None:
         """Area of the blob in clear frames, px²."""
         return self._usual.area if self._usual is not None else None
@@ -135,7 +140,7 @@ class Turns:
         if self._votes < _VOTES:
             return None
         self.begin(blob.area)
-        return self._box_of(blob)
+        return self.box_of(blob)
 
     def begin(self, area: float) -> None:
         """Follow the blob, of `area` px², from now on."""
@@ -158,7 +163,7 @@ class Turns:
             return None
         self._misses = 0
         self._area += 0.3 * (blob.area - self._area)
-        box = self._box_of(blob)
+        box = self.box_of(blob)
         self._boxes = [*self._boxes[1 - _STRAIGHT_FRAMES :], box]
         if len(self._boxes) == _STRAIGHT_FRAMES and _is_straight(self._boxes):
             self.forget()
@@ -166,9 +171,6 @@ class Turns:
 
     def box_of(self, blob: Blob) -> Box:
         """Box of a vehicle that looks like this blob: without what is usually its shadow."""
-        return self._box_of(blob)
-
-    def _box_of(self, blob: Blob) -> Box:
         usual = self._usual.offsets if self._usual is not None else blob.edges
         rim = self._rim * _side(usual)
         left, top, right, bottom = (blob.edges - rim).tolist()
@@ -184,7 +186,7 @@ class Turns:
         return Box.around((x + (left + right) / 2, y + (top + bottom) / 2), width, height)
 
     def _blob(self, frame: Frame, box: Box) -> Blob | None:
-        """Foreground of the target; None if there is none, or it goes on beyond what is looked at."""
+        """Foreground of the target; None if there is none, or it goes on beyond the window."""
         if self.foreground is None:
             return None
         span, own = around(frame, box, _LOOKED_AT), around(frame, box, _BELONGS)
@@ -226,13 +228,13 @@ class Turns:
         foretold = sides.mean(axis=0) + slopes * (self._time - times.mean())
         velocity = (slopes[:2] + slopes[2:]) / 2
         speed, size = float(np.hypot(*velocity)), _side(foretold)
-        if speed < _MOVES * size or not 0.75 * usual.area < blob.area < 1.35 * usual.area:
+        if speed < _MOVES * size or not 0.6 * usual.area < blob.area < 1.35 * usual.area:
             return False
         if colour(blob.pixels) < 0.6 * usual.colour:
             return False
         across = np.array([-velocity[1], velocity[0]]) / speed
         low, high = np.subtract(_extent(blob.edges, across), _extent(foretold, across)).tolist()
-        return low * high > 0 and min(abs(low), abs(high)) > _ASIDE * size
+        return bool(low * high > 0 and min(abs(low), abs(high)) > _ASIDE * size)
 
 
 def _within(blob: Blob, span: Span) -> bool:
@@ -244,7 +246,7 @@ def _goes_on(frame: Frame, blob: Blob, span: Span) -> bool:
     """Whether a blob reaches the border of what was looked at, other than that of the image."""
     width, height = frame_size(frame)
     left, top, right, bottom = blob.edges.tolist()
-    return (
+    return bool(
         (left <= span.left and left > 0)
         or (top <= span.top and top > 0)
         or (right >= span.right and right < width)
