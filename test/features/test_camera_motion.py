@@ -4,9 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
+from vehicle_pf_tracker.features import camera_motion
 from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.camera_motion import CameraFlow, CameraMotion, fit_camera_motion
-from vehicle_pf_tracker.features.small_grey import small_grey
+from vehicle_pf_tracker.features.small_grey import SmallGrey, small_grey
 
 RNG = np.random.default_rng(5)
 TEXTURE = cv2.GaussianBlur(RNG.integers(0, 255, (400, 500, 3)).astype(np.uint8), (0, 0), 2)
@@ -83,3 +84,19 @@ def test_tiny_and_changed_images_are_borne():
     assert flow.measure(small_grey(tiny), NOWHERE).still
     assert flow.measure(small_grey(tiny), NOWHERE).still
     assert flow.measure(seen(0, 0), NOWHERE).still
+
+
+def test_a_mounted_camera_is_measured_seldom_and_its_jump_at_once(monkeypatch):
+    flow, tracked = CameraFlow(), []
+    track = camera_motion._track
+    monkeypatch.setattr(
+        camera_motion, "_track", lambda *images: tracked.append(1) or track(*images)
+    )
+    noise = np.random.default_rng(2)
+    for _ in range(90):
+        shown = seen(0, 0)
+        noisy = np.clip(shown.image + noise.normal(0, 1.5, shown.image.shape), 0, 255)
+        assert flow.measure(SmallGrey(noisy.astype(np.uint8), shown.zoom), NOWHERE).still
+    assert 30 <= len(tracked) <= 50
+    jump = flow.measure(seen(5, -3), NOWHERE)
+    assert jump.shift == pytest.approx((-5, 3), abs=0.3)

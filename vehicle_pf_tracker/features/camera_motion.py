@@ -20,6 +20,15 @@ _BORDER = 6
 _LEAST_STRENGTH = 1e-4
 _REFRESHED_AFTER = 5
 """Frames that corners are followed before others are found."""
+_WEAR_IN_PLACE = 1 / 3
+"""What a frame counts for in this in which they stay where they are."""
+_STANDS_AFTER = 30
+"""Frames of measured stillness after which the camera is taken to be mounted, and only"""
+_CHECKED_EVERY = 5
+"""every fifth frame is measured, unless corners change."""
+_UNCHANGED = 4.0
+"""Mean change around a corner in grey levels below which it has not moved: noise, no edge."""
+_NEIGHBOURHOOD = (5, 5)
 _CLEARANCE = 0.75
 """Distance of corners from the target's centre, of its size."""
 _AGREEING_PX = 0.7
@@ -96,7 +105,12 @@ class CameraFlow:
     def __init__(self) -> None:
         self._last: npt.NDArray[np.uint8] | None = None
         self._corners = np.empty((0, 1, 2), np.float32)
-        self._age = 0
+        self._age = 0.0
+        self._still = 0
+
+    @property
+    def _is_mounted(self) -> bool:
+        return self._still >= _STANDS_AFTER and self._still % _CHECKED_EVERY != 0
 
     def measure(self, small: SmallGrey, target: Box) -> CameraMotion:
         """Motion since the last frame shown; none for the first one.
@@ -115,11 +129,16 @@ class CameraFlow:
         corners = self._background(last, target, zoom)
         if len(corners) < _LEAST_CORNERS:
             return CameraMotion()
+        if self._is_mounted and _stand(last, reduced, corners):
+            self._age += _WEAR_IN_PLACE - 1
+            self._still += 1
+            return CameraMotion()
         moved, found = _track(last, reduced, corners)
         kept = found.ravel() > 0
         self._corners = np.ascontiguousarray(moved[kept])
         before = corners[kept].reshape(-1, 2).astype(np.float64)
         motion = fit_camera_motion(before, moved[kept].reshape(-1, 2).astype(np.float64))
+        self._still = self._still + 1 if motion.still else 0
         x, y = motion.shift
         return CameraMotion((x / zoom, y / zoom), motion.scale)
 
@@ -129,12 +148,23 @@ class CameraFlow:
         """Corners outside the target, found afresh now and then, (N, 1, 2)."""
         self._age += 1
         if self._age >= _REFRESHED_AFTER or len(self._corners) < _GRID[0] * _GRID[1] // 3:
-            self._corners, self._age = _find_corners(grey), 0
+            self._corners, self._age = _find_corners(grey), 0.0
         x, y = self._corners[:, 0, 0] / zoom, self._corners[:, 0, 1] / zoom
         middle_x, middle_y = target.centre
         outside = np.abs(x - middle_x) > _CLEARANCE * target.width
         outside |= np.abs(y - middle_y) > _CLEARANCE * target.height
         return np.ascontiguousarray(self._corners[outside])
+
+
+def _stand(
+    last: npt.NDArray[np.uint8], present: npt.NDArray[np.uint8], corners: npt.NDArray[np.float32]
+) -> bool:
+    """Whether so many corners look unchanged that flow need not be measured: the usual case."""
+    change = cv2.boxFilter(cv2.absdiff(last, present), cv2.CV_32F, _NEIGHBOURHOOD)
+    places = np.rint(corners[:, 0]).astype(np.intp)
+    places = np.clip(places, 0, (present.shape[1] - 1, present.shape[0] - 1))
+    unchanged = change[places[:, 1], places[:, 0]] < _UNCHANGED
+    return bool(unchanged.mean() >= _PREFERENCE)
 
 
 def _track(
