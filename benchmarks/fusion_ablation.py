@@ -1,6 +1,6 @@
 """What each part of `fusion` buys: every part switched off in turn, on what it was not tuned on.
 
-    python benchmarks/fusion_ablation.py ../shared/sequences
+    python -m benchmarks.fusion_ablation ../shared/sequences
 
 Every row runs `fusion` with one switch turned, on three real sequences that took no part in its
 making and on synthetic scenes of seeds that did not either.
@@ -9,32 +9,16 @@ making and on synthetic scenes of seeds that did not either.
 from __future__ import annotations
 
 import argparse
-import statistics
-import tempfile
+import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import cache, partial
 from pathlib import Path
-from typing import TypeAlias
 
-from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.offline import OfflineTracker
-from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.recordings.importing import import_recording
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.truth import Truth
-from vehicle_pf_tracker.scenes.catalogue import make_scene
-from vehicle_pf_tracker.trackers.parameters import from_mapping
-from vehicle_pf_tracker.trackers.registry import find_variant
+from benchmarks import fusion_tables as tables
+from benchmarks.fusion_runs import HELD_OUT, Footage, Run, find_sequence, run, scene, sequence
+from vehicle_pf_tracker.features.errors import InputError
 
-Footage: TypeAlias = tuple[list[tuple[int, Frame | None]], Sequence[Truth]]
-
-HELD_OUT = (
-    "cdnet_highway/car_e",
-    "m6_dual_carriageway/red_car",
-    "semi_synthetic/cdnet_pole_partial",
-)
 SCENES = ("bridge", "bus")
 OFF: dict[str, dict[str, object]] = {
     "all parts": {},
@@ -43,6 +27,7 @@ OFF: dict[str, dict[str, object]] = {
     "no templates": {"cues.anchor": False, "cues.following": False},
     "no colour": {"cues.colour": False},
     "no parts": {"cues.parts": False},
+    "no fine alignment": {"cues.alignment": False},
     "fixed weights of cues": {"cues.adaptive": False},
     "no scale": {"motion.scale": False},
     "no camera motion": {"motion.camera": False},
@@ -50,68 +35,70 @@ OFF: dict[str, dict[str, object]] = {
     "no perspective": {"hiding.projective": False},
     "no drift": {"hiding.drift": False},
     "no gate on the path": {"hiding.gate": False},
+    "no background": {"hiding.background": False},
+    "no handling of turns": {"hiding.turns": False},
     "no search": {"hiding.search": False},
     "no resampling in a frame": {"resampling_passes": 0},
 }
+COLUMNS = (
+    "on target, real", "RMSE real, px", "clear, real",
+    "on target, scenes", "RMSE scenes, px", "recovered", "hidden, scenes",
+)  # fmt: skip
 
 
-def main() -> None:
-    """Run all rows and print the table."""
+def main() -> int:
+    """Run all rows and print the table; 1 where a sequence or a scene is missing."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("--scenes", nargs="*", default=SCENES)
+    parser.add_argument("--names", nargs="*", default=HELD_OUT, metavar="SEQUENCE")
+    parser.add_argument("--scenes", nargs="*", default=SCENES, metavar="SCENE")
+    parser.add_argument("--seeds", type=int, default=2)
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--processes", type=int, default=2)
     args = parser.parse_args()
-    run = partial(table_row, folder=args.folder, seeds=args.seeds, scenes=tuple(args.scenes))
-    print("| part | on target, held out | RMSE held out, px | on target, scenes | recovered |")
-    print("|---|---:|---:|---:|---:|")
-    with ProcessPoolExecutor(2) as pool:
-        for line in pool.map(run, OFF):
-            print(line, flush=True)
+    seeds = range(args.first_seed, args.first_seed + args.seeds)
+    try:
+        folders = [find_sequence(args.folder, name) for name in args.names]
+        measured = partial(table_row, folders=folders, scenes=args.scenes, seeds=seeds)
+        print(tables.header("part", COLUMNS), flush=True)
+        with ProcessPoolExecutor(args.processes) as pool:
+            for line in pool.map(measured, OFF):
+                print(line, flush=True)
+    except InputError as error:
+        print(f"fusion_ablation: {error}", file=sys.stderr)
+        return 1
+    return 0
 
 
-def table_row(part: str, folder: Path, seeds: int, scenes: tuple[str, ...]) -> str:
+def table_row(part: str, folders: Sequence[Path], scenes: Sequence[str], seeds: range) -> str:
     """Measure with `part` off and return a line of the table."""
-    real = [_measured(part, sequence(folder / name), s) for name in HELD_OUT for s in range(seeds)]
-    made = [_measured(part, scene(name, s), s) for name in scenes for s in range(seeds)]
-    judged = [one for _, _, recovered in made for one in recovered if one is not None]
-    cells = [
-        part,
-        f"{statistics.fmean(share for share, _, _ in real):.3f}",
-        f"{statistics.fmean(rmse for _, rmse, _ in real):.1f}",
-        f"{statistics.fmean(share for share, _, _ in made):.3f}",
-        f"{sum(judged)} of {len(judged)}",
+    real = [run(_sequence(one), seed, OFF[part]) for one in folders for seed in seeds]
+    made = [run(_scene(name, seed), seed, OFF[part]) for name in scenes for seed in seeds]
+    return tables.line([part, *cells(real, made)])
+
+
+def cells(real: Sequence[Run], made: Sequence[Run]) -> list[str]:
+    """Sum up the runs on real video and on scenes; either may be empty."""
+    return [
+        tables.spread((one.on_target for one in real), 3),
+        tables.spread((one.rmse_px for one in real), 2),
+        tables.spread((one.clear for one in real), 2),
+        tables.spread((one.on_target for one in made), 3),
+        tables.spread((one.rmse_px for one in made), 2),
+        tables.recoveries(made)[0],
+        tables.spread((one.hidden for one in made), 2),
     ]
-    return f"| {' | '.join(cells)} |"
-
-
-def _measured(
-    part: str, footage: Footage, seed: int
-) -> tuple[float, float, tuple[bool | None, ...]]:
-    """Share of visible frames on the target, visible RMSE in px, and each recovery."""
-    frames, truth = footage
-    variant = find_variant("fusion")
-    parameters = from_mapping(variant.parameters, {**OFF[part], "seed": seed})
-    rows = list(OfflineTracker(variant, parameters, first_truth=truth[0]).rows(frames))
-    metrics = measure(score_frames(rows, truth))
-    return metrics.on_target or 0.0, metrics.rmse_visible_px or 0.0, metrics.recovered
 
 
 @cache
-def sequence(folder: Path) -> Footage:
-    """Import a real sequence."""
-    with tempfile.TemporaryDirectory() as scratch:
-        import_recording(folder, Path(scratch, "recording"))
-        recording = Recording(Path(scratch, "recording"))
-        return [(image.stamp_ns, image.frame) for image in recording.frames()], recording.truth()
+def _sequence(folder: Path) -> Footage:
+    return sequence(folder)
 
 
 @cache
-def scene(name: str, seed: int) -> Footage:
-    """Make a synthetic scene."""
-    made = list(make_scene(name, seed=seed).frames())
-    return [(one.truth.stamp_ns, one.frame) for one in made], [one.truth for one in made]
+def _scene(name: str, seed: int) -> Footage:
+    return scene(name, seed)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -45,8 +45,8 @@ class Own:
         Parameters over the defaults.
     count : int
         Trackers in this process.
-    size : str
-        Images that the drive's frames stand in, one of `SIZES`.
+    size : str or None
+        Images that the frames stand in, one of `SIZES`; None: they are taken as they are.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Own:
         settings: Mapping[str, Any] | None = None,
         *,
         count: int = 1,
-        size: str = "vga",
+        size: str | None = "vga",
     ) -> None:
         self._variant = find_variant(name)
         self._settings = settings or {}
@@ -71,18 +71,21 @@ class Own:
         ]
         self._trackers = [self._variant.tracker(own) for own in parameters]
         for tracker in self._trackers:
-            tracker.start(enlarged(frame, self._size), box)
+            tracker.start(self._shown(frame), box)
         self.centre = box.centre
 
     def step(self, frame: Frame) -> float:
         """Follow into the next frame."""
-        image = enlarged(frame, self._size)
+        image = self._shown(frame)
         before = time.thread_time()
         for tracker in self._trackers:
             estimate = tracker.step(image)
         seconds = time.thread_time() - before
         self.centre = estimate.position
         return seconds / self._count
+
+    def _shown(self, frame: Frame) -> Frame:
+        return frame if self._size is None else enlarged(frame, self._size)
 
 
 class Theirs:
