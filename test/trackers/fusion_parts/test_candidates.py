@@ -83,3 +83,10 @@ def test_what_moves_against_all_expectation_has_to_look_right_for_longest(veloci
     assert proves(chain(12, velocity, 0.9), (4.0, 0.0))
     assert not proves(chain(11, velocity, 0.9), (4.0, 0.0))
     assert not proves(chain(12, velocity, 0.75), (4.0, 0.0))
+
+
+@pytest.mark.parametrize(("away", "frames"), [(0.5, 3), (1.0, 3), (1.4, 5), (3.0, 13)])
+def test_what_is_further_away_has_to_last_for_longer(away, frames):
+    expected = (4.0, 0.0)
+    assert chain(frames, expected, 1.0).proves(expected, 1.0, 3, away)
+    assert not chain(frames - 1, expected, 1.0).proves(expected, 1.0, 3, away)

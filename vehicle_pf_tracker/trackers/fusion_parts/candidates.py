@@ -21,6 +21,8 @@ _PLAUSIBLE_FRAMES = 5
 _PLAUSIBLE_SHARE = 0.7
 _LOOKS_ALONE_FRAMES = 12
 _LOOKS_ALONE_SHARE = 0.8
+_FAR_TAKES_LONGER = 5.0
+"""Frames more, for each unit of distance beyond the first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +65,7 @@ class Chain:
         """Their mean velocity, px per frame."""
         return _velocity(self.links[0], self.links[-1])
 
-    def proves(self, expected: Place, tolerance: float, confirm: int) -> bool:
+    def proves(self, expected: Place, tolerance: float, confirm: int, away: float = 0.0) -> bool:
         """Whether these are the target.
 
         One that moves as foretold is believed soon; one that is only plausible has to look right
@@ -77,8 +79,12 @@ class Chain:
             Difference from it that is within the noise, px per frame.
         confirm : int
             Frames needed at best.
+        away : float
+            Distance from the foretold place, in units of what may be expected. A twin drives on
+            elsewhere as the target does: what is further away has to last until the target, if
+            that is another one, would have come back.
         """
-        if self.frames < confirm:
+        if self.frames < confirm + _FAR_TAKES_LONGER * max(away - 1.0, 0.0):
             return False
         if math.dist(self.velocity, expected) < tolerance:
             return True

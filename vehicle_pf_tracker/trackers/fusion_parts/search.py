@@ -150,6 +150,7 @@ class Search:
         chain = self._candidates.chain(foretold.extent)
         noise = max(0.03, 2 * self._suspicion.innovation) * foretold.extent
         tolerance = max(1.0, 0.35 * math.hypot(*foretold.velocity), noise)
-        if chain is None or not chain.proves(foretold.velocity, tolerance, confirm):
+        if chain is None:
             return None
-        return chain
+        away = math.dist(chain.links[-1].place, foretold.place) / self._near(foretold)
+        return chain if chain.proves(foretold.velocity, tolerance, confirm, away) else None
