@@ -47,7 +47,10 @@ def main() -> int:
             print(tables.header("sequence", COLUMNS), flush=True)
             for folder in folders:
                 frames, box = _readable(folder)
-                followers = {"fusion": Own("fusion", size=None), "csrt": Theirs(csrt)}
+                followers: dict[str, Follower] = {
+                    "fusion": Own("fusion", size=None),
+                    "csrt": Theirs(csrt),
+                }
                 times = step_times(followers, frames, box, range(args.passes))
                 print(row(folder.name, times["fusion"], times["csrt"]), flush=True)
     except InputError as error:
