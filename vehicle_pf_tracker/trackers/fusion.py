@@ -26,7 +26,7 @@ from vehicle_pf_tracker.trackers.fusion_parts.history import History, Trend
 from vehicle_pf_tracker.trackers.fusion_parts.likelihood import Prior, log_likelihood
 from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles, Spread
 from vehicle_pf_tracker.trackers.fusion_parts.search import Foretold, Search
-from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Verdict
+from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Sight, Verdict
 from vehicle_pf_tracker.trackers.fusion_parts.view import View
 from vehicle_pf_tracker.trackers.fusion_state import FusionState
 
@@ -180,15 +180,14 @@ class FusionTracker(FusionState):
                 1.0 + _DOUBTED, projective=hiding.projective, unsized=_UNSIZED
             )
         off = 0.0 if self._trend is None else math.dist(self._trend.now()[0], self._place)
-        return self._suspicion.judge(
+        sight = Sight(
             likeness,
             off / self._extent,
             lambda: self._appearance.best_half(view, self._place, self._scale),
-            gate=hiding.gate,
-            grey=self._appearance.grey,
-            patience=hiding.patience,
-            background=background,
+            background,
+            self._appearance.grey,
         )
+        return self._suspicion.judge(sight, gate=hiding.gate, patience=hiding.patience)
 
     def _learn_from(self, view: View, likeness: Likeness, verdict: Verdict) -> None:
         place, scale = self._place, self._scale

@@ -1,7 +1,7 @@
 """Doubt, hiding and forgiveness."""
 
 from vehicle_pf_tracker.trackers.fusion_parts.appearance import Likeness
-from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion
+from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Sight, Suspicion
 
 CLEAR = Likeness(0.95, 0.95, 0.8)
 
@@ -19,9 +19,9 @@ def settled(frames=30):
     return judge
 
 
-def ask(judge, likeness, off=0.05, half=0.9, **values):
-    settings = {"gate": True, "grey": False, "patience": 25, "background": False, **values}
-    return judge.judge(likeness, off, lambda: half, **settings)
+def ask(judge, likeness, off=0.05, half=0.9, *, gate=True, patience=25, **seen):
+    sight = Sight(likeness, off, lambda: half, **seen)
+    return judge.judge(sight, gate=gate, patience=patience)
 
 
 def test_usual_looks_are_clear():

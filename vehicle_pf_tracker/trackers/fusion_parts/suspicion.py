@@ -67,6 +67,31 @@ class Verdict:
     renewed: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """What is seen at an estimate.
+
+    Attributes
+    ----------
+    likeness : Likeness
+        Of the image there.
+    off : float
+        Distance from its foretold place, of the size.
+    best_half : callable
+        Gives the correlation of the half that is most alike; asked in doubt alone.
+    background : bool
+        Whether what is seen there was there before the target.
+    grey : bool
+        Whether the video has no colours.
+    """
+
+    likeness: Likeness
+    off: float
+    best_half: Callable[[], float]
+    background: bool = False
+    grey: bool = False
+
+
 class Suspicion:
     """Judges the estimates of one track against its levels in clear frames.
 
@@ -117,41 +142,20 @@ class Suspicion:
         alike = likeness.following > _GONE * self.level
         return alike and likeness.colour > _LEAST_COLOUR * self._colour
 
-    def judge(
-        self,
-        likeness: Likeness,
-        off: float,
-        best_half: Callable[[], float],
-        *,
-        gate: bool,
-        grey: bool,
-        patience: int,
-        background: bool,
-    ) -> Verdict:
+    def judge(self, sight: Sight, *, gate: bool, patience: int) -> Verdict:
         """Judge one estimate.
 
         Parameters
         ----------
-        likeness : Likeness
-            Of the image there.
-        off : float
-            Distance from its foretold place, of the size.
-        best_half : callable
-            Gives the correlation of the half that is most alike; asked in doubt alone.
+        sight : Sight
+            What is seen there.
         gate : bool
             Whether a place beside the foretold one tells of an occluder.
-        grey : bool
-            Whether the video has no colours.
         patience : int
             Frames of doubt on the foretold path after which the new looks are the target's.
-        background : bool
-            Whether what is seen there was there before the target.
         """
-        verdict = self._verdict(
-            likeness, off, best_half, gate=gate, grey=grey, patience=patience,
-            background=background,
-        )  # fmt: skip
-        self.doubtful = self._had_better_not_be_claimed(likeness)
+        verdict = self._verdict(sight, gate=gate, patience=patience)
+        self.doubtful = self._had_better_not_be_claimed(sight.likeness)
         return verdict
 
     def _had_better_not_be_claimed(self, likeness: Likeness) -> bool:
@@ -162,19 +166,10 @@ class Suspicion:
         unlike |= likeness.anchor < _DOUBTED_ANCHOR * self._anchor
         return unlike and self.frames >= _DOUBTED_AFTER
 
-    def _verdict(
-        self,
-        likeness: Likeness,
-        off: float,
-        best_half: Callable[[], float],
-        *,
-        gate: bool,
-        grey: bool,
-        patience: int,
-        background: bool,
-    ) -> Verdict:
+    def _verdict(self, sight: Sight, *, gate: bool, patience: int) -> Verdict:
+        likeness, off = sight.likeness, sight.off
         self._age += 1
-        if not background and self.is_clear(likeness):
+        if not sight.background and self.is_clear(likeness):
             self.frames = 0
             self.innovation += _INNOVATION_RATE * (min(off, _TURNING_OFF) - self.innovation)
             self._gone = max(self._gone - 1, 0)
@@ -182,13 +177,13 @@ class Suspicion:
             return Verdict(clear=True)
         self.frames += 1
         turning = (
-            not grey
+            not sight.grey
             and likeness.following >= _STILL_ALIKE * self.level
             and likeness.colour >= _ALIKE_BY_COLOUR * self._colour
             and off < _TURNING_OFF
         )
         dragged = gate and off > max(_OFF, _OFF_INNOVATIONS * self.innovation)
-        unlike = likeness.following < _GONE * self.level and best_half() < _GONE
+        unlike = likeness.following < _GONE * self.level and sight.best_half() < _GONE
         gone = not turning and (dragged or unlike)
         self._gone = self._gone + 1 if gone else max(self._gone - 1, 0)
         if self.frames > patience and not self._gone and off < _FORGIVEN_OFF:
