@@ -63,6 +63,8 @@ class FusionState(ParticleTracker[FusionParameters]):
         """Take new parameters; see `Tracker.reconfigure`."""
         super().reconfigure(parameters)
         if self._target is not None:
+            if not parameters.hiding.turns:
+                self._turns = Turns()
             if parameters.cues != self._appearance.cues:
                 self._appearance.use(parameters.cues)
             if len(self._particles.weights) != parameters.num_particles:

@@ -137,12 +137,13 @@ class Foreground:
     def _uncover(self, frame: Frame, occupied: Span) -> None:
         if self._unknown is None:
             return
-        fresh = np.zeros_like(self._known)
-        fresh[self._unknown.inside] = True
-        fresh &= ~self._known
-        fresh[occupied.inside] = False
-        self._background[fresh] = frame[fresh]
-        self._known[fresh] = True
+        span = self._unknown
+        fresh = ~self._known[span.inside]
+        top, left = max(occupied.top - span.top, 0), max(occupied.left - span.left, 0)
+        bottom, right = max(occupied.bottom - span.top, 0), max(occupied.right - span.left, 0)
+        fresh[top:bottom, left:right] = False
+        self._background[span.inside][fresh] = frame[span.inside][fresh]
+        self._known[span.inside] |= fresh
         if self.knows(self._unknown):
             self._unknown = None
 
