@@ -6,6 +6,7 @@ serves all steps of a frame. What light multiplies and adds takes no part.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 
@@ -54,11 +55,7 @@ class Alignment:
     """
 
     def __init__(self, template: Patch) -> None:
-        height, width = template.shape
-        x = (np.arange(width, dtype=np.float32) - (width - 1) / 2)[np.newaxis]
-        y = (np.arange(height, dtype=np.float32) - (height - 1) / 2)[:, np.newaxis]
-        self._window = _soft(x / width) * _soft(y / height)
-        self._window = (self._window / self._window.sum()).ravel()
+        x, y, self._window = _grid(*template.shape)
         smooth = _smooth(template)
         across = cv2.Sobel(smooth, cv2.CV_32F, 1, 0, ksize=3, scale=0.125)
         down = cv2.Sobel(smooth, cv2.CV_32F, 0, 1, ksize=3, scale=0.125)
@@ -106,6 +103,20 @@ class Alignment:
         vector = (weighted @ error).astype(np.float64) - total * means * mean_error
         matrix[np.diag_indices(3)] = matrix.diagonal() * (1 + _DAMPING) + 1e-3
         return matrix, vector
+
+
+@functools.lru_cache(maxsize=8)
+def _grid(height: int, width: int) -> tuple[Patch, Patch, Patch]:
+    """Coordinates from the centre along x (1, w) and y (h, 1), and the soft window (h * w,)."""
+    x = _centred_range(width)[np.newaxis]
+    y = _centred_range(height)[:, np.newaxis]
+    shares = [_centred_range(side) / np.float32(side) for side in (height, width)]
+    window = np.outer(*(_soft(np.asarray(one, np.float32)) for one in shares)).ravel()
+    return x, y, np.asarray(window / window.sum(), np.float32)
+
+
+def _centred_range(count: int) -> Patch:
+    return np.asarray(np.arange(count) - (count - 1) / 2, np.float32)
 
 
 def _smooth(patch: Patch) -> Patch:
