@@ -17,7 +17,7 @@ from pathlib import Path
 
 from benchmarks import fusion_tables as tables
 from benchmarks.fusion_runs import HELD_OUT, Footage, Run, find_sequence, run, scene, sequence
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 SCENES = ("bridge", "bus")
 OFF: dict[str, dict[str, object]] = {

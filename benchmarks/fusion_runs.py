@@ -10,14 +10,14 @@ from typing import TypeAlias
 
 import cv2
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
 from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores, score_frames
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.recordings.importing import import_recording
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.parameters import from_mapping

@@ -15,7 +15,7 @@ from functools import partial
 
 from benchmarks import fusion_tables as tables
 from benchmarks.fusion_runs import Run, run, scene
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 SCENES = (
     "bar", "bars", "bus", "cross", "bridge", "shadows", "braking", "turn", "turn_occluded",

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from benchmarks import fusion_tables as tables
 from benchmarks.fusion_runs import HELD_OUT, TUNED_ON, Run, find_sequence, run, sequence
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 COLUMNS = (
     "on target", "error < 15 px", "RMSE visible, px", *tables.RECOVERIES, *tables.CLAIMS,

@@ -30,7 +30,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 
 from vehicle_pf_tracker.cli.main import main as command
 from vehicle_pf_tracker.cli.params import default_yaml
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros.configuration import Configuration
 from vehicle_pf_tracker.ros.node import TrackerNode

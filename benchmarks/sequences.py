@@ -15,10 +15,10 @@ import statistics
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Cell, EvaluationFolder
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.recordings.truth import Truth
 
 INTRODUCTION = """# The variants on real sequences
 

@@ -17,7 +17,7 @@ from benchmarks.bench.case import Case
 from benchmarks.bench.effort import FULL, QUICK, Effort
 from benchmarks.bench.environment import describe
 from benchmarks.bench.results import Results
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 OUTPUT = Path("results/bench/bench.json")
 

@@ -15,7 +15,7 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
 from benchmarks.bench.material import FRAME_RATE, drive
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.transport import image_transport
 

@@ -11,7 +11,7 @@ from benchmarks.bench.effort import Effort
 from benchmarks.bench.interleaving import Work, compare
 from benchmarks.bench.material import clouds, drive, enlarged
 from benchmarks.bench.routes import Route, routes, three_references
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.kernels.choice import load_kernels
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.window import Positions, Window

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.window import Positions
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 

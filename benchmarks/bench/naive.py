@@ -7,8 +7,8 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.colour import Histogram
-from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.similarity import Array
 from vehicle_pf_tracker.features.window import Positions, Window
 

@@ -14,8 +14,8 @@ from benchmarks.bench.material import drive
 from benchmarks.bench.metered_node import METER
 from benchmarks.bench.resident import resident_mb
 from benchmarks.bench.root import ROOT
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.child_process import wait_or_kill
-from vehicle_pf_tracker.features.errors import InputError
 
 ALLOCATOR = {
     "MALLOC_MMAP_THRESHOLD_": "1073741824",

@@ -8,11 +8,11 @@ import pytest
 from benchmarks import fusion_ablation, fusion_cost, fusion_scenes, fusion_sequences
 from benchmarks import fusion_tables as tables
 from benchmarks.fusion_runs import Run, find_sequence, longest_run, run, scene, summary
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
 from vehicle_pf_tracker.trackers.parameters import from_mapping
 

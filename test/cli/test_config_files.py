@@ -6,7 +6,7 @@ import pytest
 
 from vehicle_pf_tracker.cli import config_files
 from vehicle_pf_tracker.cli.config_files import config_path
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 SHARE = Path("share", "vehicle_pf_tracker", "config")
 

@@ -10,7 +10,7 @@ from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.cli import main as command
 from vehicle_pf_tracker.cli import params
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 CALL = "import sys; from vehicle_pf_tracker.cli.main import main; sys.exit(main())"
 

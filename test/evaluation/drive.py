@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 
 PERIOD_NS = 40_000_000
 WIDTH, HEIGHT = 96, 64

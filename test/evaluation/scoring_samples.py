@@ -1,9 +1,9 @@
 """Estimates and truth with numbers that can be checked by hand."""
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 NONE, PARTIAL, TOTAL = Occlusion.NONE, Occlusion.PARTIAL, Occlusion.TOTAL
 SIDES = (24.0, 32.0)  # diagonal 40: on target below 20 px

@@ -2,8 +2,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.association import associate
-from vehicle_pf_tracker.features.errors import InputError
 
 MS = 1_000_000
 stamps = st.lists(st.integers(0, 60 * MS), max_size=12)

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from scoring_samples import PERIOD_NS, scored
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.curves import (
     normalised_precision_curve,
     precision_curve,
@@ -12,8 +14,6 @@ from vehicle_pf_tracker.evaluation.curves import (
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 
 def test_precision_by_hand():

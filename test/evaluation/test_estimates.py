@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.estimates import (
     COLUMNS,
     REJECTED,
@@ -12,7 +13,6 @@ from vehicle_pf_tracker.evaluation.estimates import (
     read_estimates,
     write_estimates,
 )
-from vehicle_pf_tracker.features.errors import InputError
 
 numbers = st.floats(allow_nan=False)
 rows = st.builds(

@@ -1,13 +1,13 @@
 import pytest
 from evaluation_samples import FRAMES, NO_PEERS, SEEDS
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     EvaluationFolder,
     cell_folder,
     read_document,
     safe_name,
 )
-from vehicle_pf_tracker.features.errors import InputError
 
 
 @pytest.fixture

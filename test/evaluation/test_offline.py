@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from drive import box_of, drive, frame_of, stamp_of, truth_of
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.session import Session, SessionParameters
 

@@ -3,9 +3,9 @@ import numpy as np
 import pytest
 from scoring_samples import NONE, PARTIAL, TOTAL, row, run_of, scored
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.plots import error_figure, overview_figure, path_figure, save
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-from vehicle_pf_tracker.features.errors import InputError
 
 FRAME = np.full((240, 320, 3), 128, np.uint8)
 RUNS = {

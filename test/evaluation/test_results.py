@@ -7,6 +7,7 @@ import pytest
 from drive import box_of, drive
 
 from vehicle_pf_tracker import __version__
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.estimates import read_estimates
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
@@ -14,7 +15,6 @@ from vehicle_pf_tracker.evaluation.output_files import write_json, write_text
 from vehicle_pf_tracker.evaluation.results import ResultFolder
 from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.session import SessionParameters
 

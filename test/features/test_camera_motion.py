@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.features import camera_motion
-from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.features.camera_motion import CameraFlow, CameraMotion, fit_camera_motion
 from vehicle_pf_tracker.features.small_grey import SmallGrey, small_grey
 

@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import check_frame
 from vehicle_pf_tracker.features.colour import bin_count, bin_indices, joint_histogram
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import check_frame
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient, hellinger_distance

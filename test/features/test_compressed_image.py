@@ -8,10 +8,10 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.features import compressed_image
 from vehicle_pf_tracker.features.compressed_image import MAX_PIXELS, decode_compressed
 from vehicle_pf_tracker.features.encodings import MAX_SIDE
-from vehicle_pf_tracker.features.errors import InputError
 
 RED, GREEN, BLUE = (200, 10, 30), (20, 220, 40), (5, 15, 250)
 PNG = b"\x89PNG\r\n\x1a\n"

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.features.encodings import ENCODINGS, to_rgb
-from vehicle_pf_tracker.features.errors import InputError
 
 RED, GREEN, BLUE = (200, 10, 30), (20, 220, 40), (5, 15, 250)
 COLOURS = np.array([[RED, GREEN, BLUE], [BLUE, RED, GREEN]], np.uint8)

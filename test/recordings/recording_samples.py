@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 from mcap.writer import CompressionType, Writer
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.cdr import definition, serialize
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 PERIOD_NS = 40_000_000
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from mcap.writer import CompressionType, IndexType
 from recording_samples import BareMcap, frame_of, stamp_of, truth_of
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.reader import Recording
 

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from recording_samples import frame_of
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.recordings import topics
 from vehicle_pf_tracker.recordings.importing import import_recording
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.truth import Occlusion
 
 SEQUENCES = Path(__file__).parents[3] / "shared" / "sequences"
 HEADER = "frame,x,y,w,h,visible,occ\n"
@@ -238,7 +238,7 @@ def test_what_is_no_video_is_said_in_one_line(tmp_path, video):
     (tmp_path / "cut.avi").write_bytes(video.read_bytes()[:300])
     script = (
         "import sys; from pathlib import Path\n"
-        "from vehicle_pf_tracker.features.errors import InputError\n"
+        "from vehicle_pf_tracker.core.errors import InputError\n"
         "from vehicle_pf_tracker.recordings.importing import import_recording\n"
         "try: import_recording(Path(sys.argv[1]), Path(sys.argv[2]))\n"
         "except InputError as error: print(error)\n"

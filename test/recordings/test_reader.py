@@ -13,7 +13,7 @@ from mcap.writer import CompressionType, IndexType
 from recording_samples import PERIOD_NS, frame_of, stamp_of, truth_of
 from rosbags.typesys import Stores, get_typestore
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import mcap_blocks, messages, topics
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import COMPRESSIONS, RecordingWriter

@@ -7,11 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from recording_samples import frame_of, stamp_of, truth_of
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings.truth_messages import TYPES, from_messages, to_messages
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 

@@ -8,7 +8,7 @@ from recording_samples import frame_of, stamp_of, truth_of
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import COMPRESSIONS, RecordingWriter

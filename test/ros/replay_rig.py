@@ -14,9 +14,9 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
 from std_srvs.srv import Trigger
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 PERIOD_NS = 40_000_000

@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Header
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.images import read_image
 from vehicle_pf_tracker.ros.messages import (
     LEVELS,

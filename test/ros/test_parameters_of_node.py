@@ -20,7 +20,7 @@ from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.parameter import Parameter
 from tracker_rig import TARGET, Rig, on_target, overrides, road, values_of
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.configuration import Configuration
 from vehicle_pf_tracker.ros.node import TrackerNode
 from vehicle_pf_tracker.ros.node_parameters import NodeParameters

@@ -10,11 +10,11 @@ import cv2
 from replay_rig import IMAGE_TOPIC, StubTracker, record, spinning
 from tracker_rig import FIRST_NS, PERIOD_NS, SPEED, TARGET, road
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import read_estimates
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
-from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.parameters import from_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant

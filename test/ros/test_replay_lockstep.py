@@ -4,8 +4,8 @@ pytest.importorskip("rclpy")
 
 from replay_rig import IMAGE_TOPIC, StubTracker, record, spinning, stamps
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.replay_options import ReplayOptions
 from vehicle_pf_tracker.ros.replaying import NoTargetError, replay
 

@@ -11,7 +11,7 @@ from replay_rig import BEGIN_NS, COUNT, IMAGE_TOPIC, StubTracker, record, spinni
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.replay_options import ReplayOptions
 from vehicle_pf_tracker.ros.replaying import replay
 

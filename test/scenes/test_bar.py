@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.recordings.truth import Occlusion
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 
 

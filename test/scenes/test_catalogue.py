@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import check_frame
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import check_frame
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.trackers.parameters import specs
 

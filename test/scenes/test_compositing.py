@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import PixelWindow, Sprite, paint, visible_fraction
 
 WHITE = Sprite.plain((255.0, 255.0, 255.0))

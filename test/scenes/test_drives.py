@@ -5,7 +5,7 @@ from itertools import groupby, pairwise
 
 import pytest
 
-from vehicle_pf_tracker.recordings.truth import Occlusion
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.scenes.cases import CASES
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.videos import VIDEOS

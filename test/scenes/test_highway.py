@@ -5,7 +5,7 @@ from itertools import groupby, islice
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.recordings.truth import Occlusion
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 
 SEEDS = range(30)

@@ -6,7 +6,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.scenes.light import Cloud
 from vehicle_pf_tracker.scenes.outdoor_camera import MARGIN, Disturbance, OutdoorCamera

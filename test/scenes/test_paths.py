@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.paths import Attached, Driven, Still, Straight, Wave
 
 START = Box(10, 20, 4, 3)

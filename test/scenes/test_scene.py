@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.scenes.camera import Camera
 from vehicle_pf_tracker.scenes.compositing import Sprite
 from vehicle_pf_tracker.scenes.paths import Still, Straight

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import PixelWindow
 from vehicle_pf_tracker.scenes.heavy_vehicles import coach, lorry, truck
 from vehicle_pf_tracker.scenes.solids import ELEVATION, draw, extent, mirrored, shadow, side_panel

@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 
 WIDTH, HEIGHT = 200, 120
 SPEED = 3.0

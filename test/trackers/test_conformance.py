@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from street import HEIGHT, SIZE, WIDTH, Street, error, follow
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.parameters import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS

@@ -1,6 +1,6 @@
 import pytest
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge, EvidenceParameters
 

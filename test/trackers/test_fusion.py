@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from street import Street, error, follow
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.recordings.truth import Occlusion
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion import FusionTracker

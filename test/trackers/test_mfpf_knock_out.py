@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.trackers.mfpf import MfpfTracker
 from vehicle_pf_tracker.trackers.mfpf_parameters import MfpfParameters
 

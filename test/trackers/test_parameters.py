@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.parameter_files import read_yaml, to_yaml
 from vehicle_pf_tracker.trackers.parameters import (
     from_mapping,

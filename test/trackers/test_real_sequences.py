@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.trackers.parameters import from_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 

@@ -10,7 +10,7 @@ import functools
 import pytest
 from street import Street
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.parameters import ParameterSpec, from_mapping, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.session import Session, SessionParameters, TargetParameters

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from street import Street, error
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import StampEvent
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
-from vehicle_pf_tracker.trackers.clock import StampEvent
 from vehicle_pf_tracker.trackers.continuity import PATIENCE, StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.parameters import from_mapping

@@ -11,6 +11,7 @@ from types import MappingProxyType
 from vehicle_pf_tracker.cli.console import show, tell_notices
 from vehicle_pf_tracker.cli.replay_progress import progress_view
 from vehicle_pf_tracker.cli.synth import record_scene
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.estimates_recording import write_with_estimates
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
@@ -21,7 +22,6 @@ from vehicle_pf_tracker.evaluation.results import ResultFolder
 from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Line, Table, comparison
-from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.parameters import Value, from_mapping

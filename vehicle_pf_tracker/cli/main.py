@@ -12,7 +12,7 @@ from types import MappingProxyType
 from vehicle_pf_tracker import __doc__ as _summary
 from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, tell_error
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {

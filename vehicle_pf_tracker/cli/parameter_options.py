@@ -7,8 +7,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.parameter_files import read_yaml
 from vehicle_pf_tracker.trackers.parameters import parse_assignments, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant

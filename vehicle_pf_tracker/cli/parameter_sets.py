@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.parameters import (
     ParameterSpec,
     parse_assignments,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.progress import counting
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.recordings.importing import FORMATS, jpeg
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene

@@ -16,9 +16,9 @@ from vehicle_pf_tracker.cli.parameter_sets import (
     read_sets,
     settable,
 )
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.systems import PEER, PeerSystem, System, VariantSystem
 from vehicle_pf_tracker.evaluation.peers.client import MODELS, Peer
-from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.parameters import Value, parse_assignments, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 

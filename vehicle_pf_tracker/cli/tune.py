@@ -13,6 +13,8 @@ from vehicle_pf_tracker.cli.parameter_sets import settable
 from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers
 from vehicle_pf_tracker.cli.whole_numbers import natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.grid.locations import find_recordings
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
@@ -28,8 +30,6 @@ from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES
 from vehicle_pf_tracker.evaluation.tuning.search_space import SEARCHED, search_space
 from vehicle_pf_tracker.evaluation.tuning.searching import Search, Trial, best_of, search
 from vehicle_pf_tracker.evaluation.tuning.trial_table import to_csv
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Truth
 from vehicle_pf_tracker.trackers.parameter_files import to_yaml
 from vehicle_pf_tracker.trackers.parameters import parse_assignments
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant

@@ -7,7 +7,7 @@ import heapq
 import math
 from collections.abc import Sequence
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 MAX_DIFF = 0.01
 """Stamps further apart than this, in s, never belong together unless the user says so."""

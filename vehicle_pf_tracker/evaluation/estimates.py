@@ -9,8 +9,8 @@ from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 from types import MappingProxyType
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.output_files import write_text
-from vehicle_pf_tracker.features.errors import InputError
 
 WAITING = "WAITING"
 """Mode of a frame before there is a target; all numbers are empty."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
-from vehicle_pf_tracker.features.box import Box
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.topics import (

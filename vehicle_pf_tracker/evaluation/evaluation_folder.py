@@ -18,12 +18,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.evaluation.results import ESTIMATES, RUN
 from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.evaluation.truth_file import read_truth
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Truth
 
 PLAN, FAILED = "evaluation.json", "failed.json"
 TIMINGS = "timings.json"

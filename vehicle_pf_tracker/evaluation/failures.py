@@ -13,8 +13,8 @@ import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.scores import FrameScore
-from vehicle_pf_tracker.recordings.truth import Occlusion
 
 RESTART_AFTER = 5
 """Frames from a failure to the first in which the tracker may be started anew."""

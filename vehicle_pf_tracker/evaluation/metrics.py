@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.curves import (
     Curve,
     normalised_precision_curve,
@@ -25,7 +26,6 @@ from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING
 from vehicle_pf_tracker.evaluation.failures import count_failures
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX, OcclusionScore, score_occlusions
 from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
-from vehicle_pf_tracker.recordings.truth import Occlusion
 from vehicle_pf_tracker.trackers.estimate import Mode
 
 PRECISION_PX = 20.0

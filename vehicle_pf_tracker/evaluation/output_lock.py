@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.output_files import output_errors
-from vehicle_pf_tracker.features.errors import InputError
 
 _NAME = ".lock"
 

@@ -15,7 +15,7 @@ from typing import Generic, TypeVar
 
 import cv2
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 TaskT = TypeVar("TaskT")
 ResultT = TypeVar("ResultT")

@@ -11,11 +11,11 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF, associate
 from vehicle_pf_tracker.evaluation.estimates import WAITING, EstimateRow
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 
 @dataclass(frozen=True, slots=True)

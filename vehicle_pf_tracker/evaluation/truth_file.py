@@ -7,10 +7,10 @@ import io
 from collections.abc import Mapping
 from pathlib import Path
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.output_files import write_text
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
 

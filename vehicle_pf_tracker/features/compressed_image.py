@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import cv2
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.encodings import MAX_SIDE, Buffer, Bytes, flat_bytes
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame
 
 MAX_PIXELS = 100_000_000
 """Three times those of 8K video; as a frame 300 MB."""

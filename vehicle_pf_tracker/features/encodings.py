@@ -15,8 +15,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
 
 Bytes: TypeAlias = npt.NDArray[np.uint8]
 Buffer: TypeAlias = "bytes | bytearray | memoryview | array.array[int] | Bytes"

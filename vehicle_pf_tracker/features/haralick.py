@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.glcm import LEVELS, Cooccurrence
 from vehicle_pf_tracker.features.window import Positions, Window
 from vehicle_pf_tracker.features.window_feature import Histograms, WindowFeature

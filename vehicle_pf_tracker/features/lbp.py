@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.window import Positions, Window, bounds
 from vehicle_pf_tracker.features.window_feature import Counted, CountedFeature, Grey, to_grey
 from vehicle_pf_tracker.features.window_sums import areas, bin_counts, covered_region

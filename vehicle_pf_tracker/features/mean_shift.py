@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.features.colour import Histogram, bin_count, bin_indices
-from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient
 from vehicle_pf_tracker.features.window import Centres, Positions, Window, centres
 from vehicle_pf_tracker.features.window_feature import Coefficients

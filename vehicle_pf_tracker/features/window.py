@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 
 Positions = npt.NDArray[np.float64]
 Centres = npt.NDArray[np.intp]

@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 
 def recording_files(path: Path) -> tuple[list[Path], list[str]]:

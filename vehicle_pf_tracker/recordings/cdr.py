@@ -10,7 +10,7 @@ from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.store import Typestore
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 # rosbags before 0.11 lets what a broken message causes through as it is.
 _BROKEN = (SerdeError, struct.error, ValueError, IndexError, AssertionError)

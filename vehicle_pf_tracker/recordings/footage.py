@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
-from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.recordings.truth import Truth
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Truth
 
 START_NS = 1_000_000_000
 """Stamp of the first image. Not 0, which many ROS programs take for "no time"."""

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import cv2
 
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.recordings.footage import Footage, Picture
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
 from vehicle_pf_tracker.recordings.video import VideoFile

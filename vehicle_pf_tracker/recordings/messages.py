@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.frame import Frame, check_frame
+from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.recordings import topics
 from vehicle_pf_tracker.recordings.cdr import message_class
 

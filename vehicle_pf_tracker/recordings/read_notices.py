@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.mcap_blocks import Block, DamageError
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.features.compressed_image import decode_compressed
 from vehicle_pf_tracker.features.encodings import to_rgb
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.recordings import messages, truth_messages
 from vehicle_pf_tracker.recordings import topics as names
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
@@ -21,7 +22,6 @@ from vehicle_pf_tracker.recordings.mcap_index import McapIndex, read_index
 from vehicle_pf_tracker.recordings.mcap_stream import merged_messages
 from vehicle_pf_tracker.recordings.read_notices import ReadNotices
 from vehicle_pf_tracker.recordings.topic_table import TopicInfo, choose_image_topic, list_topics
-from vehicle_pf_tracker.recordings.truth import Truth
 
 _UNREADABLE_IN_A_ROW = 10
 """So many unreadable images at the very beginning mean that none can be read."""

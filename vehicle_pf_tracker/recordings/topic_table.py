@@ -9,7 +9,7 @@ from pathlib import Path
 from mcap.records import Channel
 from mcap.well_known import MessageEncoding
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.cdr import starts_with_header
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex
 from vehicle_pf_tracker.recordings.topics import IMAGE_TYPES

@@ -7,10 +7,10 @@ from collections import defaultdict
 from collections.abc import Iterable
 from typing import Any
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings import messages, topics
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 TYPES = {
     topics.TRUTH_POSITION_TOPIC: topics.POINT_STAMPED,

@@ -11,10 +11,10 @@ from typing import Any
 
 import cv2
 
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings.footage import Picture, stamp_of
-from vehicle_pf_tracker.recordings.truth import Truth
 from vehicle_pf_tracker.recordings.truth_table import read_truth_table
 
 # The decoder's own complaints would go to the terminal beside our sentence.

@@ -10,8 +10,9 @@ from typing import Any
 from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
 from mcap.writer import CompressionType, Writer
 
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings import messages, topics, truth_messages
 from vehicle_pf_tracker.recordings.bag_metadata import (
     TopicSummary,
@@ -22,7 +23,6 @@ from vehicle_pf_tracker.recordings.bag_metadata import (
 )
 from vehicle_pf_tracker.recordings.cdr import definition, serialize, type_hash
 from vehicle_pf_tracker.recordings.output_folder import OutputFolder, output_errors
-from vehicle_pf_tracker.recordings.truth import Truth
 
 COMPRESSIONS = {
     "lz4": CompressionType.LZ4,

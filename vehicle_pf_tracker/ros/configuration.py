@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.node_parameters import NodeParameters
 from vehicle_pf_tracker.trackers.parameters import ParameterSpec, Value, from_mapping, specs
 from vehicle_pf_tracker.trackers.parameters import to_mapping as values_of

@@ -8,7 +8,7 @@ from typing import Any
 
 from rclpy.node import Node
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.topics import DIAGNOSTIC_ARRAY, IMAGE_TYPES
 from vehicle_pf_tracker.ros.spinner import Spinner
 

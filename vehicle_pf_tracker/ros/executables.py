@@ -6,7 +6,7 @@ import functools
 import sys
 from collections.abc import Callable, Sequence
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 _NO_ROS = (
     "ROS 2 is not there (no module {}): source its setup.bash, or install this package with the "

@@ -16,7 +16,7 @@ from lifecycle_msgs.srv import ChangeState
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 
 class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]

@@ -13,7 +13,7 @@ from geometry_msgs.msg import Point32, PointStamped, PolygonStamped, Vector3Stam
 from sensor_msgs.msg import Image, PointCloud2, PointField
 from std_msgs.msg import Header
 
-from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 WAITING = "WAITING"

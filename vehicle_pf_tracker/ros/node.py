@@ -10,8 +10,8 @@ from rclpy.subscription import Subscription
 from sensor_msgs.msg import RegionOfInterest
 from std_srvs.srv import Trigger
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.configuration import Configuration
 from vehicle_pf_tracker.ros.diagnostics import Diagnostics
 from vehicle_pf_tracker.ros.image_input import ImageInput, image_topic

@@ -7,7 +7,7 @@ from collections import deque
 import cv2
 import numpy as np
 
-from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
 
 PATH_LENGTH = 300

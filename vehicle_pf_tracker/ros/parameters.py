@@ -19,7 +19,7 @@ from rcl_interfaces.msg import (
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.configuration import Configuration
 from vehicle_pf_tracker.trackers.parameters import EFFECTS, ParameterSpec, unknown_name
 

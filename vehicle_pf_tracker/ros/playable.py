@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from typing import Protocol
 
-from vehicle_pf_tracker.recordings.truth import Truth
+from vehicle_pf_tracker.core.truth import Truth
 
 
 class PlayableTopic(Protocol):

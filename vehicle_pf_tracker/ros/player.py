@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from rclpy.node import Node
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.pacing import Pace
 from vehicle_pf_tracker.ros.playable import Playable, PlayableMessage
 from vehicle_pf_tracker.ros.playback_clock import PlaybackClock

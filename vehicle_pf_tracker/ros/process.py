@@ -14,7 +14,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.allocator import keep_image_memory
 from vehicle_pf_tracker.ros.image_executor import ImageExecutor
 from vehicle_pf_tracker.ros.node import TrackerNode

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
-from vehicle_pf_tracker.features.box import Box
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 from vehicle_pf_tracker.ros.discovery import Lookout
 from vehicle_pf_tracker.ros.interruption import noted_interrupts

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from std_msgs.msg import Header
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 _BODY = 4
 """Bytes before the message, the second of which tells the byte order."""

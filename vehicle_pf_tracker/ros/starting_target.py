@@ -6,9 +6,9 @@ import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.ros.playable import Playable, PlayableMessage
 from vehicle_pf_tracker.ros.replay_options import ReplayOptions
 from vehicle_pf_tracker.ros.tracker_link import TrackerLink

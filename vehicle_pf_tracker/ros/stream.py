@@ -9,10 +9,10 @@ from rclpy.node import Node
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
-from vehicle_pf_tracker.features.box import Box, check_target
+from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.features.encodings import MAX_SIDE
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.ros.configuration import Configuration
 from vehicle_pf_tracker.ros.health import Health
 from vehicle_pf_tracker.ros.images import read_image

@@ -8,8 +8,8 @@ from geometry_msgs.msg import PointStamped, PolygonStamped
 from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Header
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 
 
 def box_of_region(region: RegionOfInterest) -> Box:

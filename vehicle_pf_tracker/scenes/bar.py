@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.camera import Camera
 from vehicle_pf_tracker.scenes.compositing import Image, Sprite
 from vehicle_pf_tracker.scenes.paths import Still, Straight

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.scenes.compositing import Image
 from vehicle_pf_tracker.scenes.randomness import stream
 

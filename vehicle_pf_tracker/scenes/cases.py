@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from vehicle_pf_tracker.recordings.truth import TOTAL_BELOW
+from vehicle_pf_tracker.core.truth import TOTAL_BELOW
 from vehicle_pf_tracker.scenes.courses import Pace
 from vehicle_pf_tracker.scenes.drive import LANE, RADIUS, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.fixed_scenes import FixedScene, chosen, past

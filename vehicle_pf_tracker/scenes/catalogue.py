@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.scenes.bar import BarParameters, bar
 from vehicle_pf_tracker.scenes.cases import CASES
 from vehicle_pf_tracker.scenes.drive import DriveParameters

@@ -15,7 +15,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 
 Image: TypeAlias = npt.NDArray[np.float32]
 """RGB picture while it is composed, shape (height, width, 3), levels 0 to 255."""

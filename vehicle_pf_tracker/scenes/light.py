@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
 from vehicle_pf_tracker.scenes.drive import Drive, DriveParameters
 from vehicle_pf_tracker.scenes.paths import Still

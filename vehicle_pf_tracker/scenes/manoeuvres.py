@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.courses import Pace
 from vehicle_pf_tracker.scenes.drive import RADIUS, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.obstacles import house

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Sprite
 from vehicle_pf_tracker.scenes.courses import Course, Pose
 from vehicle_pf_tracker.scenes.headings import all_round, turned

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
 from vehicle_pf_tracker.scenes.paths import Still
 from vehicle_pf_tracker.scenes.scene import Actor

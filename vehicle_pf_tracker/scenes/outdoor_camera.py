@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.scenes.compositing import Colour, Image
 from vehicle_pf_tracker.scenes.randomness import stream
 

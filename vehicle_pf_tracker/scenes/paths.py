@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 
 Path: TypeAlias = Callable[[float], Box]
 """Gives the box (px) a sprite fills at a frame number, counted from 0."""

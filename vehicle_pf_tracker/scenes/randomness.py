@@ -6,7 +6,7 @@ import zlib
 
 import numpy as np
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 
 def stream(seed: int, name: str, index: int = 0) -> np.random.Generator:

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.scenes.compositing import (
     Image,
     PixelWindow,

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Array, Colour, Sprite
 from vehicle_pf_tracker.scenes.polygons import cells_inside
 

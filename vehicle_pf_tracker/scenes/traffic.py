@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
 from vehicle_pf_tracker.scenes.paths import Attached, Path, Straight
 from vehicle_pf_tracker.scenes.roads import Lane

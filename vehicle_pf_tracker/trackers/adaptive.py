@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.similarity import hellinger_distance
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import effective_sample_size

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.colour import Histogram
-from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import hellinger_similarity

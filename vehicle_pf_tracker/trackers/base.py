@@ -10,8 +10,8 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box, check_target
-from vehicle_pf_tracker.features.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.features.kernels.choice import load_kernels
 from vehicle_pf_tracker.features.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.filtering.resampling import systematic

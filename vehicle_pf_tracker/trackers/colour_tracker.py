@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import hellinger_distance

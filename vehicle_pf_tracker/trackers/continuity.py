@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 Size = tuple[int, int]
 

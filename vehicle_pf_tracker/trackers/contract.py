@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.kernels.choice import CHOICES, load_kernels
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.evidence import EvidenceParameters

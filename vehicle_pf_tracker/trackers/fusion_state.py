@@ -8,9 +8,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.features.camera_motion import CameraFlow, CameraMotion
-from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.features.small_grey import small_grey
 from vehicle_pf_tracker.features.window import keep_inside
 from vehicle_pf_tracker.filtering.motion import sample_normal

@@ -16,7 +16,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.gradients import GradientDirections
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.mean_shift import kernel_histogram
 from vehicle_pf_tracker.features.reference import Reference

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal, TypeAlias, TypeVar, cast, get_type_hints
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 Value: TypeAlias = bool | int | float | str
 Effect: TypeAlias = Literal["keeps", "relearns", "restarts", "starts"]

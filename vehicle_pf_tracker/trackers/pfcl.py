@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.lines import LineDetector, line_histograms
 from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient
 from vehicle_pf_tracker.features.window import bounds

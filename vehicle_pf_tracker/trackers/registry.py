@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.adaptive import AdaptiveParameters, AdaptiveTracker
 from vehicle_pf_tracker.trackers.apf import ApfTracker
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters

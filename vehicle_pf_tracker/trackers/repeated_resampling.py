@@ -10,7 +10,7 @@ from abc import abstractmethod
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.similarity import hellinger_distance
 from vehicle_pf_tracker.features.window import keep_inside
 from vehicle_pf_tracker.filtering.motion import sample_normal

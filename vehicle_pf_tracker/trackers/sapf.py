@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.annealing import annealing_rate
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome

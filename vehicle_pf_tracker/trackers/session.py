@@ -8,11 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle_pf_tracker.features.box import Box, check_target
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.clock import StampClock, StampEvent, Tick
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.trackers.base import DEFAULT_PERIOD
-from vehicle_pf_tracker.trackers.clock import StampClock, StampEvent, Tick
 from vehicle_pf_tracker.trackers.continuity import Continuity, StrayImageError, Verdict
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.parameters import group, parameter

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.features.colour import Histogram, joint_histogram
-from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.features.window import Window
 from vehicle_pf_tracker.trackers.contract import WindowParameters
 

@@ -5,6 +5,7 @@ import math
 
 import pytest
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.experiments import apf_conditions, apf_systems
 from vehicle_pf_tracker.evaluation.experiments.catalogue import EXPERIMENTS, find_experiments
 from vehicle_pf_tracker.evaluation.experiments.cells import SceneChoice
@@ -13,7 +14,6 @@ from vehicle_pf_tracker.evaluation.experiments.output import write_report
 from vehicle_pf_tracker.evaluation.experiments.running import complete
 from vehicle_pf_tracker.evaluation.experiments.verdict import Holds
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.scenes.videos import VIDEOS
 
 SIZE = Size(range(100, 101), quick=True)

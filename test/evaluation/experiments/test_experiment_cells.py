@@ -1,13 +1,13 @@
 import pytest
 from experiment_samples import PF, SCENE, run_cells
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.experiments.cells import RunCell, SceneChoice, System
 from vehicle_pf_tracker.evaluation.experiments.identity import key
 from vehicle_pf_tracker.evaluation.experiments.running import run_together
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 

@@ -3,9 +3,9 @@ import json
 import pytest
 from experiment_samples import SCENE, CountingCell, run_cells
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.experiments.running import complete
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.features.errors import InputError
 
 
 def silent(progress):

@@ -5,12 +5,12 @@ import json
 
 from drive import box_of, frame_of, stamp_of
 
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.sources import describe
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.tracking import run_cell
 from vehicle_pf_tracker.evaluation.processes import Turn
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.parameters import from_mapping, to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant

@@ -6,10 +6,10 @@ import signal
 import pytest
 from grid_samples import here, make_plan, results, silent, system, write_recordings
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.cluster import on_cluster, run_checked
 from vehicle_pf_tracker.evaluation.grid.running import complete
 from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem
-from vehicle_pf_tracker.features.errors import InputError
 
 distributed = pytest.importorskip("distributed")
 

@@ -12,11 +12,11 @@ from grid_samples import (
     write_recordings,
 )
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.grid import sources
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem
-from vehicle_pf_tracker.features.errors import InputError
 
 
 @pytest.fixture(scope="module")

@@ -4,6 +4,8 @@ import pytest
 from drive import stamp_of
 from grid_samples import HIDDEN, here, make_plan, silent, system, write_recordings
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import WAITING, EstimateRow, read_estimates
 from vehicle_pf_tracker.evaluation.grid.plan import Robustness
 from vehicle_pf_tracker.evaluation.grid.restarts import follow_restarted
@@ -11,8 +13,6 @@ from vehicle_pf_tracker.evaluation.grid.running import complete
 from vehicle_pf_tracker.evaluation.grid.starts import Start, shifted_starts, start_frames
 from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem
 from vehicle_pf_tracker.evaluation.grid.timing import WARM_UP, time_systems
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 TRUE = Box(100, 50, 20, 10)
 

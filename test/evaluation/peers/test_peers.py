@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.peers import client, worker
 from vehicle_pf_tracker.evaluation.peers.client import MODELS, Peer, PeerAnswer
 from vehicle_pf_tracker.evaluation.peers.environment import DEFAULT, VARIABLE, peer_python
 from vehicle_pf_tracker.evaluation.peers.rows import peer_rows
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 PYTHON = Path(sys.executable)
 TARGET = Box(30, 40, 24, 20)

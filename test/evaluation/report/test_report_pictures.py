@@ -8,6 +8,9 @@ import pytest
 from evaluation_samples import HIDDEN
 from matplotlib.figure import Figure
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.figures import stretches
 from vehicle_pf_tracker.evaluation.report.filmstrip import (
@@ -20,9 +23,6 @@ from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, colour_of, 
 from vehicle_pf_tracker.evaluation.report.panels import LEAST_ERROR, error_panel
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker, ink
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 BOX = Box(100, 60, 20, 10)
 

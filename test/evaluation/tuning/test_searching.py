@@ -2,6 +2,7 @@ import pytest
 
 pytest.importorskip("optuna", reason="the extra [tune] is not installed")
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.tracking import Outcome
 from vehicle_pf_tracker.evaluation.processes import Turn
@@ -11,7 +12,6 @@ from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES, mean_of_m
 from vehicle_pf_tracker.evaluation.tuning.search_space import search_space
 from vehicle_pf_tracker.evaluation.tuning.searching import Search, Trial, best_of, search
 from vehicle_pf_tracker.evaluation.tuning.trial_table import to_csv
-from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.parameters import to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 

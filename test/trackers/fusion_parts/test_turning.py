@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.trackers.fusion_parts.emergence import Emergence
 from vehicle_pf_tracker.trackers.fusion_parts.history import Trend
 from vehicle_pf_tracker.trackers.fusion_parts.projective_motion import ProjectiveMotion

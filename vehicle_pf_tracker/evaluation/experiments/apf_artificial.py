@@ -6,8 +6,8 @@ and how fast it is, the paper does not say.
 
 from __future__ import annotations
 
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.experiments.cells import SceneChoice
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 VEHICLE_WIDTH, VEHICLE_HEIGHT = 30.0, 22.0
 SPEED = 5.0

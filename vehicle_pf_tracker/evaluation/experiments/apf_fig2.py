@@ -6,6 +6,7 @@ from itertools import islice
 
 from matplotlib.figure import Figure
 
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.experiments.apf_artificial import (
     SETTING,
     VEHICLE_WIDTH,
@@ -16,7 +17,6 @@ from vehicle_pf_tracker.evaluation.experiments.cells import RunCell
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
-from vehicle_pf_tracker.recordings.truth import Occlusion
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 
 _WIDTH = 30

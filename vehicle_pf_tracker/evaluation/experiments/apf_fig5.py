@@ -8,6 +8,8 @@ from typing import TypeAlias
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.experiments import apf_video3 as video3
 from vehicle_pf_tracker.evaluation.experiments.apf_systems import APF, READINGS
 from vehicle_pf_tracker.evaluation.experiments.cells import Result, RunCell
@@ -18,8 +20,6 @@ from vehicle_pf_tracker.evaluation.interpolation import interpolate_occlusions
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.plots import OUTLINE
 from vehicle_pf_tracker.evaluation.scores import Scores
-from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.recordings.truth import Occlusion
 
 _Judge: TypeAlias = Callable[[str, Sequence[Result], Sequence[Scores]], Finding]
 

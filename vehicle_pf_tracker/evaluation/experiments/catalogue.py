@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.experiments import (
     apf_fig1,
     apf_fig2,
@@ -28,7 +29,6 @@ from vehicle_pf_tracker.evaluation.experiments import (
     resampling_frames,
 )
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment
-from vehicle_pf_tracker.features.errors import InputError
 
 _APF = (
     apf_fig1, apf_fig2, apf_fig3, apf_fig4, apf_fig5, apf_fig6, apf_fig7, apf_table2, apf_timing,

@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Protocol, TypeAlias
 
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import with_target
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.recordings.truth import Truth
 from vehicle_pf_tracker.scenes.cases import CASES
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.scene import Scene, SceneFrame

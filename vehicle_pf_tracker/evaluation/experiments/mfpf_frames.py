@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.experiments import mfpf_systems as mfpf
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
 from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import FOUR, MFPF, OURS, SINGLES
 from vehicle_pf_tracker.evaluation.experiments.strips import strip_figure, telling_frames
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
-from vehicle_pf_tracker.recordings.truth import Occlusion
 
 _FRAMES = 5
 _LONG = 60, 80

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.experiments.cells import Probe, Result, SceneChoice
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
@@ -23,11 +25,9 @@ from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import (
 )
 from vehicle_pf_tracker.evaluation.experiments.numbers import mean_and_spread
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
-from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
 from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient, hellinger_distance
 from vehicle_pf_tracker.features.window_feature import WindowFeature
-from vehicle_pf_tracker.recordings.truth import Occlusion
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.contract import WindowParameters
 from vehicle_pf_tracker.trackers.mfpf import edge_feature

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.experiments import resampling_systems as resampling
 from vehicle_pf_tracker.evaluation.experiments.experiment import Experiment, Report, Results, Size
 from vehicle_pf_tracker.evaluation.experiments.resampling_systems import (
@@ -15,7 +16,6 @@ from vehicle_pf_tracker.evaluation.experiments.resampling_systems import (
 from vehicle_pf_tracker.evaluation.experiments.strips import strip_figure
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.evaluation.scores import Scores
-from vehicle_pf_tracker.features.box import Box
 
 _PLACE = "section VI, figures 2 and 3"
 

@@ -7,13 +7,13 @@ from statistics import fmean
 from types import MappingProxyType
 from typing import Any
 
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.experiments.cells import RunCell, SceneChoice, System
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
 from vehicle_pf_tracker.evaluation.experiments.experiment import Results, Size
 from vehicle_pf_tracker.evaluation.experiments.traces import PATH, scores
 from vehicle_pf_tracker.evaluation.scores import Scores
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 SCENE = SceneChoice.of("phases")
 CONVENTIONAL, ADAPTIVE = (

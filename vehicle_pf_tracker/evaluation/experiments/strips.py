@@ -13,11 +13,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import Normal, Stroke
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.experiments.cells import SceneChoice
 from vehicle_pf_tracker.evaluation.plots import STYLES, Style
 from vehicle_pf_tracker.evaluation.scores import Scores
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.frame import Frame
 
 _VIEW = 260, 150
 """Width and height in px of what is shown around the true position."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import functools
 
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.experiments.cells import Result, RunCell, SceneChoice
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-from vehicle_pf_tracker.recordings.truth import Truth
 
 PATH = ("x", "y", "width", "height", "mode")
 """What a cell has to record for `scores`."""

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.running import Runner
 from vehicle_pf_tracker.evaluation.grid.tracking import Outcome, run_cell
 from vehicle_pf_tracker.evaluation.processes import Turn
-from vehicle_pf_tracker.features.errors import InputError
 
 
 def on_cluster(address: str, seconds: float = 10.0) -> Runner:

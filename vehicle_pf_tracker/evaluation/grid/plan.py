@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 from vehicle_pf_tracker.evaluation.evaluation_folder import PLAN, TRUTH, safe_name
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell
@@ -22,8 +24,6 @@ from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
 from vehicle_pf_tracker.evaluation.run_info import versions
 from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.evaluation.truth_file import write_truth
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Truth
 
 FORMAT = 1
 

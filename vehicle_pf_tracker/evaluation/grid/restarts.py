@@ -8,6 +8,8 @@ from contextlib import closing
 from dataclasses import asdict
 from typing import Any, Protocol
 
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import associate
 from vehicle_pf_tracker.evaluation.estimates import WAITING, EstimateRow
 from vehicle_pf_tracker.evaluation.failures import (
@@ -16,8 +18,6 @@ from vehicle_pf_tracker.evaluation.failures import (
     score_restarts,
 )
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
-from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.recordings.truth import Truth
 
 
 class _Footage(Protocol):

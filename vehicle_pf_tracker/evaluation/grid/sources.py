@@ -7,15 +7,15 @@ import threading
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import associate
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
 from vehicle_pf_tracker.evaluation.grid.locations import at_hand, is_url
 from vehicle_pf_tracker.evaluation.source import Source
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.truth import Truth
 
 FRAMES_BYTES = 1 << 30
 """Decoded frames that a process keeps at most; what is larger is decoded anew for each run."""

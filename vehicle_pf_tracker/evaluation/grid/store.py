@@ -8,13 +8,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, GridCell
 from vehicle_pf_tracker.evaluation.grid.tracking import Outcome
 from vehicle_pf_tracker.evaluation.identity import scoring_digest
 from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, write_json
 from vehicle_pf_tracker.evaluation.results import ESTIMATES, METRICS, RUN, ResultFolder
-from vehicle_pf_tracker.features.errors import InputError
 
 RESTARTS = "restarts.json"
 _PARTIAL = ".partial"

@@ -19,6 +19,9 @@ from typing import Any, Protocol
 import cv2
 import numpy as np
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.association import max_diff_ns
 from vehicle_pf_tracker.evaluation.evaluation_folder import TIMINGS
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
@@ -30,9 +33,6 @@ from vehicle_pf_tracker.evaluation.peers.client import Peer
 from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
 from vehicle_pf_tracker.evaluation.run_info import versions
 from vehicle_pf_tracker.evaluation.source import Source
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session
 

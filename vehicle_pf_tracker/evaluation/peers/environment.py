@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 VARIABLE = "VEHICLE_PF_TRACKER_PEERS"
 """Environment variable that names the interpreter."""

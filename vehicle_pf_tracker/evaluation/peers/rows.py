@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.evaluation.peers.client import Peer, PeerAnswer
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.recordings.truth import Truth
 
 
 def peer_rows(

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.estimates_recording import write_with_estimates
 from vehicle_pf_tracker.evaluation.grid.locations import at_hand
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
-from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.recordings.reader import Recording
 
 FOLDER = "estimates"

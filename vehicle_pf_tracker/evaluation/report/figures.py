@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.columns import RANKED
 from vehicle_pf_tracker.evaluation.report.panels import (
@@ -20,7 +21,6 @@ from vehicle_pf_tracker.evaluation.report.panels import (
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker
-from vehicle_pf_tracker.recordings.truth import Occlusion, Truth
 
 
 @dataclass(frozen=True, slots=True)

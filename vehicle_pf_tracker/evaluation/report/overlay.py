@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.evaluation.plots import STYLES
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.frame import Frame, frame_size
 
 _BLACK, _WHITE, _YELLOW = (0, 0, 0), (255, 255, 255), (240, 228, 66)
 _TAG = 13

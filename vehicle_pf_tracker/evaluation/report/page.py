@@ -10,6 +10,8 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report import filmstrip, page_tables
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
@@ -34,8 +36,6 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
 from vehicle_pf_tracker.evaluation.report.speed import speed_note, speed_table
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker
 from vehicle_pf_tracker.evaluation.source import Source
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Truth
 
 
 @dataclass(frozen=True, slots=True)

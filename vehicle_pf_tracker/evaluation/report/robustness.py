@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     EvaluationFolder,
     SystemEntry,
@@ -19,7 +20,6 @@ from vehicle_pf_tracker.evaluation.report import numbers
 from vehicle_pf_tracker.evaluation.report.columns import SUCCESS
 from vehicle_pf_tracker.evaluation.report.page_tables import Header, PageTable, Row, TableCell
 from vehicle_pf_tracker.evaluation.results import METRICS
-from vehicle_pf_tracker.features.errors import InputError
 
 SHIFTED, FRAMES, RESTARTS = "shifted_starts", "start_frames", "restarts"
 """Names of the folders, and of the options that ask for them."""

@@ -9,6 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 from vehicle_pf_tracker.evaluation.curves import (
     Curve,
@@ -25,9 +28,6 @@ from vehicle_pf_tracker.evaluation.failures import first_failure
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 from vehicle_pf_tracker.evaluation.source import Source
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.recordings.truth import Truth
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, safe_name
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_text
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
-from vehicle_pf_tracker.recordings.truth import Truth
 
 FOLDER = "trajectories"
 

@@ -8,14 +8,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.output_files import make_folder, replacing
 from vehicle_pf_tracker.evaluation.report.filmstrip import numbered_frames
 from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, colour_of, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun, typical
 from vehicle_pf_tracker.evaluation.source import Source
-from vehicle_pf_tracker.features.errors import InputError
-from vehicle_pf_tracker.features.frame import Frame
-from vehicle_pf_tracker.recordings.truth import Truth
 
 FOLDER = "videos"
 WIDTH = 640

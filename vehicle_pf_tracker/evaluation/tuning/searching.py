@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.running import Runner
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem, seeds_of
@@ -22,7 +23,6 @@ from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.evaluation.tuning.objective import Objective, mean_of_means
 from vehicle_pf_tracker.evaluation.tuning.search_space import Dimension
-from vehicle_pf_tracker.features.errors import InputError
 from vehicle_pf_tracker.trackers.parameters import Value
 
 if TYPE_CHECKING:

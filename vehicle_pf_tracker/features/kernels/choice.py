@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.features.kernels.interface import Kernels
 from vehicle_pf_tracker.features.kernels.opencv import OpenCvKernels
 

@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.window import Positions, Window

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.kernels.numba_cells import (
     Cells,

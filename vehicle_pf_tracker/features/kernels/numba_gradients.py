@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vehicle_pf_tracker.features.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.gradients import GradientDirections
 from vehicle_pf_tracker.features.kernels.numba_edges import TANGENTS, Numbers, count_edges
 from vehicle_pf_tracker.features.kernels.numba_place import Place

@@ -7,7 +7,7 @@ from typing import TypeGuard
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.features.glcm import Cooccurrence
 from vehicle_pf_tracker.features.gradients import GradientDirections
 from vehicle_pf_tracker.features.joint_colour import JointColour

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.features.glcm import Cooccurrence
 from vehicle_pf_tracker.features.kernels.interface import PixelRange
 from vehicle_pf_tracker.features.kernels.numba_cells import Rectangles

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.features.colour import bin_indices
-from vehicle_pf_tracker.features.frame import Frame, frame_size
 from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.kernels.interface import Kernels, PixelRange, SimilarityMap
 from vehicle_pf_tracker.features.mean_shift import kernel_similarity, mean_shift

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.alignment import Alignment, Step
 from vehicle_pf_tracker.features.colour_share import (
     Histogram,
@@ -21,7 +22,6 @@ from vehicle_pf_tracker.features.colour_share import (
     mean_share_map,
     shares,
 )
-from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.region import Region, cut_region
 from vehicle_pf_tracker.features.template import (
     Map,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.fusion_parts.foreground import Blob, Span
 from vehicle_pf_tracker.trackers.fusion_parts.history import Trend
 from vehicle_pf_tracker.trackers.fusion_parts.turning import Colour, Turns

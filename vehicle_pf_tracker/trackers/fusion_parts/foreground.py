@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 
 Mask = npt.NDArray[np.uint8]
 Edges = npt.NDArray[np.float64]

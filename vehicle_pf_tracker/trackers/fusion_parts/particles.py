@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.features.camera_motion import CameraMotion
-from vehicle_pf_tracker.features.frame import Frame
 from vehicle_pf_tracker.features.window import keep_inside
 from vehicle_pf_tracker.filtering.motion import (
     RAYLEIGH_MEAN,

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.features.box import Box
-from vehicle_pf_tracker.features.frame import Frame, frame_size
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.fusion_parts.foreground import (
     Blob,
     Edges,

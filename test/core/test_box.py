@@ -2,8 +2,8 @@ import math
 
 import pytest
 
-from vehicle_pf_tracker.features.box import Box, check_target, clip_position
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.box import Box, check_target, clip_position
+from vehicle_pf_tracker.core.errors import InputError
 
 
 def test_centre_is_the_corner_plus_half_the_size():

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 _LARGEST_SHARE = 4
 """Sides of the image that a target may be long: vehicles close to the camera overlap it."""

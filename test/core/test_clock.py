@@ -1,6 +1,6 @@
 import pytest
 
-from vehicle_pf_tracker.trackers.clock import StampClock, StampEvent
+from vehicle_pf_tracker.core.clock import StampClock, StampEvent
 
 MS = 1_000_000
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
-from vehicle_pf_tracker.features.box import Box
+from vehicle_pf_tracker.core.box import Box
 
 TOTAL_BELOW = 0.1
 """A vehicle is totally occluded when less than this fraction of it is visible."""

@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError
 
 Frame: TypeAlias = npt.NDArray[np.uint8]
 """RGB image, shape (height, width, 3) of uint8; contiguous or a strided view, never written to."""

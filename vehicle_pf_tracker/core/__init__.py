@@ -1,0 +1,1 @@
+"""The ground everything stands on: frames, boxes, stamps, truth and the user's mistakes."""
