@@ -31,10 +31,10 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from vehicle_pf_tracker.cli.main import main as command
 from vehicle_pf_tracker.cli.params import default_yaml
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
-from vehicle_pf_tracker.ros.configuration import Configuration
 from vehicle_pf_tracker.ros.node import TrackerNode
-from vehicle_pf_tracker.trackers.parameter_files import read_yaml
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 VARIANT = find_variant("pf")

@@ -4,8 +4,8 @@ import pytest
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.params import default_yaml
-from vehicle_pf_tracker.ros.configuration import Configuration
-from vehicle_pf_tracker.trackers.parameter_files import read_yaml
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"

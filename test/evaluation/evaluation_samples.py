@@ -13,8 +13,8 @@ from vehicle_pf_tracker.evaluation.results import ResultFolder
 from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run, versions
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.truth_file import write_truth
+from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
-from vehicle_pf_tracker.trackers.parameters import from_mapping, to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 FRAMES = 36

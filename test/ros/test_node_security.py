@@ -13,7 +13,7 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 from rclpy.parameter import Parameter
 from tracker_rig import TrackerNode, overrides
 
-from vehicle_pf_tracker.ros.configuration import Configuration
+from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 pytestmark = pytest.mark.ros

@@ -12,9 +12,9 @@ from rclpy.parameter import Parameter, parameter_value_to_python
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from tracker_rig import FIRST_NS, PERIOD_NS, Rig, on_target, overrides, road, values_of
 
-from vehicle_pf_tracker.ros.configuration import Configuration
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.table import ParameterSpec
 from vehicle_pf_tracker.ros.node import TrackerNode
-from vehicle_pf_tracker.trackers.parameters import ParameterSpec
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 from vehicle_pf_tracker.trackers.session import Session
 

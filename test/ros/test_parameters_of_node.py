@@ -21,13 +21,13 @@ from rclpy.parameter import Parameter
 from tracker_rig import TARGET, Rig, on_target, overrides, road, values_of
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.configuration import Configuration
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.files import to_yaml
+from vehicle_pf_tracker.parameters.node_parameters import NodeParameters
+from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.ros.node import TrackerNode
-from vehicle_pf_tracker.ros.node_parameters import NodeParameters
-from vehicle_pf_tracker.trackers.parameter_files import to_yaml
-from vehicle_pf_tracker.trackers.parameters import specs
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
-from vehicle_pf_tracker.trackers.session import SessionParameters
 
 pytestmark = pytest.mark.ros
 

@@ -8,8 +8,8 @@ import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import check_frame
+from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
-from vehicle_pf_tracker.trackers.parameters import specs
 
 ALL = sorted(SCENES)
 SHORT = 4

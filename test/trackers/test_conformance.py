@@ -8,8 +8,8 @@ from street import HEIGHT, SIZE, WIDTH, Street, error, follow
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.parameters import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from street import Street, error, follow
 
+from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.hpfms import HpfmsParameters, HpfmsTracker
-from vehicle_pf_tracker.trackers.parameters import from_mapping
 
 
 def make(**values):

@@ -10,7 +10,7 @@ from street import Street, follow
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.features.kernels import choice
-from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 

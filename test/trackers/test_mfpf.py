@@ -10,6 +10,7 @@ from vehicle_pf_tracker.features.glcm import Cooccurrence
 from vehicle_pf_tracker.features.gradients import GradientDirections
 from vehicle_pf_tracker.features.haralick import HaralickStatistics
 from vehicle_pf_tracker.features.lbp import BinaryPatterns
+from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.mfpf import MfpfTracker
@@ -21,7 +22,6 @@ from vehicle_pf_tracker.trackers.mfpf_parameters import (
     SfpfEdgeParameters,
     SfpfTextureParameters,
 )
-from vehicle_pf_tracker.trackers.parameters import from_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 NAMES = ("color", "edge", "texture")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from street import SIZE, Street, error, follow
 
+from vehicle_pf_tracker.parameters.table import from_mapping, specs
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.ms import MsParameters, MsTracker
-from vehicle_pf_tracker.trackers.parameters import from_mapping, specs
 
 
 def make(**values):

@@ -5,7 +5,7 @@ import pytest
 from street import SIZE, Street, follow
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
 from vehicle_pf_tracker.trackers.pfcl import PfclParameters, PfclTracker
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 SEQUENCES = Path(__file__).resolve().parents[3] / "shared" / "sequences"

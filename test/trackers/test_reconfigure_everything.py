@@ -11,9 +11,10 @@ import pytest
 from street import Street
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.parameters import ParameterSpec, from_mapping, specs, to_mapping
+from vehicle_pf_tracker.parameters.session_parameters import SessionParameters, TargetParameters
+from vehicle_pf_tracker.parameters.table import ParameterSpec, from_mapping, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS
-from vehicle_pf_tracker.trackers.session import Session, SessionParameters, TargetParameters
+from vehicle_pf_tracker.trackers.session import Session
 
 PERIOD_NS = 40_000_000
 CHANGE = 6

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from street import Street, error, follow
 
-from vehicle_pf_tracker.trackers.parameters import from_mapping
+from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.sapf import SapfParameters, SapfTracker
 
 

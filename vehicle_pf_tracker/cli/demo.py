@@ -22,9 +22,9 @@ from vehicle_pf_tracker.evaluation.results import ResultFolder
 from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Line, Table, comparison
+from vehicle_pf_tracker.parameters.table import Value, from_mapping
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import make_scene
-from vehicle_pf_tracker.trackers.parameters import Value, from_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 SCENE, SCENE_SEED = "highway", 0

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.parameter_files import read_yaml
-from vehicle_pf_tracker.trackers.parameters import parse_assignments, specs, unknown_name
+from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.parameters.table import parse_assignments, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.ros.configuration import Configuration
+    from vehicle_pf_tracker.parameters.configuration import Configuration
 
 _OF_ROS = ("use_sim_time", "start_type_description_service")
 _OF_ROS_PREFIX = "qos_overrides."
@@ -54,7 +54,7 @@ def chosen(variant: Variant, args: argparse.Namespace) -> Configuration:
     InputError
         If the file cannot be used, or a name or a value does not fit.
     """
-    from vehicle_pf_tracker.ros.configuration import Configuration
+    from vehicle_pf_tracker.parameters.configuration import Configuration
 
     configuration = Configuration.of(variant)
     if args.params is not None:

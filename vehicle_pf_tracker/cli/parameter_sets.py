@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.parameters import (
+from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.table import (
     ParameterSpec,
     parse_assignments,
     specs,
     unknown_name,
 )
 from vehicle_pf_tracker.trackers.registry import Variant
-from vehicle_pf_tracker.trackers.session import SessionParameters
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.ros.configuration import Configuration
+    from vehicle_pf_tracker.parameters.configuration import Configuration
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def configure(variant: Variant, parameter_set: ParameterSet) -> Configuration:
     InputError
         If a file, a name or a value does not fit.
     """
-    from vehicle_pf_tracker.ros.configuration import Configuration
+    from vehicle_pf_tracker.parameters.configuration import Configuration
 
     configuration = Configuration.of(variant)
     for file in parameter_set.files:

@@ -6,8 +6,8 @@ import argparse
 from collections.abc import Iterable
 
 from vehicle_pf_tracker.cli.config_files import config_path
-from vehicle_pf_tracker.trackers.parameter_files import to_yaml
-from vehicle_pf_tracker.trackers.parameters import EFFECTS, ParameterSpec
+from vehicle_pf_tracker.parameters.files import to_yaml
+from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 ALL = "all"
@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
 
 def default_yaml(variant: Variant) -> str:
     """Write the defaults of the node of `variant` as a commented ROS parameter file."""
-    from vehicle_pf_tracker.ros.configuration import Configuration
+    from vehicle_pf_tracker.parameters.configuration import Configuration
 
     defaults = Configuration.of(variant)
     title = f"{variant.name}: {variant.summary}. Printed by `vehicle-pf-tracker params`."
@@ -61,14 +61,14 @@ def default_yaml(variant: Variant) -> str:
 
 def default_markdown(variant: Variant) -> str:
     """Write the parameters of the node of `variant` as a Markdown table."""
-    from vehicle_pf_tracker.ros.configuration import Configuration
+    from vehicle_pf_tracker.parameters.configuration import Configuration
 
     return _table(Configuration.of(variant).specs().values())
 
 
 def all_markdown() -> str:
     """Write docs/parameters.md: what every node has, then what each variant has besides."""
-    from vehicle_pf_tracker.ros.configuration import Configuration
+    from vehicle_pf_tracker.parameters.configuration import Configuration
 
     tables = {name: Configuration.of(variant).specs() for name, variant in VARIANTS.items()}
     first, *others = tables.values()

@@ -9,11 +9,11 @@ from pathlib import Path
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.importing import FORMATS, jpeg
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.scene import Scene
-from vehicle_pf_tracker.trackers.parameters import specs
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -19,11 +19,11 @@ from vehicle_pf_tracker.cli.parameter_sets import (
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.systems import PEER, PeerSystem, System, VariantSystem
 from vehicle_pf_tracker.evaluation.peers.client import MODELS, Peer
-from vehicle_pf_tracker.trackers.parameters import Value, parse_assignments, to_mapping
+from vehicle_pf_tracker.parameters.table import Value, parse_assignments, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.ros.configuration import Configuration
+    from vehicle_pf_tracker.parameters.configuration import Configuration
 
 ALL, ALL_PEERS = "all", "peers"
 _PEERS_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not models)

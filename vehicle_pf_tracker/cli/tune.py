@@ -30,12 +30,12 @@ from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES
 from vehicle_pf_tracker.evaluation.tuning.search_space import SEARCHED, search_space
 from vehicle_pf_tracker.evaluation.tuning.searching import Search, Trial, best_of, search
 from vehicle_pf_tracker.evaluation.tuning.trial_table import to_csv
-from vehicle_pf_tracker.trackers.parameter_files import to_yaml
-from vehicle_pf_tracker.trackers.parameters import parse_assignments
+from vehicle_pf_tracker.parameters.files import to_yaml
+from vehicle_pf_tracker.parameters.table import parse_assignments
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.ros.configuration import Configuration
+    from vehicle_pf_tracker.parameters.configuration import Configuration
 
 TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100
 BEST = "best"
@@ -121,7 +121,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _configuration(variant: Variant, args: argparse.Namespace) -> Configuration:
-    from vehicle_pf_tracker.ros.configuration import Configuration
+    from vehicle_pf_tracker.parameters.configuration import Configuration
 
     configuration = Configuration.of(variant)
     if args.params is not None:

@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker import __version__
-from vehicle_pf_tracker.trackers.parameters import to_mapping
+from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.trackers.session import Session
 
 

@@ -12,7 +12,7 @@ from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.configuration import Configuration
+from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.diagnostics import Diagnostics
 from vehicle_pf_tracker.ros.image_input import ImageInput, image_topic
 from vehicle_pf_tracker.ros.managed_node import ManagedNode

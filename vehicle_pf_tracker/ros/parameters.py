@@ -20,8 +20,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.configuration import Configuration
-from vehicle_pf_tracker.trackers.parameters import EFFECTS, ParameterSpec, unknown_name
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec, unknown_name
 
 QOS_PREFIX = "qos_overrides."
 _INT64 = 2**63

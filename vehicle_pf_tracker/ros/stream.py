@@ -13,7 +13,7 @@ from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.features.encodings import MAX_SIDE
-from vehicle_pf_tracker.ros.configuration import Configuration
+from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.health import Health
 from vehicle_pf_tracker.ros.images import read_image
 from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns

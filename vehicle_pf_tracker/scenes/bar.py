@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.camera import Camera
 from vehicle_pf_tracker.scenes.compositing import Image, Sprite
 from vehicle_pf_tracker.scenes.paths import Still, Straight
@@ -16,7 +17,6 @@ from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.solids import draw
 from vehicle_pf_tracker.scenes.textures import plain
 from vehicle_pf_tracker.scenes.vehicles import car
-from vehicle_pf_tracker.trackers.parameters import parameter
 
 WIDTH, HEIGHT = 640, 480
 MARGIN = 20

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.scenes.bar import BarParameters, bar
 from vehicle_pf_tracker.scenes.cases import CASES
 from vehicle_pf_tracker.scenes.drive import DriveParameters
@@ -39,7 +40,6 @@ from vehicle_pf_tracker.scenes.standing_obstacles import (
     trees,
 )
 from vehicle_pf_tracker.scenes.videos import VIDEOS
-from vehicle_pf_tracker.trackers.parameters import from_mapping, parse_assignments, specs
 
 
 @dataclass(frozen=True, slots=True)

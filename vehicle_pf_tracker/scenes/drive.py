@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.compositing import Colour, Image
 from vehicle_pf_tracker.scenes.courses import Bend, Course, Pace, Pose, Swaying
 from vehicle_pf_tracker.scenes.heavy_vehicles import truck
@@ -26,7 +27,6 @@ from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
 from vehicle_pf_tracker.scenes.traffic import convoy
 from vehicle_pf_tracker.scenes.vehicles import car, suv
-from vehicle_pf_tracker.trackers.parameters import parameter
 
 SIZES = {"640x480": (640, 480), "768x576": (768, 576)}
 FREE = 10

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
+from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes.drive import Drive, DriveParameters
 from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
-from vehicle_pf_tracker.trackers.parameters import from_mapping
 
 Build: TypeAlias = Callable[[DriveParameters, int], Scene]
 """Makes a scene from the choices for a drive and a seed."""

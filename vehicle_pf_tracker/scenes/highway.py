@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.bridges import bridge
 from vehicle_pf_tracker.scenes.camera import Camera
 from vehicle_pf_tracker.scenes.heavy_vehicles import lorry
@@ -20,7 +21,6 @@ from vehicle_pf_tracker.scenes.roads import FAR_LANES, NEAR_LANES, dual_carriage
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.traffic import Vehicle, any_car, convoy
 from vehicle_pf_tracker.scenes.vehicles import car, saloon
-from vehicle_pf_tracker.trackers.parameters import parameter
 
 WIDTH, HEIGHT, FRAME_COUNT = 640, 480, 200
 START = 33

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.courses import Pace
 from vehicle_pf_tracker.scenes.drive import RADIUS, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.obstacles import house
@@ -13,7 +14,6 @@ from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.solids import ELEVATION
 from vehicle_pf_tracker.scenes.standing_obstacles import bridge_at
-from vehicle_pf_tracker.trackers.parameters import parameter
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.compositing import Image
 from vehicle_pf_tracker.scenes.courses import Pose
 from vehicle_pf_tracker.scenes.drive import SIZES, DriveParameters, target_faces
@@ -17,7 +18,6 @@ from vehicle_pf_tracker.scenes.polygons import cells_inside
 from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.scene import Scene
 from vehicle_pf_tracker.scenes.textures import asphalt, grass
-from vehicle_pf_tracker.trackers.parameters import parameter
 
 FOCAL = 600.0
 """Focal length, px."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.bridges import bridge as make_bridge
 from vehicle_pf_tracker.scenes.drive import Drive, DriveParameters
 from vehicle_pf_tracker.scenes.obstacles import pillar, post, sign, tree
 from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
-from vehicle_pf_tracker.trackers.parameters import parameter
 
 
 @dataclass(frozen=True, slots=True)

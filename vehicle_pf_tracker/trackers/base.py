@@ -16,10 +16,10 @@ from vehicle_pf_tracker.features.kernels.choice import load_kernels
 from vehicle_pf_tracker.features.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
+from vehicle_pf_tracker.parameters.table import specs, to_mapping
 from vehicle_pf_tracker.trackers.contract import CommonParameters, ParticleParameters
 from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
-from vehicle_pf_tracker.trackers.parameters import specs, to_mapping
 from vehicle_pf_tracker.trackers.target import Target
 
 ParametersT = TypeVar("ParametersT", bound=CommonParameters)

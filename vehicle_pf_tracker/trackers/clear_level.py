@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.trackers.parameters import parameter
+from vehicle_pf_tracker.parameters.table import parameter
 
 _FIRST_DEVIATION = 0.05
 """Deviation to begin with, so that larger changes are borne until the true one is known."""

@@ -18,12 +18,12 @@ from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import hellinger_distance
 from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
-from vehicle_pf_tracker.trackers.parameters import group, parameter
 from vehicle_pf_tracker.trackers.shared_parameters import (
     histogram_bits_parameter,
     resampling_parameter,

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.parameters import parameter
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.evidence import EvidenceParameters
-from vehicle_pf_tracker.trackers.parameters import group, parameter
 
 
 @dataclass(frozen=True, slots=True)

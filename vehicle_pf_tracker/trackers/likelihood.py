@@ -8,8 +8,8 @@ import numpy as np
 
 from vehicle_pf_tracker.features.similarity import hellinger_distance
 from vehicle_pf_tracker.filtering.weights import Weights
+from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.estimate import Array
-from vehicle_pf_tracker.trackers.parameters import parameter
 
 
 @dataclass(frozen=True, slots=True)

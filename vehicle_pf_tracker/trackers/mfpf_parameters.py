@@ -10,9 +10,9 @@ from vehicle_pf_tracker.features.glcm import Cooccurrence
 from vehicle_pf_tracker.features.haralick import HaralickStatistics
 from vehicle_pf_tracker.features.lbp import BinaryPatterns
 from vehicle_pf_tracker.features.window_feature import WindowFeature
+from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
-from vehicle_pf_tracker.trackers.parameters import group, parameter
 from vehicle_pf_tracker.trackers.shared_parameters import as_printed_switch, resampling_parameter
 
 TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {

@@ -16,12 +16,12 @@ from vehicle_pf_tracker.features.joint_colour import JointColour
 from vehicle_pf_tracker.features.mean_shift import kernel_histogram
 from vehicle_pf_tracker.features.reference import Reference
 from vehicle_pf_tracker.features.similarity import hellinger_distance
+from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
 from vehicle_pf_tracker.trackers.colour_tracker import VELOCITY_WINDOW
 from vehicle_pf_tracker.trackers.contract import CommonParameters
 from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
-from vehicle_pf_tracker.trackers.parameters import parameter
 from vehicle_pf_tracker.trackers.shared_parameters import histogram_bits_parameter
 
 

@@ -16,11 +16,11 @@ from vehicle_pf_tracker.features.lines import LineDetector, line_histograms
 from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient
 from vehicle_pf_tracker.features.window import bounds
 from vehicle_pf_tracker.filtering.weights import from_log
+from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters, log_likelihood
-from vehicle_pf_tracker.trackers.parameters import group, parameter
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,11 +15,11 @@ from vehicle_pf_tracker.features.similarity import hellinger_distance
 from vehicle_pf_tracker.features.window import keep_inside
 from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
+from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters, log_likelihood
-from vehicle_pf_tracker.trackers.parameters import group, parameter
 from vehicle_pf_tracker.trackers.shared_parameters import as_printed_switch
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
-from vehicle_pf_tracker.trackers.parameters import parameter
+from vehicle_pf_tracker.parameters.table import parameter
 
 
 def as_printed_switch(source: str) -> Any:

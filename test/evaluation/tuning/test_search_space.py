@@ -2,7 +2,7 @@ import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.tuning.search_space import SEARCHED, Dimension, search_space
-from vehicle_pf_tracker.trackers.parameters import from_mapping, specs, to_mapping
+from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 

@@ -12,7 +12,7 @@ from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES, mean_of_m
 from vehicle_pf_tracker.evaluation.tuning.search_space import search_space
 from vehicle_pf_tracker.evaluation.tuning.searching import Search, Trial, best_of, search
 from vehicle_pf_tracker.evaluation.tuning.trial_table import to_csv
-from vehicle_pf_tracker.trackers.parameters import to_mapping
+from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 SOURCES = [Source(name, name, "/image", 1, 1, 1, name) for name in ("a", "b")]

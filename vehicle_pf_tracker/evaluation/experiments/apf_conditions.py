@@ -14,7 +14,7 @@ from vehicle_pf_tracker.evaluation.experiments.apf_systems import ALL_READINGS, 
 from vehicle_pf_tracker.evaluation.experiments.cells import SceneChoice
 from vehicle_pf_tracker.evaluation.experiments.data_table import DataTable, Entry
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds
-from vehicle_pf_tracker.trackers.parameters import Value
+from vehicle_pf_tracker.parameters.table import Value
 
 FACTOR = 1.5
 """How many times the best rival's median error is still as good."""

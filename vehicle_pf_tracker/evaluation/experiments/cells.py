@@ -15,13 +15,14 @@ from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import with_target
 from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs, to_mapping
 from vehicle_pf_tracker.scenes.cases import CASES
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.scene import Scene, SceneFrame
 from vehicle_pf_tracker.scenes.videos import VIDEOS
-from vehicle_pf_tracker.trackers.parameters import Value, from_mapping, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
-from vehicle_pf_tracker.trackers.session import Session, SessionParameters
+from vehicle_pf_tracker.trackers.session import Session
 
 Settings: TypeAlias = tuple[tuple[str, Value], ...]
 """Names and values, in a form that can be a key."""

@@ -15,8 +15,8 @@ from vehicle_pf_tracker.evaluation.experiments.cells import (
     System,
     start_session,
 )
+from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.scenes.scene import SceneFrame
-from vehicle_pf_tracker.trackers.parameters import to_mapping
 from vehicle_pf_tracker.trackers.session import Session
 
 

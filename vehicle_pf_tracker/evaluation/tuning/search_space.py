@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.parameters import ParameterSpec, Value, specs, unknown_name
+from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant
 
 FACTOR = 4.0

@@ -23,7 +23,7 @@ from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.evaluation.tuning.objective import Objective, mean_of_means
 from vehicle_pf_tracker.evaluation.tuning.search_space import Dimension
-from vehicle_pf_tracker.trackers.parameters import Value
+from vehicle_pf_tracker.parameters.table import Value
 
 if TYPE_CHECKING:
     import optuna

@@ -5,14 +5,22 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.node_parameters import NodeParameters
-from vehicle_pf_tracker.trackers.parameters import ParameterSpec, Value, from_mapping, specs
-from vehicle_pf_tracker.trackers.parameters import to_mapping as values_of
-from vehicle_pf_tracker.trackers.registry import Variant
-from vehicle_pf_tracker.trackers.session import SessionParameters
+from vehicle_pf_tracker.parameters.node_parameters import NodeParameters
+from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, from_mapping, specs
+from vehicle_pf_tracker.parameters.table import to_mapping as values_of
+
+
+class Parametrised(Protocol):
+    """A variant as the configuration sees it."""
+
+    @property
+    def parameters(self) -> type[Any]:
+        """Parameter dataclass, all of whose fields have defaults."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +38,7 @@ class Configuration:
     node: NodeParameters
 
     @classmethod
-    def of(cls, variant: Variant) -> Configuration:
+    def of(cls, variant: Parametrised) -> Configuration:
         """Return the defaults of `variant`."""
         return cls(variant.parameters(), SessionParameters(), NodeParameters())
 

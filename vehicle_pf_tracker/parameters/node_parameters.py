@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.trackers.parameters import group, parameter
+from vehicle_pf_tracker.parameters.table import group, parameter
 
 
 @dataclass(frozen=True, slots=True)

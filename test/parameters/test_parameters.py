@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.parameter_files import read_yaml, to_yaml
-from vehicle_pf_tracker.trackers.parameters import (
+from vehicle_pf_tracker.parameters.files import read_yaml, to_yaml
+from vehicle_pf_tracker.parameters.table import (
     from_mapping,
     group,
     parameter,

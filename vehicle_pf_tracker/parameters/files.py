@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.parameters import EFFECTS, ParameterSpec, Value
+from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec, Value
 
 _WIDTH = 96
 
