@@ -8,7 +8,7 @@ BENCH_ARGS =
 
 BIN := .venv/bin
 INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
-CORE_AND_NODE := $(wildcard $(addprefix test/,filtering features trackers scenes recordings ros))
+CORE_AND_NODE := $(wildcard $(addprefix test/,core parameters filtering image trackers scenes recordings ros))
 
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST

@@ -12,7 +12,7 @@ from geometry_msgs.msg import Point32, PointStamped, PolygonStamped
 from sensor_msgs.msg import Image, RegionOfInterest
 from std_msgs.msg import Header
 
-from vehicle_pf_tracker.features.encodings import ENCODINGS
+from vehicle_pf_tracker.image.encodings import ENCODINGS
 from vehicle_pf_tracker.ros.messages import image_message
 
 Frame = npt.NDArray[np.uint8]

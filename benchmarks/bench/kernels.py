@@ -12,9 +12,9 @@ from benchmarks.bench.interleaving import Work, compare
 from benchmarks.bench.material import clouds, drive, enlarged
 from benchmarks.bench.routes import Route, routes, three_references
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.features.kernels.choice import load_kernels
-from vehicle_pf_tracker.features.reference import Reference
-from vehicle_pf_tracker.features.window import Positions, Window
+from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.image.reference import Reference
+from vehicle_pf_tracker.image.window import Positions, Window
 
 COUNTS = (50, 200, 1000, 5000)
 WINDOWS = {"41x31": Window(20, 15), "81x61": Window(40, 30)}

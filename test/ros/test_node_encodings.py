@@ -12,7 +12,7 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 from sensor_msgs.msg import Image
 from tracker_rig import Rig, header, on_target, values_of
 
-from vehicle_pf_tracker.features.encodings import ENCODINGS
+from vehicle_pf_tracker.image.encodings import ENCODINGS
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.trackers.session import Session
 

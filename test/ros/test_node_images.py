@@ -24,7 +24,7 @@ from tracker_rig import (
 )
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.features.compressed_image import decode_compressed
+from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session

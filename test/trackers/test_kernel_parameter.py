@@ -9,7 +9,7 @@ import pytest
 from street import Street, follow
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.features.kernels import choice
+from vehicle_pf_tracker.image.kernels import choice
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from street import Street, error, follow
 
-from vehicle_pf_tracker.features.glcm import Cooccurrence
-from vehicle_pf_tracker.features.gradients import GradientDirections
-from vehicle_pf_tracker.features.haralick import HaralickStatistics
-from vehicle_pf_tracker.features.lbp import BinaryPatterns
+from vehicle_pf_tracker.image.glcm import Cooccurrence
+from vehicle_pf_tracker.image.gradients import GradientDirections
+from vehicle_pf_tracker.image.haralick import HaralickStatistics
+from vehicle_pf_tracker.image.lbp import BinaryPatterns
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.features.compressed_image import decode_compressed
+from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.footage import Picture, stamp_of
 from vehicle_pf_tracker.recordings.truth_table import TruthRow, read_truth_table
 

@@ -11,8 +11,8 @@ from typing import Any
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.features.compressed_image import decode_compressed
-from vehicle_pf_tracker.features.encodings import to_rgb
+from vehicle_pf_tracker.image.compressed_image import decode_compressed
+from vehicle_pf_tracker.image.encodings import to_rgb
 from vehicle_pf_tracker.recordings import messages, truth_messages
 from vehicle_pf_tracker.recordings import topics as names
 from vehicle_pf_tracker.recordings.bag_folder import recording_files

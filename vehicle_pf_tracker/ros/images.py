@@ -5,8 +5,8 @@ from __future__ import annotations
 from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.features.compressed_image import decode_compressed
-from vehicle_pf_tracker.features.encodings import to_rgb
+from vehicle_pf_tracker.image.compressed_image import decode_compressed
+from vehicle_pf_tracker.image.encodings import to_rgb
 from vehicle_pf_tracker.ros.serialized_image import SerializedImage
 
 

@@ -12,7 +12,7 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.features.encodings import MAX_SIDE
+from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.health import Health
 from vehicle_pf_tracker.ros.images import read_image

@@ -11,10 +11,6 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.features.colour import Histogram
-from vehicle_pf_tracker.features.joint_colour import JointColour
-from vehicle_pf_tracker.features.reference import Reference
-from vehicle_pf_tracker.features.similarity import hellinger_similarity
 from vehicle_pf_tracker.filtering.motion import (
     RAYLEIGH_MEAN,
     sample_normal,
@@ -22,6 +18,10 @@ from vehicle_pf_tracker.filtering.motion import (
 )
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import from_log
+from vehicle_pf_tracker.image.colour import Histogram
+from vehicle_pf_tracker.image.joint_colour import JointColour
+from vehicle_pf_tracker.image.reference import Reference
+from vehicle_pf_tracker.image.similarity import hellinger_similarity
 from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.clear_level import ClearLevel

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.features.kernels.choice import CHOICES, load_kernels
+from vehicle_pf_tracker.image.kernels.choice import CHOICES, load_kernels
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.evidence import EvidenceParameters

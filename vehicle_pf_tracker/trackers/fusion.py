@@ -16,8 +16,8 @@ from typing import TypeAlias
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.features.window import is_outside, keep_inside
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
+from vehicle_pf_tracker.image.window import is_outside, keep_inside
 from vehicle_pf_tracker.trackers.base import Outcome
 from vehicle_pf_tracker.trackers.fusion_parts.appearance import Likeness
 from vehicle_pf_tracker.trackers.fusion_parts.candidates import Chain

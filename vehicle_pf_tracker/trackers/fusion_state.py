@@ -10,10 +10,10 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.features.camera_motion import CameraFlow, CameraMotion
-from vehicle_pf_tracker.features.small_grey import small_grey
-from vehicle_pf_tracker.features.window import keep_inside
 from vehicle_pf_tracker.filtering.motion import sample_normal
+from vehicle_pf_tracker.image.camera_motion import CameraFlow, CameraMotion
+from vehicle_pf_tracker.image.small_grey import small_grey
+from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.base import Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters

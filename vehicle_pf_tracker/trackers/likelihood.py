@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.features.similarity import hellinger_distance
 from vehicle_pf_tracker.filtering.weights import Weights
+from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.estimate import Array
 

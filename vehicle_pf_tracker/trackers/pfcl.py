@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.features.lines import LineDetector, line_histograms
-from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient
-from vehicle_pf_tracker.features.window import bounds
 from vehicle_pf_tracker.filtering.weights import from_log
+from vehicle_pf_tracker.image.lines import LineDetector, line_histograms
+from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient
+from vehicle_pf_tracker.image.window import bounds
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker

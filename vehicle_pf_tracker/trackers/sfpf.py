@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
-from vehicle_pf_tracker.features.window_feature import WindowFeature
+from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
+from vehicle_pf_tracker.image.window_feature import WindowFeature
 from vehicle_pf_tracker.trackers.mfpf import FeatureFilter, edge_feature
 from vehicle_pf_tracker.trackers.mfpf_parameters import (
     TEXTURES,

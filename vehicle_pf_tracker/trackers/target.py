@@ -6,8 +6,8 @@ import math
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.features.colour import Histogram, joint_histogram
-from vehicle_pf_tracker.features.window import Window
+from vehicle_pf_tracker.image.colour import Histogram, joint_histogram
+from vehicle_pf_tracker.image.window import Window
 from vehicle_pf_tracker.trackers.contract import WindowParameters
 
 _MARGIN = 64

@@ -2,7 +2,7 @@
 
 import pytest
 
-from vehicle_pf_tracker.features.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion_parts.candidates import Candidate, Candidates, Chain
 
 STILL = CameraMotion()

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.features.camera_motion import CameraMotion
-from vehicle_pf_tracker.features.small_grey import small_grey
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.small_grey import small_grey
 from vehicle_pf_tracker.trackers.fusion_parameters import CueParameters
 from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion_parts.background import Background

@@ -25,9 +25,9 @@ from vehicle_pf_tracker.evaluation.experiments.mfpf_systems import (
 )
 from vehicle_pf_tracker.evaluation.experiments.numbers import mean_and_spread
 from vehicle_pf_tracker.evaluation.experiments.verdict import Claim, Finding, Holds, Verdict
-from vehicle_pf_tracker.features.rgb_marginals import RgbMarginals
-from vehicle_pf_tracker.features.similarity import bhattacharyya_coefficient, hellinger_distance
-from vehicle_pf_tracker.features.window_feature import WindowFeature
+from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
+from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, hellinger_distance
+from vehicle_pf_tracker.image.window_feature import WindowFeature
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.contract import WindowParameters
 from vehicle_pf_tracker.trackers.mfpf import edge_feature

@@ -12,8 +12,8 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.features.alignment import Alignment, Step
-from vehicle_pf_tracker.features.colour_share import (
+from vehicle_pf_tracker.image.alignment import Alignment, Step
+from vehicle_pf_tracker.image.colour_share import (
     Histogram,
     bin_count,
     colour_bins,
@@ -22,8 +22,8 @@ from vehicle_pf_tracker.features.colour_share import (
     mean_share_map,
     shares,
 )
-from vehicle_pf_tracker.features.region import Region, cut_region
-from vehicle_pf_tracker.features.template import (
+from vehicle_pf_tracker.image.region import Region, cut_region
+from vehicle_pf_tracker.image.template import (
     Map,
     Patch,
     best_coefficient,

@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.features.small_grey import SmallGrey
+from vehicle_pf_tracker.image.small_grey import SmallGrey
 
 _KEPT = 60
 _FEWEST = 6

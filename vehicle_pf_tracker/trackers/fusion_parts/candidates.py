@@ -7,7 +7,7 @@ from collections import deque
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from vehicle_pf_tracker.features.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion_parts.history import carried
 
 Place = tuple[float, float]

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.features.camera_motion import CameraMotion
-from vehicle_pf_tracker.features.window import keep_inside
 from vehicle_pf_tracker.filtering.motion import (
     RAYLEIGH_MEAN,
     sample_normal,
     sample_normal_rayleigh,
 )
 from vehicle_pf_tracker.filtering.resampling import systematic
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud
 from vehicle_pf_tracker.trackers.estimate import Array
 

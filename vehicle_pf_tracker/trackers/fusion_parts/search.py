@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.features.camera_motion import CameraMotion
-from vehicle_pf_tracker.features.small_grey import SmallGrey
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.small_grey import SmallGrey
 from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion_parts.background import Background
 from vehicle_pf_tracker.trackers.fusion_parts.candidates import Candidate, Candidates, Chain

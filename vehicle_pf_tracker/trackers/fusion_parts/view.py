@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.features.region import Region
-from vehicle_pf_tracker.features.template import Map
+from vehicle_pf_tracker.image.region import Region
+from vehicle_pf_tracker.image.template import Map
 from vehicle_pf_tracker.trackers.estimate import Array
 
 Place = tuple[float, float]

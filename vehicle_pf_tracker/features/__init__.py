@@ -1,1 +1,0 @@
-"""What is measured in the image: frames, boxes, windows, histograms, similarity."""

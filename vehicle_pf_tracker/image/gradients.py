@@ -1,0 +1,161 @@
+"""The edge feature of P2: directions of the gradient at edge points (section III-C)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple, TypeAlias
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.sobel import (
+    DIRECTION_BINS,
+    Strengths,
+    direction_bins,
+    squared_limits,
+    squared_strength,
+)
+from vehicle_pf_tracker.image.window import (
+    Bounds,
+    Positions,
+    Window,
+    bounds,
+    centres,
+    keep_inside,
+)
+from vehicle_pf_tracker.image.window_feature import Counted, CountedFeature, to_grey
+from vehicle_pf_tracker.image.window_gradients import window_direction_counts
+from vehicle_pf_tracker.image.window_sums import areas, bin_counts, covered_region
+
+Counts: TypeAlias = npt.NDArray[np.int64]
+
+_NO_EDGE = DIRECTION_BINS
+_CHUNK = 1_000_000
+"""Pairs of a window and an edge point that are compared at once; bounds the memory."""
+
+
+@dataclass(frozen=True)
+class GradientDirections(CountedFeature):
+    """64 bins of gradient direction, -180 to 180 degrees, of a window's edge points.
+
+    Parameters
+    ----------
+    threshold : float
+        Edge points have at least this share of the window's strongest gradient (printed: 0.8;
+        READINGS 14).
+    in_frame : bool
+        Take the gradient in the frame; False takes it in each window by itself, mirrored at its
+        border, as printed (READINGS 14).
+    signed : bool
+        Tell dark-to-light from light-to-dark; False takes the printed ``atan``, which folds
+        opposite directions into the middle 32 bins (READINGS 13).
+    floor : float
+        Gradient that an edge point has at least (a step of one grey level makes 4). Without one, a
+        window of nothing but noise is full of edge points.
+    """
+
+    threshold: float = 0.3
+    in_frame: bool = True
+    signed: bool = True
+    floor: float = 0.0
+
+    bins = DIRECTION_BINS
+
+    def counts(
+        self, frame: Frame, positions: Positions, window: Window, active: npt.NDArray[np.intp]
+    ) -> Counted:
+        """Count windows; see `CountedFeature.counts`."""
+        in_image = bounds(frame, positions, window)
+        # One pixel more makes every gradient in the windows that of the whole frame.
+        region, windows = covered_region(frame, in_image, margin=1)
+        grey = to_grey(region)
+        if not self.in_frame:
+            counts = window_direction_counts(grey, windows, self.limits, signed=self.signed)
+            return Counted(counts[:, active], counts.sum(axis=1))
+        gx, gy = (
+            np.asarray(cv2.Sobel(grey, cv2.CV_16S, dx, 1 - dx, ksize=3), np.int16) for dx in (1, 0)
+        )
+        strength = squared_strength(gx, gy)
+        corner = in_image.left[0] - windows.left[0], in_image.top[0] - windows.top[0]
+        middles = centres(keep_inside(frame, positions)) - corner
+        limits = self.limits(window_peaks(strength, middles, window))
+        points = _edge_points(gx, gy, strength, limits, signed=self.signed)
+        return _count_points(points, strength.shape, limits, windows, active)
+
+    def limits(self, peaks: Strengths) -> Strengths:
+        """Least squared strength of edge points in windows whose strongest have `peaks`."""
+        return squared_limits(peaks, self.threshold, self.floor)
+
+
+class EdgePoints(NamedTuple):
+    """What may be an edge point in some window: row, column, squared strength, bin; each (M,)."""
+
+    y: npt.NDArray[np.intp]
+    x: npt.NDArray[np.intp]
+    strength: Strengths
+    bin: npt.NDArray[np.intp]
+
+    def where(self, chosen: npt.NDArray[Any]) -> EdgePoints:
+        """Points chosen by a mask or by their numbers."""
+        return EdgePoints(*(column[chosen] for column in self))
+
+
+def window_peaks(strength: Strengths, middles: npt.NDArray[np.intp], window: Window) -> Strengths:
+    """Largest strength in each window, shape (N,); `middles` are the windows' own pixels (N, 2)."""
+    height, width = strength.shape
+    half = min(window.half_width, width), min(window.half_height, height)
+    kernel = np.ones((2 * half[1] + 1, 2 * half[0] + 1), np.uint8)
+    highest = np.asarray(cv2.dilate(strength, kernel), np.float32)
+    return highest[middles[:, 1], middles[:, 0]]
+
+
+def _edge_points(
+    gx: npt.NDArray[np.int16],
+    gy: npt.NDArray[np.int16],
+    strength: Strengths,
+    limits: Strengths,
+    *,
+    signed: bool,
+) -> EdgePoints:
+    y, x = np.nonzero(strength >= limits.min())
+    return EdgePoints(y, x, strength[y, x], direction_bins(gx[y, x], gy[y, x], signed=signed))
+
+
+def _count_points(
+    points: EdgePoints,
+    shape: tuple[int, ...],
+    limits: Strengths,
+    windows: Bounds,
+    active: npt.NDArray[np.intp],
+) -> Counted:
+    """Count points by direction: those above every limit in planes, the few others one by one."""
+    certain = points.strength >= limits.max(initial=0.0, where=np.isfinite(limits))
+    sure = points.where(certain)
+    indices = np.full(shape, _NO_EDGE, np.uint8)
+    indices[sure.y, sure.x] = sure.bin
+    sums = bin_counts(indices, np.append(active, _NO_EDGE), _NO_EDGE + 1, windows)
+    doubtful = _compare(points.where(~certain), limits, windows)
+    totals = areas(windows) - sums[:, -1] + doubtful.sum(axis=1)
+    return Counted(sums[:, :-1] + doubtful[:, active], totals)
+
+
+def _compare(points: EdgePoints, limits: Strengths, windows: Bounds) -> Counts:
+    """Count the points of each bin that each window contains and lets pass, shape (N, 64)."""
+    counts = np.zeros((len(limits), DIRECTION_BINS), np.int64)
+    if len(points.y) == 0:
+        return counts
+    y, x, strength, bins = points.where(np.argsort(points.bin, kind="stable"))
+    first = np.flatnonzero(np.diff(bins, prepend=-1))
+    # Narrow numbers, since this compares every window with every point.
+    y, x = y.astype(np.int16), x.astype(np.int16)
+    size = max(_CHUNK // len(bins), 1)
+    for start in range(0, len(limits), size):
+        part = slice(start, start + size)
+        left, top, right, bottom = (side[part, np.newaxis].astype(np.int16) for side in windows)
+        passes = strength >= limits[part, np.newaxis]
+        passes &= (x >= left) & (x < right)
+        passes &= (y >= top) & (y < bottom)
+        counts[part, bins[first]] = np.add.reduceat(passes, first, axis=1, dtype=np.int64)
+    return counts

@@ -1,0 +1,158 @@
+"""What a set of kernels can do."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.joint_colour import JointColour
+from vehicle_pf_tracker.image.reference import Reference
+from vehicle_pf_tracker.image.window import Positions, Window
+from vehicle_pf_tracker.image.window_feature import (
+    Coefficients,
+    Counted,
+    CountedFeature,
+    Histograms,
+    WindowFeature,
+)
+
+SimilarityMap: TypeAlias = npt.NDArray[np.float32]
+
+
+class PixelRange(NamedTuple):
+    """Pixels from `left`, `top` to before `right`, `bottom`; all inside the frame."""
+
+    left: int
+    top: int
+    right: int
+    bottom: int
+
+
+class Kernels(ABC):
+    """Measures windows; all implementations count alike, and agree on similarities to 1e-6.
+
+    Each gives the same bits for the same input on one machine.
+
+    Attributes
+    ----------
+    name : str
+        The word for the parameter `kernels`.
+    notices : sequence of str
+        What was not as it should be while they were made ready, a sentence each.
+    """
+
+    name: str
+    notices: Sequence[str] = ()
+
+    @abstractmethod
+    def counts(
+        self,
+        feature: WindowFeature,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        active: npt.NDArray[np.intp],
+    ) -> Counted:
+        """Count a feature that counts pixels, at some of its bins.
+
+        Parameters
+        ----------
+        feature : WindowFeature
+            What is counted.
+        frame : (H, W, 3) array
+            RGB.
+        positions : (N, 2) array
+            Window centres in px; rounded and kept inside the image as in `window.bounds`.
+        window : Window
+            Size of all windows; over the border the pixels that exist count.
+        active : (K,) array
+            Bins to count, ascending.
+
+        Returns
+        -------
+        Counted
+            Counts of the bins (N, K), and of all bins together (N,).
+        """
+
+    def histograms(
+        self, feature: WindowFeature, frame: Frame, positions: Positions, window: Window
+    ) -> Histograms:
+        """Describe windows; see `WindowFeature.histograms`."""
+        if not isinstance(feature, CountedFeature):
+            return feature.histograms(frame, positions, window)
+        return self.counts(feature, frame, positions, window, np.arange(feature.bins)).histograms
+
+    @abstractmethod
+    def similarity(
+        self,
+        feature: WindowFeature,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Coefficients:
+        """Compare windows with a reference.
+
+        Parameters
+        ----------
+        feature, frame, positions, window
+            As for `counts`; any feature will do.
+        reference : Reference
+            Histogram of this feature.
+
+        Returns
+        -------
+        (N,) array
+            Bhattacharyya coefficients, 0 to 1.
+        """
+
+    @abstractmethod
+    def similarity_map(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        window: Window,
+        reference: Reference,
+        pixels: PixelRange | None = None,
+    ) -> SimilarityMap:
+        """Compare the windows around all pixels of a range with a reference.
+
+        Parameters
+        ----------
+        feature, frame, window, reference
+            As for `similarity`.
+        pixels : PixelRange, optional
+            Where the windows' centres lie; the whole frame if left out.
+
+        Returns
+        -------
+        (bottom - top, right - left) array of float32
+            Bhattacharyya coefficients, 0 to 1.
+        """
+
+    @abstractmethod
+    def kernel_similarity(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Coefficients:
+        """Compare kernel-weighted histograms with a reference; see `features.mean_shift`."""
+
+    @abstractmethod
+    def mean_shift(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Positions:
+        """Move every position one mean-shift step; see `features.mean_shift`."""

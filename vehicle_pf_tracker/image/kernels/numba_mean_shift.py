@@ -1,0 +1,118 @@
+"""Mean shift of many windows (`features.mean_shift`), in numba."""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from numba import types
+
+from vehicle_pf_tracker.image.kernels.numba_cells import CELLS, RECTANGLES, Cells
+from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
+from vehicle_pf_tracker.image.kernels.numba_windows import PAIR, SCALE, Pixels, Reals
+from vehicle_pf_tracker.image.mean_shift import epanechnikov
+from vehicle_pf_tracker.image.window import Window
+
+Offsets: TypeAlias = npt.NDArray[np.int64]
+Ellipse: TypeAlias = tuple[Reals, Reals]
+
+_OFFSETS = types.Array(types.int64, 2, "C", readonly=True)
+
+
+@functools.lru_cache(maxsize=8)
+def ellipse(window: Window) -> tuple[Offsets, Reals]:
+    """Offsets x, y (P, 2) and profile (P,) of the kernel's pixels."""
+    kernel = epanechnikov(window)
+    offsets, profile = kernel.offsets.astype(np.int64), kernel.profile.copy()
+    offsets.flags.writeable = profile.flags.writeable = False
+    return offsets, profile
+
+
+@inlined
+def _weigh_cells(
+    cells: Cells, x: int, y: int, offsets: Offsets, profile: Reals, masses: Reals
+) -> float:
+    """Fill in the kernel mass of each cell, and return that of all pixels that exist."""
+    height, width = cells.shape[1:]
+    masses[:] = 0.0
+    total = 0.0
+    for j in range(len(offsets)):
+        column, row = x + offsets[j, 0], y + offsets[j, 1]
+        if 0 <= column < width and 0 <= row < height:
+            masses[cells[0, row, column]] += profile[j]
+            total += profile[j]
+    return total
+
+
+@compiled(types.float64[::1](CELLS, RECTANGLES, PAIR, _OFFSETS, SCALE))
+def compare_kernels(
+    cells: Cells, pixels: Pixels, origin: tuple[int, int], offsets: Offsets, scale: Ellipse
+) -> Reals:
+    """Compare the kernel-weighted histograms of windows with a reference.
+
+    Parameters
+    ----------
+    cells : (1, H, W) array
+        Of the region that all windows cover, cut at the border of the frame.
+    pixels : (N, 2) array
+        Centre x, y of each window in the frame.
+    origin : (int, int)
+        x, y of the region's first pixel in the frame.
+    offsets : (P, 2) array
+        Pixels of the ellipse around a centre.
+    scale : (P,) array, (K + 1 or more,) array
+        Profile of those pixels; square roots of the reference at the active bins, then zeros.
+
+    Returns
+    -------
+    (N,) array
+        Bhattacharyya coefficients.
+    """
+    profile, values = scale
+    masses = np.empty(len(values))
+    result = np.empty(len(pixels))
+    for i in range(len(pixels)):
+        x, y = pixels[i, 0] - origin[0], pixels[i, 1] - origin[1]
+        total = _weigh_cells(cells, x, y, offsets, profile, masses)
+        overlap = 0.0
+        for k in range(len(values)):
+            overlap += values[k] * math.sqrt(masses[k])
+        result[i] = min(overlap / math.sqrt(total), 1.0)
+    return result
+
+
+@compiled(types.float64[:, ::1](CELLS, RECTANGLES, PAIR, _OFFSETS, SCALE))
+def shift_kernels(
+    cells: Cells, pixels: Pixels, origin: tuple[int, int], offsets: Offsets, scale: Ellipse
+) -> Reals:
+    """Step of each window from its centre x, y to the mean; parameters as for `compare_kernels`.
+
+    Returns
+    -------
+    (N, 2) array
+        Not a number where the ellipse has no colour of the reference.
+    """
+    profile, values = scale
+    height, width = cells.shape[1:]
+    masses = np.empty(len(values))
+    weights = np.empty(len(values))
+    steps = np.full((len(pixels), 2), np.nan)
+    for i in range(len(pixels)):
+        x, y = pixels[i, 0] - origin[0], pixels[i, 1] - origin[1]
+        _weigh_cells(cells, x, y, offsets, profile, masses)
+        for k in range(len(values)):
+            weights[k] = values[k] / math.sqrt(masses[k]) if masses[k] > 0 else 0.0
+        across = down = total = 0.0
+        for j in range(len(offsets)):
+            column, row = x + offsets[j, 0], y + offsets[j, 1]
+            if 0 <= column < width and 0 <= row < height:
+                weight = weights[cells[0, row, column]]
+                across += weight * offsets[j, 0]
+                down += weight * offsets[j, 1]
+                total += weight
+        if total > 0:
+            steps[i, 0], steps[i, 1] = across / total, down / total
+    return steps

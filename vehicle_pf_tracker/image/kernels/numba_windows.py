@@ -1,0 +1,377 @@
+"""Counts and similarities of many windows of one size, in numba.
+
+Windows that lie close together share most of their pixels. A histogram of every column, as high as
+a window, follows the windows' centres from row to row, and the sum of the columns in a window
+follows them along a row. Its similarity is then taken only where a window was asked for. Windows
+that lie far apart are counted each by itself.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from numba import types
+
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.kernels.numba_cells import (
+    CELLS,
+    FRAME,
+    RECTANGLES,
+    TABLE,
+    Cells,
+    Rectangles,
+    Table,
+)
+from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
+from vehicle_pf_tracker.image.window import Positions
+
+Pixels: TypeAlias = npt.NDArray[np.int64]
+Reals: TypeAlias = npt.NDArray[np.float64]
+Counts: TypeAlias = npt.NDArray[np.int32]
+Scale: TypeAlias = tuple[Reals, Reals]
+Reach: TypeAlias = tuple[int, int, int]
+Columns: TypeAlias = npt.NDArray[np.uint16]
+Map: TypeAlias = npt.NDArray[np.float32]
+
+_POSITIONS = types.Array(types.float64, 2, "A", readonly=True)
+REACH = types.UniTuple(types.int64, 3)
+PAIR = types.UniTuple(types.int64, 2)
+SCALE = types.UniTuple(types.Array(types.float64, 1, "C", readonly=True), 2)
+QUAD = types.UniTuple(types.int64, 4)
+_COUNTS = types.int32[:, ::1]
+
+# What things cost, roughly in cycles; they decide about the route, and not about the result.
+_PIXEL = 4
+_STEP = 10
+_BINS_AT_ONCE = 8
+
+
+@compiled(types.Tuple((RECTANGLES, QUAD))(_POSITIONS, types.int64, types.int64))
+def window_pixels(
+    positions: Positions, width: int, height: int
+) -> tuple[Pixels, tuple[int, int, int, int]]:
+    """Pixel x, y of each window's centre, as `window.bounds` has it, shape (N, 2).
+
+    Then the least x and y, and the largest x and y of them.
+    """
+    pixels = np.empty((len(positions), 2), np.int64)
+    x0, y0, x1, y1 = width, height, 0, 0
+    for i in range(len(positions)):
+        x = min(max(np.int64(np.rint(positions[i, 0] - 0.5)), 0), width - 1)
+        y = min(max(np.int64(np.rint(positions[i, 1] - 0.5)), 0), height - 1)
+        pixels[i, 0], pixels[i, 1] = x, y
+        x0, y0, x1, y1 = min(x0, x), min(y0, y), max(x1, x), max(y1, y)
+    return pixels, (x0, y0, x1, y1)
+
+
+@compiled(RECTANGLES(RECTANGLES, REACH, PAIR, PAIR))
+def window_rectangles(
+    pixels: Pixels, reach: Reach, origin: tuple[int, int], size: tuple[int, int]
+) -> Rectangles:
+    """Left, top, right, bottom of windows as seen from `origin`, cut at the border; shape (N, 4).
+
+    Parameters
+    ----------
+    pixels : (N, 2) array
+        Centres in the frame.
+    reach : (int, int, int)
+        As for `compare_windows`.
+    origin, size : (int, int)
+        x, y in the frame that count as 0, and width, height of the frame in px.
+    """
+    left, right, up = reach
+    rectangles = np.empty((len(pixels), 4), np.int64)
+    last = size[0] - (left + 1 - right)
+    for i in range(len(pixels)):
+        x, y = pixels[i]
+        rectangles[i, 0] = max(x - left, 0) - origin[0]
+        rectangles[i, 1] = max(y - up, 0) - origin[1]
+        rectangles[i, 2] = min(x + right, last) - origin[0]
+        rectangles[i, 3] = min(y + up + 1, size[1]) - origin[1]
+    return rectangles
+
+
+@compiled(CELLS(FRAME, types.int64, TABLE))
+def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
+    """Cells of joint RGB bins, one plane."""
+    height, width, _ = pixels.shape
+    cells = np.empty((1, height, width), np.uint16)
+    drop = 8 - bits
+    for y in range(height):
+        for x in range(width):
+            red, green, blue = pixels[y, x, 0], pixels[y, x, 1], pixels[y, x, 2]
+            number = ((red >> drop) << (2 * bits)) | ((green >> drop) << bits) | (blue >> drop)
+            cells[0, y, x] = table[number]
+    return cells
+
+
+@inlined
+def _overlap(counts: Counts, values: Reals, total: int, roots: Reals) -> float:
+    """Bhattacharyya coefficient of counts with a reference, whose roots are `values`."""
+    overlap = 0.0
+    if total < len(roots):
+        for k in range(len(values)):
+            overlap += values[k] * roots[counts[k]]
+    else:
+        for k in range(len(values)):
+            overlap += values[k] * math.sqrt(np.float64(counts[k]))
+    return min(overlap / math.sqrt(max(total, 1)), 1.0)
+
+
+@inlined
+def _overlap_single(counts: Counts, values: Map, total: int) -> np.float32:
+    """Do the same with single precision, for all pixels of a map."""
+    overlap = np.float32(0.0)
+    for k in range(len(values)):
+        overlap += values[k] * math.sqrt(np.float32(counts[k]))
+    return min(overlap / np.float32(math.sqrt(max(total, 1))), np.float32(1.0))
+
+
+@inlined
+def _cleared(width: int, cells: int) -> tuple[Columns, Counts, Pixels]:
+    """Column histograms, their sum, and the rows that they are of: none yet."""
+    return np.zeros((width, cells), np.uint16), np.zeros(cells, np.int32), np.zeros(2, np.int64)
+
+
+@inlined
+def _follow_rows(columns: Columns, cells: Cells, rows: Pixels, top: int, bottom: int) -> None:
+    """Take the column histograms of rows[0]:rows[1] to those of top:bottom, which is not above."""
+    width = cells.shape[2]
+    for row in range(rows[1], bottom):
+        for plane in range(cells.shape[0]):
+            for x in range(width):
+                columns[x, cells[plane, row, x]] += np.uint16(1)
+    for row in range(rows[0], min(top, bottom)):
+        for plane in range(cells.shape[0]):
+            for x in range(width):
+                columns[x, cells[plane, row, x]] -= np.uint16(1)
+    rows[0], rows[1] = top, bottom
+
+
+@inlined
+def _gather(counts: Counts, columns: Columns, left: int, right: int) -> None:
+    """Sum the columns from left to right."""
+    counts[:] = 0
+    for x in range(left, right):
+        for k in range(len(counts)):
+            counts[k] += np.int32(columns[x, k])
+
+
+@inlined
+def _shift(counts: Counts, columns: Columns, leaving: int, entering: int) -> None:
+    """Let a column leave and one enter, where they exist."""
+    if leaving >= 0 and entering < len(columns):
+        for k in range(len(counts)):
+            counts[k] += np.int32(columns[entering, k]) - np.int32(columns[leaving, k])
+    elif entering < len(columns):
+        for k in range(len(counts)):
+            counts[k] += np.int32(columns[entering, k])
+    elif leaving >= 0:
+        for k in range(len(counts)):
+            counts[k] -= np.int32(columns[leaving, k])
+
+
+@inlined
+def _listed(pixels: Pixels, x0: int, y0: int, heads: Rectangles) -> Pixels:
+    """List the windows of each pixel: the last one in `heads`, then each one's predecessor."""
+    others = np.empty(len(pixels), np.int64)
+    heads[:] = -1
+    for i in range(len(pixels)):
+        x, y = pixels[i, 0] - x0, pixels[i, 1] - y0
+        others[i] = heads[y, x]
+        heads[y, x] = i
+    return others
+
+
+@inlined
+def _slide(
+    cells: Cells,
+    pixels: Pixels,
+    extent: tuple[int, int, int, int],
+    origin: tuple[int, int],
+    reach: Reach,
+    scale: Scale,
+    counts: Counts,
+) -> Reals:
+    """Compare windows that lie close together; parameters as for `compare_windows`."""
+    planes, height, width = cells.shape
+    (left, right, up), (values, roots) = reach, scale
+    x0, y0 = extent[0] - origin[0], extent[1] - origin[1]
+    x1, y1 = extent[2] - origin[0], extent[3] - origin[1]
+    heads = np.empty((y1 - y0 + 1, x1 - x0 + 1), np.int64)
+    others = _listed(pixels, extent[0], extent[1], heads)
+    columns, sums, rows = _cleared(width, len(values))
+    result = np.empty(len(pixels))
+    for y in range(y0, y1 + 1):
+        asked = np.flatnonzero(heads[y - y0] >= 0)
+        if not len(asked):
+            continue
+        top, bottom = max(y - up, 0), min(y + up + 1, height)
+        _follow_rows(columns, cells, rows, top, bottom)
+        first = x0 + asked[0]
+        _gather(sums, columns, max(first - left, 0), min(first + right, width))
+        for x in range(first, x0 + asked[-1] + 1):
+            if x > first:
+                _shift(sums, columns, x - left - 1, x + right - 1)
+            i = heads[y - y0, x - x0]
+            if i >= 0:
+                across = min(x + right, width) - max(x - left, 0)
+                rho = _overlap(sums, values, planes * across * (bottom - top), roots)
+            while i >= 0:
+                result[i] = rho
+                if len(counts):
+                    counts[i] = sums[: counts.shape[1]]
+                i = others[i]
+    return result
+
+
+@compiled(types.float64[::1](_COUNTS, types.int64[::1], SCALE))
+def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
+    """Compare windows that are counted already; `totals` are those of all bins, shape (N,)."""
+    values, roots = scale
+    result = np.empty(len(counts))
+    for i in range(len(counts)):
+        result[i] = _overlap(counts[i], values, totals[i], roots)
+    return result
+
+
+@compiled(types.float64[::1](CELLS, RECTANGLES, SCALE, _COUNTS))
+def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale, counts: Counts) -> Reals:
+    """Compare windows one after the other; parameters as for `compare_windows`."""
+    planes = cells.shape[0]
+    values, roots = scale
+    sums = np.zeros(len(values), np.int32)
+    result = np.empty(len(rectangles))
+    for i in range(len(rectangles)):
+        left, top, right, bottom = rectangles[i]
+        sums[:] = 0
+        for plane in range(planes):
+            for y in range(top, bottom):
+                for x in range(left, right):
+                    sums[cells[plane, y, x]] += 1
+        total = planes * max(right - left, 0) * (bottom - top)
+        result[i] = _overlap(sums, values, total, roots)
+        if len(counts):
+            counts[i] = sums[: counts.shape[1]]
+    return result
+
+
+@inlined
+def _is_sliding_worthwhile(
+    cells: Cells, count: int, extent: tuple[int, int, int, int], reach: Reach, bins: int
+) -> bool:
+    """Weigh what the two ways to the same result cost, roughly in cycles."""
+    x0, y0, x1, y1 = extent
+    across = 2 * reach[0] + 1
+    step = bins // _BINS_AT_ONCE
+    each_row = (x1 - x0 + 1) * (step + _STEP) + across * step
+    sliding = _PIXEL * cells.size + (y1 - y0 + 1) * each_row
+    return sliding <= count * (_PIXEL * len(cells) * across * (2 * reach[2] + 1) + bins)
+
+
+@compiled(types.float64[::1](CELLS, RECTANGLES, QUAD, PAIR, REACH, SCALE, _COUNTS))
+def compare_windows(
+    cells: Cells,
+    pixels: Pixels,
+    extent: tuple[int, int, int, int],
+    origin: tuple[int, int],
+    reach: Reach,
+    scale: Scale,
+    counts: Counts,
+) -> Reals:
+    """Compare windows with a reference.
+
+    Parameters
+    ----------
+    cells, pixels : (P, H, W) array, (N, 2) array
+        Of the region that all windows cover; centre x, y of each window in the frame.
+    extent, origin : tuples of int
+        Least x and y, largest x and y of `pixels`; x, y of the region's first pixel in the frame.
+    reach : (int, int, int)
+        Pixels of a window to the left of its centre, to the right of it counting the centre
+        itself, and above it (as many as below).
+    scale : (K + 1 or more,) array, (M,) array
+        Square roots of the reference at the active bins, followed by zeros; and those of 0, 1, 2, …
+    counts : (N or 0, K) array
+        Filled with each window's counts, if it has room.
+
+    Returns
+    -------
+    (N,) array
+        Bhattacharyya coefficients.
+    """
+    if _is_sliding_worthwhile(cells, len(pixels), extent, reach, len(scale[0])):
+        return _slide(cells, pixels, extent, origin, reach, scale, counts)
+    _, height, width = cells.shape
+    left, right, up = reach
+    rectangles = np.empty((len(pixels), 4), np.int64)
+    for i in range(len(pixels)):
+        x, y = pixels[i, 0] - origin[0], pixels[i, 1] - origin[1]
+        rectangles[i, 0], rectangles[i, 1] = max(x - left, 0), max(y - up, 0)
+        rectangles[i, 2], rectangles[i, 3] = min(x + right, width), min(y + up + 1, height)
+    return compare_rectangles(cells, rectangles, scale, counts)
+
+
+@compiled(types.float64[::1](FRAME, _POSITIONS, types.int64, PAIR, TABLE, SCALE, _COUNTS))
+def compare_joint(
+    frame: Frame,
+    positions: Positions,
+    bits: int,
+    half: tuple[int, int],
+    table: Table,
+    scale: Scale,
+    counts: Counts,
+) -> Reals:
+    """Compare windows of joint colours from beginning to end, which most trackers' steps do.
+
+    `half` is the width and height of a window left and right of, above and below its middle; the
+    rest is as for `joint_cells` and `compare_windows`.
+    """
+    height, width, _ = frame.shape
+    pixels, extent = window_pixels(positions, width, height)
+    beside, above = half
+    left, top = max(extent[0] - beside, 0), max(extent[1] - above, 0)
+    right, bottom = min(extent[2] + beside + 1, width), min(extent[3] + above + 1, height)
+    reach = beside, beside + 1, above
+    if (right - left) * (bottom - top) <= len(pixels) * (2 * beside + 1) * (2 * above + 1):
+        cells = joint_cells(frame[top:bottom, left:right], bits, table)
+        return compare_windows(cells, pixels, extent, (left, top), reach, scale, counts)
+    result = np.empty(len(pixels))
+    for i in range(len(pixels)):  # they share few pixels
+        x, y = pixels[i]
+        left, top = max(x - beside, 0), max(y - above, 0)
+        cells = joint_cells(frame[top : y + above + 1, left : x + beside + 1], bits, table)
+        rectangle = np.array([[0, 0, cells.shape[2], cells.shape[1]]])
+        result[i] = compare_rectangles(cells, rectangle, scale, counts[i : i + 1])[0]
+    return result
+
+
+@compiled(
+    types.float32[:, ::1](
+        CELLS,
+        QUAD,
+        REACH,
+        types.Array(types.float32, 1, "C", readonly=True),
+    )
+)
+def map_windows(cells: Cells, extent: tuple[int, int, int, int], reach: Reach, values: Map) -> Map:
+    """Compare the windows around all pixels from x0, y0 to before x1, y1 of a region."""
+    planes, height, width = cells.shape
+    x0, y0, x1, y1 = extent
+    left, right, up = reach
+    columns, sums, rows = _cleared(width, len(values))
+    result = np.empty((y1 - y0, x1 - x0), np.float32)
+    for y in range(y0, y1):
+        top, bottom = max(y - up, 0), min(y + up + 1, height)
+        _follow_rows(columns, cells, rows, top, bottom)
+        _gather(sums, columns, max(x0 - left, 0), min(x0 + right, width))
+        for x in range(x0, x1):
+            if x > x0:
+                _shift(sums, columns, x - left - 1, x + right - 1)
+            across = min(x + right, width) - max(x - left, 0)
+            total = planes * across * (bottom - top)
+            result[y - y0, x - x0] = _overlap_single(sums, values, total)
+    return result

@@ -1,0 +1,120 @@
+"""The kernels in OpenCV and numpy, which are always there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.colour import bin_indices
+from vehicle_pf_tracker.image.joint_colour import JointColour
+from vehicle_pf_tracker.image.kernels.interface import Kernels, PixelRange, SimilarityMap
+from vehicle_pf_tracker.image.mean_shift import kernel_similarity, mean_shift
+from vehicle_pf_tracker.image.reference import Reference
+from vehicle_pf_tracker.image.window import Positions, Window
+from vehicle_pf_tracker.image.window_feature import (
+    Coefficients,
+    Counted,
+    CountedFeature,
+    WindowFeature,
+)
+
+
+class OpenCvKernels(Kernels):
+    """What the features themselves do.
+
+    Parameters
+    ----------
+    notices : sequence of str
+        See `Kernels`.
+    """
+
+    name = "opencv"
+
+    def __init__(self, notices: Sequence[str] = ()) -> None:
+        self.notices = notices
+
+    def counts(
+        self,
+        feature: WindowFeature,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        active: npt.NDArray[np.intp],
+    ) -> Counted:
+        """Count windows; see `Kernels.counts`."""
+        assert isinstance(feature, CountedFeature)
+        return feature.counts(frame, positions, window, active)
+
+    def similarity(
+        self,
+        feature: WindowFeature,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Coefficients:
+        """Compare windows; see `Kernels.similarity`."""
+        return feature.similarity(frame, positions, window, reference)
+
+    def similarity_map(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        window: Window,
+        reference: Reference,
+        pixels: PixelRange | None = None,
+    ) -> SimilarityMap:
+        """Compare all windows; see `Kernels.similarity_map`."""
+        width, height = frame_size(frame)
+        left, top, right, bottom = pixels or PixelRange(0, 0, width, height)
+        x, y = max(left - window.half_width, 0), max(top - window.half_height, 0)
+        region = frame[y : bottom + window.half_height, x : right + window.half_width]
+        overlap = _overlaps(bin_indices(region, feature.bits), window, reference)
+        areas = _box_sums(np.ones(overlap.shape, np.uint8), window)
+        rho = np.minimum(overlap / np.sqrt(areas), 1.0)
+        return np.asarray(rho[top - y : bottom - y, left - x : right - x], np.float32)
+
+    def kernel_similarity(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Coefficients:
+        """Compare; see `Kernels.kernel_similarity`."""
+        histogram = reference.histogram
+        return kernel_similarity(frame, positions, window, histogram, feature.bits)
+
+    def mean_shift(
+        self,
+        feature: JointColour,
+        frame: Frame,
+        positions: Positions,
+        window: Window,
+        reference: Reference,
+    ) -> Positions:
+        """Move; see `Kernels.mean_shift`."""
+        return mean_shift(frame, positions, window, reference.histogram, feature.bits)
+
+
+def _overlaps(
+    indices: npt.NDArray[np.uint16], window: Window, reference: Reference
+) -> npt.NDArray[np.float64]:
+    """Sum of ``sqrt(count * value)`` over the active bins around every pixel."""
+    sums = np.zeros(indices.shape)
+    for number, value in zip(reference.active, reference.values, strict=True):
+        counts = _box_sums((indices == number).view(np.uint8), window)
+        sums += cv2.sqrt(counts * np.float32(value))
+    return sums
+
+
+def _box_sums(plane: npt.NDArray[np.uint8], window: Window) -> npt.NDArray[np.float32]:
+    """Sum of the pixels that exist in the window around every pixel."""
+    size = window.width, window.height
+    sums = cv2.boxFilter(plane, cv2.CV_32F, size, normalize=False, borderType=cv2.BORDER_CONSTANT)
+    return np.asarray(sums, np.float32)

@@ -1,0 +1,170 @@
+"""Mean shift of many windows at once (Comaniciu, Ramesh and Meer 2003).
+
+Histograms are weighted with the Epanechnikov profile, so that pixels near the edge of the ellipse
+count little and the similarity changes smoothly with position. The kernel sits on the pixel that a
+position lies in; the step from there is real-valued. Equations are numbered as in the paper.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.colour import Histogram, bin_count, bin_indices
+from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient
+from vehicle_pf_tracker.image.window import Centres, Positions, Window, centres
+from vehicle_pf_tracker.image.window_feature import Coefficients
+
+Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kernel:
+    """Pixels of the ellipse in a window: offsets (P, 2) in px, Epanechnikov profile (P,)."""
+
+    offsets: Array
+    profile: Array
+
+
+@functools.lru_cache(maxsize=8)
+def epanechnikov(window: Window) -> Kernel:
+    """Make the kernel whose ellipse touches the sides of `window` (eq. 12, without its norm)."""
+    y, x = np.mgrid[
+        -window.half_height : window.half_height + 1, -window.half_width : window.half_width + 1
+    ]
+    radius = np.square(x / (window.half_width + 0.5)) + np.square(y / (window.half_height + 0.5))
+    inside = radius < 1
+    return Kernel(np.column_stack([x[inside], y[inside]]) * 1.0, 1.0 - radius[inside])
+
+
+def kernel_histogram(
+    frame: Frame, position: tuple[float, float], window: Window, bits: int
+) -> Histogram:
+    """Kernel-weighted joint RGB histogram of one window (eq. 3).
+
+    Parameters
+    ----------
+    frame : (H, W, 3) array
+        RGB.
+    position : (float, float)
+        Centre in px; kept inside the image.
+    window : Window
+        Box around the kernel's ellipse; over the border the pixels that exist count.
+    bits : int
+        Bits a channel.
+
+    Returns
+    -------
+    (bin_count(bits),) array
+        Sums to one.
+    """
+    bins = bin_count(bits)
+    pixel = _pixels(frame, np.asarray([position]))
+    cells = _cells(frame, pixel, window, np.arange(bins), bits)
+    return np.asarray(_masses(cells, epanechnikov(window), bins)[0])
+
+
+def kernel_similarity(
+    frame: Frame, positions: Positions, window: Window, reference: Histogram, bits: int
+) -> Coefficients:
+    """Bhattacharyya coefficient of each kernel-weighted histogram with `reference` (eq. 17).
+
+    Parameters
+    ----------
+    frame : (H, W, 3) array
+        RGB.
+    positions : (N, 2) array
+        Kernel centres in px; kept inside the image.
+    window : Window
+        Box around the kernel's ellipse.
+    reference : (bin_count(bits),) array
+        Kernel-weighted histogram of the target.
+    bits : int
+        Bits a channel.
+
+    Returns
+    -------
+    (N,) array
+        From 0 to 1.
+    """
+    active = np.flatnonzero(reference)
+    cells = _cells(frame, _pixels(frame, positions), window, active, bits)
+    masses = _masses(cells, epanechnikov(window), len(active))
+    return bhattacharyya_coefficient(masses, reference[active])
+
+
+def mean_shift(
+    frame: Frame, positions: Positions, window: Window, reference: Histogram, bits: int
+) -> Positions:
+    """Move every position one mean-shift step towards the reference's colours (eq. 25 and 26).
+
+    Parameters
+    ----------
+    frame, positions, window, reference, bits
+        As for `kernel_similarity`.
+
+    Returns
+    -------
+    (N, 2) array
+        Mean of the ellipse's pixels, each weighted by ``sqrt(q / p)`` of its colour; the position
+        itself where the ellipse has no colour of the reference.
+    """
+    kernel, active = epanechnikov(window), np.flatnonzero(reference)
+    pixel = _pixels(frame, positions)
+    cells = _cells(frame, pixel, window, active, bits)
+    masses = _masses(cells, kernel, len(active))
+    weights = _pixel_weights(masses, reference[active], cells)
+    total = weights.sum(axis=1)
+    moved = total > 0
+    step = (weights @ kernel.offsets)[moved] / total[moved, np.newaxis]
+    shifted = np.array(positions, dtype=np.float64)
+    shifted[moved] = pixel[moved] + 0.5 + step
+    return shifted
+
+
+def _pixels(frame: Frame, positions: Positions) -> Centres:
+    width, height = frame_size(frame)
+    return np.asarray(np.clip(centres(positions), 0, [width - 1, height - 1]))
+
+
+def _cells(frame: Frame, pixel: Centres, window: Window, active: Indices, bits: int) -> Indices:
+    """Cell of each kernel pixel in the flat table of masses, shape (N, P).
+
+    The table has a row for each window. In a row the active bins come first, then one cell for all
+    other colours, and one for what lies outside the image.
+    """
+    table = np.full(bin_count(bits), len(active))
+    table[active] = np.arange(len(active))
+    reach = np.array([window.half_width, window.half_height])
+    first, end = pixel.min(axis=0) - reach, pixel.max(axis=0) + reach + 1
+    low, high = np.maximum(first, 0), np.minimum(end, frame_size(frame))
+    region = np.full((end - first)[::-1], len(active) + 1)
+    (left, top), (right, bottom) = low - first, high - first
+    covered = frame[low[1] : high[1], low[0] : high[0]]
+    region[top:bottom, left:right] = table[bin_indices(covered, bits)]
+    stride = np.array([1, region.shape[1]])
+    reads = (epanechnikov(window).offsets @ stride).astype(np.intp)
+    columns = region.ravel().take(((pixel - first) @ stride)[:, np.newaxis] + reads)
+    return np.asarray(columns + (len(active) + 2) * np.arange(len(pixel))[:, np.newaxis])
+
+
+def _masses(cells: Indices, kernel: Kernel, bins: int) -> Array:
+    """Normalised kernel mass of each active bin, shape (N, bins)."""
+    count, width = len(cells), bins + 2
+    profile = np.broadcast_to(kernel.profile, cells.shape)
+    masses = np.bincount(cells.ravel(), profile.ravel(), minlength=count * width)
+    masses = masses.reshape(count, width)
+    # The centre pixel always exists, so the sum without the last column is never zero.
+    return np.asarray(masses[:, :bins] / masses[:, :-1].sum(axis=1, keepdims=True))
+
+
+def _pixel_weights(masses: Array, wanted: Histogram, cells: Indices) -> Array:
+    """``sqrt(q / p)`` of each kernel pixel's colour (eq. 25), shape (N, P)."""
+    table = np.zeros((len(masses), masses.shape[1] + 2))
+    np.divide(wanted, masses, out=table[:, :-2], where=masses > 0)
+    return np.sqrt(table).ravel().take(cells)
