@@ -20,7 +20,7 @@ def source_digest(modules: Iterable[str], root: Path = _ROOT, package: str = _PA
     Parameters
     ----------
     modules : iterable of str
-        Full names, such as ``vehicle_pf_tracker.trackers.apf``. The registry of variants
+        Full names, such as ``vehicle_pf_tracker.trackers.papers.apf``. The registry of variants
         does not count, so that a variant that comes or changes leaves the others' digests.
     root : Path
         The folder that holds the package's folder.

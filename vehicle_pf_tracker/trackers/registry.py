@@ -8,26 +8,33 @@ from types import MappingProxyType
 from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.adaptive import AdaptiveParameters, AdaptiveTracker
-from vehicle_pf_tracker.trackers.apf import ApfTracker
-from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
 from vehicle_pf_tracker.trackers.base import BaseTracker
-from vehicle_pf_tracker.trackers.conventional import ConventionalParameters, ConventionalTracker
 from vehicle_pf_tracker.trackers.fusion import FusionTracker
 from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
-from vehicle_pf_tracker.trackers.hpfms import HpfmsParameters, HpfmsTracker
-from vehicle_pf_tracker.trackers.mfpf import MfpfTracker
-from vehicle_pf_tracker.trackers.mfpf_parameters import (
+from vehicle_pf_tracker.trackers.papers.adaptive import AdaptiveParameters, AdaptiveTracker
+from vehicle_pf_tracker.trackers.papers.apf import ApfTracker
+from vehicle_pf_tracker.trackers.papers.apf_parameters import ApfParameters
+from vehicle_pf_tracker.trackers.papers.conventional import (
+    ConventionalParameters,
+    ConventionalTracker,
+)
+from vehicle_pf_tracker.trackers.papers.hpfms import HpfmsParameters, HpfmsTracker
+from vehicle_pf_tracker.trackers.papers.mfpf import MfpfTracker
+from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     MfpfParameters,
     SfpfColorParameters,
     SfpfEdgeParameters,
     SfpfTextureParameters,
 )
-from vehicle_pf_tracker.trackers.ms import MsParameters, MsTracker
-from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
-from vehicle_pf_tracker.trackers.pfcl import PfclParameters, PfclTracker
-from vehicle_pf_tracker.trackers.sapf import SapfParameters, SapfTracker
-from vehicle_pf_tracker.trackers.sfpf import SfpfColorTracker, SfpfEdgeTracker, SfpfTextureTracker
+from vehicle_pf_tracker.trackers.papers.ms import MsParameters, MsTracker
+from vehicle_pf_tracker.trackers.papers.pf import PfParameters, PfTracker
+from vehicle_pf_tracker.trackers.papers.pfcl import PfclParameters, PfclTracker
+from vehicle_pf_tracker.trackers.papers.sapf import SapfParameters, SapfTracker
+from vehicle_pf_tracker.trackers.papers.sfpf import (
+    SfpfColorTracker,
+    SfpfEdgeTracker,
+    SfpfTextureTracker,
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -137,7 +137,7 @@ def test_a_fault_of_the_program_costs_only_its_cell(plan, out, monkeypatch):
     def broken(*_):
         raise ZeroDivisionError("so")
 
-    monkeypatch.setattr("vehicle_pf_tracker.trackers.ms.MsTracker.start", broken)
+    monkeypatch.setattr("vehicle_pf_tracker.trackers.papers.ms.MsTracker.start", broken)
     complete(plan, out, here, silent)
     folder = EvaluationFolder(out)
     assert "ZeroDivisionError" in folder.cell("free", "ms", 0).reason

@@ -13,7 +13,7 @@ from vehicle_pf_tracker.evaluation.experiments.traces import PATH, scores
 from vehicle_pf_tracker.evaluation.scores import Scores
 from vehicle_pf_tracker.parameters.table import Value
 from vehicle_pf_tracker.scenes.cases import CASES as CATALOGUE
-from vehicle_pf_tracker.trackers.mfpf_parameters import MfpfParameters
+from vehicle_pf_tracker.trackers.papers.mfpf_parameters import MfpfParameters
 
 FEATURES: Mapping[str, str] = MappingProxyType(
     {"color": "RGB", "edge": "Edge", "texture": "Texture"}

@@ -5,7 +5,7 @@ import pytest
 from street import Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.hpfms import HpfmsParameters, HpfmsTracker
+from vehicle_pf_tracker.trackers.papers.hpfms import HpfmsParameters, HpfmsTracker
 
 
 def make(**values):

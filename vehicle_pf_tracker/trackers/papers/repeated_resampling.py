@@ -17,10 +17,10 @@ from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.estimate import Array
-from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters, log_likelihood
-from vehicle_pf_tracker.trackers.shared_parameters import as_printed_switch
+from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters, log_likelihood
+from vehicle_pf_tracker.trackers.papers.shared_parameters import as_printed_switch
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,11 @@ from vehicle_pf_tracker.image.lbp import BinaryPatterns
 from vehicle_pf_tracker.image.window_feature import WindowFeature
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
-from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
-from vehicle_pf_tracker.trackers.shared_parameters import as_printed_switch, resampling_parameter
+from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters
+from vehicle_pf_tracker.trackers.papers.shared_parameters import (
+    as_printed_switch,
+    resampling_parameter,
+)
 
 TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
     "glcm": Cooccurrence,

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.trackers.mfpf import MfpfTracker
-from vehicle_pf_tracker.trackers.mfpf_parameters import MfpfParameters
+from vehicle_pf_tracker.trackers.papers.mfpf import MfpfTracker
+from vehicle_pf_tracker.trackers.papers.mfpf_parameters import MfpfParameters
 
 SIDE, LEFT, TOP, SPEED = 36, 20, 40, 3
 START, FRAMES = 20, 50

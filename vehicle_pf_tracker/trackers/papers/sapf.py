@@ -14,8 +14,8 @@ from vehicle_pf_tracker.filtering.annealing import annealing_rate
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
-from vehicle_pf_tracker.trackers.likelihood import log_likelihood
+from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,9 +18,9 @@ from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.reference import Reference
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.estimate import Array
-from vehicle_pf_tracker.trackers.likelihood import log_likelihood
+from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 
 
 @dataclass(frozen=True, slots=True)

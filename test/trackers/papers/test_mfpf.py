@@ -12,9 +12,9 @@ from vehicle_pf_tracker.image.haralick import HaralickStatistics
 from vehicle_pf_tracker.image.lbp import BinaryPatterns
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
-from vehicle_pf_tracker.trackers.mfpf import MfpfTracker
-from vehicle_pf_tracker.trackers.mfpf_parameters import (
+from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters
+from vehicle_pf_tracker.trackers.papers.mfpf import MfpfTracker
+from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     ConfidenceParameters,
     EdgeParameters,
     MfpfParameters,

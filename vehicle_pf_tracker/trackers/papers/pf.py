@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.colour_tracker import ColourParameters, ColourTracker
-from vehicle_pf_tracker.trackers.likelihood import log_likelihood
+from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from vehicle_pf_tracker.parameters.table import group, parameter
-from vehicle_pf_tracker.trackers.clear_level import ClearLevelParameters
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
-from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
-from vehicle_pf_tracker.trackers.shared_parameters import (
+from vehicle_pf_tracker.trackers.papers.clear_level import ClearLevelParameters
+from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters
+from vehicle_pf_tracker.trackers.papers.shared_parameters import (
     as_printed_switch,
     histogram_bits_parameter,
     resampling_parameter,

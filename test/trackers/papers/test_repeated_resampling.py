@@ -7,10 +7,13 @@ from street import Street, error, follow
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.adaptive import AdaptiveParameters, AdaptiveTracker
 from vehicle_pf_tracker.trackers.base import Cloud
-from vehicle_pf_tracker.trackers.conventional import ConventionalParameters, ConventionalTracker
-from vehicle_pf_tracker.trackers.repeated_resampling import WeighedParticles
+from vehicle_pf_tracker.trackers.papers.adaptive import AdaptiveParameters, AdaptiveTracker
+from vehicle_pf_tracker.trackers.papers.conventional import (
+    ConventionalParameters,
+    ConventionalTracker,
+)
+from vehicle_pf_tracker.trackers.papers.repeated_resampling import WeighedParticles
 
 
 def conventional(**values):

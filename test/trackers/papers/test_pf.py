@@ -7,7 +7,7 @@ from street import Street, error, follow
 from vehicle_pf_tracker.image.joint_colour import JointColour
 from vehicle_pf_tracker.image.reference import Reference
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
+from vehicle_pf_tracker.trackers.papers.pf import PfParameters, PfTracker
 
 
 def make(**values):

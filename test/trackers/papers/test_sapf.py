@@ -5,7 +5,7 @@ import pytest
 from street import Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.sapf import SapfParameters, SapfTracker
+from vehicle_pf_tracker.trackers.papers.sapf import SapfParameters, SapfTracker
 
 
 def make(**values):

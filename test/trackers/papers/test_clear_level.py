@@ -2,7 +2,7 @@
 
 import pytest
 
-from vehicle_pf_tracker.trackers.clear_level import ClearLevel, ClearLevelParameters
+from vehicle_pf_tracker.trackers.papers.clear_level import ClearLevel, ClearLevelParameters
 
 SETTINGS = ClearLevelParameters(enter=4.0, leave=2.0, rate=0.5)
 

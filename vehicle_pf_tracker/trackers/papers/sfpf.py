@@ -10,8 +10,8 @@ from collections.abc import Mapping
 
 from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
 from vehicle_pf_tracker.image.window_feature import WindowFeature
-from vehicle_pf_tracker.trackers.mfpf import FeatureFilter, edge_feature
-from vehicle_pf_tracker.trackers.mfpf_parameters import (
+from vehicle_pf_tracker.trackers.papers.mfpf import FeatureFilter, edge_feature
+from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     TEXTURES,
     SfpfColorParameters,
     SfpfEdgeParameters,

@@ -6,8 +6,8 @@ from street import SIZE, Street, follow
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.pf import PfParameters, PfTracker
-from vehicle_pf_tracker.trackers.pfcl import PfclParameters, PfclTracker
+from vehicle_pf_tracker.trackers.papers.pf import PfParameters, PfTracker
+from vehicle_pf_tracker.trackers.papers.pfcl import PfclParameters, PfclTracker
 
 
 def make(**values):

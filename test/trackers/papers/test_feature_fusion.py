@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from vehicle_pf_tracker.trackers.feature_fusion import (
+from vehicle_pf_tracker.trackers.papers.feature_fusion import (
     average_similarities,
     common_survivors,
     fuse,

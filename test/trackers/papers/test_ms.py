@@ -6,7 +6,7 @@ from street import SIZE, Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping, specs
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.ms import MsParameters, MsTracker
+from vehicle_pf_tracker.trackers.papers.ms import MsParameters, MsTracker
 
 
 def make(**values):

@@ -1,6 +1,6 @@
 import pytest
 
-from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 
 
 def moved(velocity, *steps):

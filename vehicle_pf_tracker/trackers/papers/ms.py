@@ -18,11 +18,11 @@ from vehicle_pf_tracker.image.reference import Reference
 from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
-from vehicle_pf_tracker.trackers.colour_tracker import VELOCITY_WINDOW
 from vehicle_pf_tracker.trackers.contract import CommonParameters
 from vehicle_pf_tracker.trackers.estimate import Array
-from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
-from vehicle_pf_tracker.trackers.shared_parameters import histogram_bits_parameter
+from vehicle_pf_tracker.trackers.papers.colour_tracker import VELOCITY_WINDOW
+from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.papers.shared_parameters import histogram_bits_parameter
 
 
 @dataclass(frozen=True, slots=True)

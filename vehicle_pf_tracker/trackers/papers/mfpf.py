@@ -28,15 +28,15 @@ from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.image.window_feature import Histograms, WindowFeature
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Array
-from vehicle_pf_tracker.trackers.feature_fusion import (
+from vehicle_pf_tracker.trackers.papers.feature_fusion import (
     Fusion,
     average_similarities,
     common_survivors,
     fuse,
 )
-from vehicle_pf_tracker.trackers.likelihood import log_likelihood
-from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
-from vehicle_pf_tracker.trackers.mfpf_parameters import (
+from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
+from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     TEXTURES,
     EdgeParameters,
     FeatureFilterParameters,

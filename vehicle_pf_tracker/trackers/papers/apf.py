@@ -22,12 +22,12 @@ from vehicle_pf_tracker.image.colour import Histogram
 from vehicle_pf_tracker.image.joint_colour import JointColour
 from vehicle_pf_tracker.image.reference import Reference
 from vehicle_pf_tracker.image.similarity import hellinger_similarity
-from vehicle_pf_tracker.trackers.apf_parameters import ApfParameters
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.clear_level import ClearLevel
 from vehicle_pf_tracker.trackers.estimate import Array
-from vehicle_pf_tracker.trackers.likelihood import log_likelihood
-from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.papers.apf_parameters import ApfParameters
+from vehicle_pf_tracker.trackers.papers.clear_level import ClearLevel
+from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
+from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 
 
 class ApfTracker(ParticleTracker[ApfParameters]):

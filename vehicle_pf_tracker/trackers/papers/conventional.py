@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.trackers.repeated_resampling import (
+from vehicle_pf_tracker.trackers.papers.repeated_resampling import (
     RepeatedResampling,
     RepeatedResamplingParameters,
     WeighedParticles,

@@ -22,9 +22,9 @@ from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.estimate import Array
-from vehicle_pf_tracker.trackers.likelihood import LikelihoodParameters
-from vehicle_pf_tracker.trackers.mean_velocity import MeanVelocity
-from vehicle_pf_tracker.trackers.shared_parameters import (
+from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters
+from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.papers.shared_parameters import (
     histogram_bits_parameter,
     resampling_parameter,
 )

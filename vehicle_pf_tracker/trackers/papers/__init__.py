@@ -1,0 +1,1 @@
+"""Variants after papers, and the bases and parameters that they share."""
