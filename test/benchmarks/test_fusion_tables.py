@@ -14,7 +14,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 
 BOX = Box.around((100.0, 100.0), 24.0, 18.0)  # its diagonal is 30 px
 

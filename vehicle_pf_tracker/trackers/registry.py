@@ -9,8 +9,8 @@ from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.base import BaseTracker
-from vehicle_pf_tracker.trackers.fusion import FusionTracker
-from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
 from vehicle_pf_tracker.trackers.papers.adaptive import AdaptiveParameters, AdaptiveTracker
 from vehicle_pf_tracker.trackers.papers.apf import ApfTracker
 from vehicle_pf_tracker.trackers.papers.apf_parameters import ApfParameters

@@ -5,7 +5,7 @@ import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.image.small_grey import SmallGrey
-from vehicle_pf_tracker.trackers.fusion_parts.background import Background
+from vehicle_pf_tracker.trackers.fusion.background import Background
 
 STREET = np.random.default_rng(0).integers(80, 110, (60, 160), dtype=np.uint8)
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.trackers.fusion_parts.foreground import (
+from vehicle_pf_tracker.trackers.fusion.foreground import (
     Blob,
     Edges,
     Foreground,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.region import Region
-from vehicle_pf_tracker.trackers.fusion_parts.view import View
+from vehicle_pf_tracker.trackers.fusion.view import View
 
 SCALES = np.array([0.5, 1.0, 2.0])
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.trackers.fusion_parts.history import carried
+from vehicle_pf_tracker.trackers.fusion.history import carried
 
 Place = tuple[float, float]
 

@@ -16,16 +16,16 @@ from vehicle_pf_tracker.image.small_grey import small_grey
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.base import Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
-from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance
-from vehicle_pf_tracker.trackers.fusion_parts.background import Background
-from vehicle_pf_tracker.trackers.fusion_parts.emergence import Emergence
-from vehicle_pf_tracker.trackers.fusion_parts.fine_alignment import FineAlignment
-from vehicle_pf_tracker.trackers.fusion_parts.history import History, Trend, carried
-from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles, Spread
-from vehicle_pf_tracker.trackers.fusion_parts.search import Search
-from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion
-from vehicle_pf_tracker.trackers.fusion_parts.turning import Turns
+from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
+from vehicle_pf_tracker.trackers.fusion.background import Background
+from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
+from vehicle_pf_tracker.trackers.fusion.fine_alignment import FineAlignment
+from vehicle_pf_tracker.trackers.fusion.history import History, Trend, carried
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.particles import Particles, Spread
+from vehicle_pf_tracker.trackers.fusion.search import Search
+from vehicle_pf_tracker.trackers.fusion.suspicion import Suspicion
+from vehicle_pf_tracker.trackers.fusion.turning import Turns
 
 Place: TypeAlias = tuple[float, float]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles, Spread
+from vehicle_pf_tracker.trackers.fusion.particles import Particles, Spread
 
 NONE = Spread(0.0, 0.0, 0.0)
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.trackers.fusion_parts.foreground import Blob, Span
-from vehicle_pf_tracker.trackers.fusion_parts.history import Trend
-from vehicle_pf_tracker.trackers.fusion_parts.turning import Colour, Turns
+from vehicle_pf_tracker.trackers.fusion.foreground import Blob, Span
+from vehicle_pf_tracker.trackers.fusion.history import Trend
+from vehicle_pf_tracker.trackers.fusion.turning import Colour, Turns
 
 Place = tuple[float, float]
 

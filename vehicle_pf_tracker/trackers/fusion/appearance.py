@@ -32,8 +32,8 @@ from vehicle_pf_tracker.image.template import (
     have_structure,
 )
 from vehicle_pf_tracker.trackers.estimate import Array
-from vehicle_pf_tracker.trackers.fusion_parameters import CueParameters
-from vehicle_pf_tracker.trackers.fusion_parts.view import CUES, View
+from vehicle_pf_tracker.trackers.fusion.parameters import CueParameters
+from vehicle_pf_tracker.trackers.fusion.view import CUES, View
 
 Place = tuple[float, float]
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.trackers.estimate import Array
-from vehicle_pf_tracker.trackers.fusion_parts.history import Trend
-from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles
-from vehicle_pf_tracker.trackers.fusion_parts.view import View
+from vehicle_pf_tracker.trackers.fusion.history import Trend
+from vehicle_pf_tracker.trackers.fusion.particles import Particles
+from vehicle_pf_tracker.trackers.fusion.view import View
 
 Place = tuple[float, float]
 

@@ -1,7 +1,7 @@
 """Doubt, hiding and forgiveness."""
 
-from vehicle_pf_tracker.trackers.fusion_parts.appearance import Likeness
-from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Sight, Suspicion
+from vehicle_pf_tracker.trackers.fusion.appearance import Likeness
+from vehicle_pf_tracker.trackers.fusion.suspicion import Sight, Suspicion
 
 CLEAR = Likeness(0.95, 0.95, 0.8)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.fusion_parts.projective_motion import ProjectiveMotion, fit_motion
+from vehicle_pf_tracker.trackers.fusion.projective_motion import ProjectiveMotion, fit_motion
 
 TIMES = np.arange(-20.0, 1.0)
 

@@ -11,8 +11,8 @@ from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.fusion import FusionTracker
-from vehicle_pf_tracker.trackers.fusion_parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
 
 
 def fusion(**values):

@@ -9,11 +9,11 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.small_grey import SmallGrey
-from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance
-from vehicle_pf_tracker.trackers.fusion_parts.background import Background
-from vehicle_pf_tracker.trackers.fusion_parts.candidates import Candidate, Candidates, Chain
-from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion
-from vehicle_pf_tracker.trackers.fusion_parts.view import View
+from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
+from vehicle_pf_tracker.trackers.fusion.background import Background
+from vehicle_pf_tracker.trackers.fusion.candidates import Candidate, Candidates, Chain
+from vehicle_pf_tracker.trackers.fusion.suspicion import Suspicion
+from vehicle_pf_tracker.trackers.fusion.view import View
 
 Place = tuple[float, float]
 

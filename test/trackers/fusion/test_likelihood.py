@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.fusion_parts.history import Trend
-from vehicle_pf_tracker.trackers.fusion_parts.likelihood import Prior
-from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles
+from vehicle_pf_tracker.trackers.fusion.history import Trend
+from vehicle_pf_tracker.trackers.fusion.likelihood import Prior
+from vehicle_pf_tracker.trackers.fusion.particles import Particles
 
 
 def at(*places, scale=1.0):

@@ -3,7 +3,7 @@
 import pytest
 
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.trackers.fusion_parts.history import History, Trend
+from vehicle_pf_tracker.trackers.fusion.history import History, Trend
 
 STILL = CameraMotion()
 

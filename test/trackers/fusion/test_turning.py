@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.trackers.fusion_parts.emergence import Emergence
-from vehicle_pf_tracker.trackers.fusion_parts.history import Trend
-from vehicle_pf_tracker.trackers.fusion_parts.projective_motion import ProjectiveMotion
-from vehicle_pf_tracker.trackers.fusion_parts.turning import Turns
+from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
+from vehicle_pf_tracker.trackers.fusion.history import Trend
+from vehicle_pf_tracker.trackers.fusion.projective_motion import ProjectiveMotion
+from vehicle_pf_tracker.trackers.fusion.turning import Turns
 
 STREET = np.random.default_rng(0).integers(90, 100, (240, 320, 3), dtype=np.uint8)
 SPEED = 3.0

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.trackers.fusion_parts.projective_motion import ProjectiveMotion, fit_motion
+from vehicle_pf_tracker.trackers.fusion.projective_motion import ProjectiveMotion, fit_motion
 
 Place = tuple[float, float]
 

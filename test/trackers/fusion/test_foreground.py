@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.trackers.fusion_parts.foreground import Foreground, Span, around, joined
+from vehicle_pf_tracker.trackers.fusion.foreground import Foreground, Span, around, joined
 
 STREET = np.random.default_rng(0).integers(90, 100, (80, 160, 3), dtype=np.uint8)
 WHOLE = Span(0, 0, 160, 80)

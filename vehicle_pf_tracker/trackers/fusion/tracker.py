@@ -19,16 +19,16 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
 from vehicle_pf_tracker.image.window import is_outside, keep_inside
 from vehicle_pf_tracker.trackers.base import Outcome
-from vehicle_pf_tracker.trackers.fusion_parts.appearance import Likeness
-from vehicle_pf_tracker.trackers.fusion_parts.candidates import Chain
-from vehicle_pf_tracker.trackers.fusion_parts.emergence import Emergence
-from vehicle_pf_tracker.trackers.fusion_parts.history import History, Trend
-from vehicle_pf_tracker.trackers.fusion_parts.likelihood import Prior, log_likelihood
-from vehicle_pf_tracker.trackers.fusion_parts.particles import Particles, Spread
-from vehicle_pf_tracker.trackers.fusion_parts.search import Foretold, Search
-from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Sight, Verdict
-from vehicle_pf_tracker.trackers.fusion_parts.view import View
-from vehicle_pf_tracker.trackers.fusion_state import FusionState
+from vehicle_pf_tracker.trackers.fusion.appearance import Likeness
+from vehicle_pf_tracker.trackers.fusion.candidates import Chain
+from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
+from vehicle_pf_tracker.trackers.fusion.history import History, Trend
+from vehicle_pf_tracker.trackers.fusion.likelihood import Prior, log_likelihood
+from vehicle_pf_tracker.trackers.fusion.particles import Particles, Spread
+from vehicle_pf_tracker.trackers.fusion.search import Foretold, Search
+from vehicle_pf_tracker.trackers.fusion.state import FusionState
+from vehicle_pf_tracker.trackers.fusion.suspicion import Sight, Verdict
+from vehicle_pf_tracker.trackers.fusion.view import View
 
 Place: TypeAlias = tuple[float, float]
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.fusion_parameters import CueParameters
-from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance
+from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
+from vehicle_pf_tracker.trackers.fusion.parameters import CueParameters
 
 SIZE = (30.0, 20.0)
 CENTRE = (80.0, 60.0)

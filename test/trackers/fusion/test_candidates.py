@@ -3,7 +3,7 @@
 import pytest
 
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.trackers.fusion_parts.candidates import Candidate, Candidates, Chain
+from vehicle_pf_tracker.trackers.fusion.candidates import Candidate, Candidates, Chain
 
 STILL = CameraMotion()
 

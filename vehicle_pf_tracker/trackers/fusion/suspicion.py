@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.trackers.fusion_parts.appearance import Likeness
+from vehicle_pf_tracker.trackers.fusion.appearance import Likeness
 
 _RATE = 0.05
 _DEVIATIONS = 5.0

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from vehicle_pf_tracker.trackers.fusion_parts.appearance import Aligned, Appearance
-from vehicle_pf_tracker.trackers.fusion_parts.view import View
+from vehicle_pf_tracker.trackers.fusion.appearance import Aligned, Appearance
+from vehicle_pf_tracker.trackers.fusion.view import View
 
 Place = tuple[float, float]
 

@@ -6,11 +6,11 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.small_grey import small_grey
-from vehicle_pf_tracker.trackers.fusion_parameters import CueParameters
-from vehicle_pf_tracker.trackers.fusion_parts.appearance import Appearance
-from vehicle_pf_tracker.trackers.fusion_parts.background import Background
-from vehicle_pf_tracker.trackers.fusion_parts.search import Foretold, Search
-from vehicle_pf_tracker.trackers.fusion_parts.suspicion import Suspicion
+from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
+from vehicle_pf_tracker.trackers.fusion.background import Background
+from vehicle_pf_tracker.trackers.fusion.parameters import CueParameters
+from vehicle_pf_tracker.trackers.fusion.search import Foretold, Search
+from vehicle_pf_tracker.trackers.fusion.suspicion import Suspicion
 
 SIZE = (30.0, 20.0)
 EXTENT = 600**0.5

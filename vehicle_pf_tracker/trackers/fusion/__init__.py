@@ -1,0 +1,1 @@
+"""The flagship: fused cues, scale, camera motion, and the return from total occlusions."""

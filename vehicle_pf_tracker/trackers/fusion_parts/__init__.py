@@ -1,1 +1,0 @@
-"""The parts that `fusion` is made of."""
