@@ -22,7 +22,7 @@ from benchmarks.fusion_runs import find_sequence, sequence
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.peers.client import Peer
+from vehicle_pf_tracker.evaluation.baselines.client import Peer
 
 SMALL = ("car_a", "car_e", "cdnet_bridge_total", "cdnet_pole_partial", "white_van", "Suv")
 """Sequences of 320x240 px."""

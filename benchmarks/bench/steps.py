@@ -9,7 +9,7 @@ from pathlib import Path
 from benchmarks.bench.case import Case
 from benchmarks.bench.effort import Effort
 from benchmarks.bench.turns import Follower, Own, Theirs, follow
-from vehicle_pf_tracker.evaluation.peers.client import Peer
+from vehicle_pf_tracker.evaluation.baselines.client import Peer
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 PEERS = ("csrt", "kcf", "mil")

@@ -17,8 +17,8 @@ from vehicle_pf_tracker.cli.parameter_sets import (
     settable,
 )
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Peer
 from vehicle_pf_tracker.evaluation.grid.systems import PEER, PeerSystem, System, VariantSystem
-from vehicle_pf_tracker.evaluation.peers.client import MODELS, Peer
 from vehicle_pf_tracker.parameters.table import Value, parse_assignments, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 

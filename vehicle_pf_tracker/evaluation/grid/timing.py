@@ -23,13 +23,13 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.association import max_diff_ns
+from vehicle_pf_tracker.evaluation.baselines.client import Peer
 from vehicle_pf_tracker.evaluation.evaluation_folder import TIMINGS
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
 from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem
 from vehicle_pf_tracker.evaluation.offline import with_target
 from vehicle_pf_tracker.evaluation.output_files import write_json
-from vehicle_pf_tracker.evaluation.peers.client import Peer
 from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
 from vehicle_pf_tracker.evaluation.run_info import versions
 from vehicle_pf_tracker.evaluation.source import Source

@@ -16,8 +16,8 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.evaluation.baselines.environment import peer_python
 from vehicle_pf_tracker.evaluation.child_process import wait_or_kill
-from vehicle_pf_tracker.evaluation.peers.environment import peer_python
 
 MODELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {

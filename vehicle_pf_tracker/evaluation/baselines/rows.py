@@ -8,8 +8,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
+from vehicle_pf_tracker.evaluation.baselines.client import Peer, PeerAnswer
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
-from vehicle_pf_tracker.evaluation.peers.client import Peer, PeerAnswer
 
 
 def peer_rows(
