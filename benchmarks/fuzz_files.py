@@ -34,7 +34,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
-from vehicle_pf_tracker.ros.node import TrackerNode
+from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 VARIANT = find_variant("pf")

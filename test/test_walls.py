@@ -188,6 +188,17 @@ def test_nothing_reaches_through_a_wall(modules):
     assert broken_walls(modules) == []
 
 
+def test_node_and_replay_do_not_import_each_other(modules):
+    sides = {"ros.node": "ros.replay", "ros.replay": "ros.node"}
+    assert not [
+        f"{module.at(found.line)} imports {found.name}"
+        for name, module in modules.items()
+        for side, other in sides.items()
+        for found in module.imports
+        if covers({side}, name) and covers({other}, inside(found.name) or "")
+    ]
+
+
 def test_nodes_import_only_what_a_robot_has(modules):
     assert missing_on_a_robot(modules) == []
 
@@ -227,12 +238,12 @@ def made_up(folder: Path, **files: str) -> dict[str, Module]:
         ("scenes__road", "from vehicle_pf_tracker.recordings.writer import write"),
         ("scenes__road", "from vehicle_pf_tracker.recordings import writer"),
         ("scenes__road", "from vehicle_pf_tracker.trackers.registry import VARIANTS"),
-        ("evaluation__tables", "from vehicle_pf_tracker.ros.node import Node"),
+        ("evaluation__tables", "from vehicle_pf_tracker.ros.node.tracker_node import Node"),
         ("evaluation__tables", "from vehicle_pf_tracker.cli.main import main"),
         ("ros__node", "from vehicle_pf_tracker.cli.main import main"),
-        ("cli__replay", "from vehicle_pf_tracker.ros.player import play"),
+        ("cli__replay", "from vehicle_pf_tracker.ros.replay.player import play"),
         ("cli__replay", "import math\nif math.pi:\n    from vehicle_pf_tracker import ros"),
-        ("cli__replay", "class Verb:\n    from vehicle_pf_tracker.ros.player import play"),
+        ("cli__replay", "class Verb:\n    from vehicle_pf_tracker.ros.replay.player import play"),
     ],
 )
 def test_checker_sees_a_broken_wall(tmp_path, file, line):
@@ -251,7 +262,7 @@ def test_checker_sees_a_broken_wall(tmp_path, file, line):
         ("scenes__road", "from vehicle_pf_tracker.core.truth import Truth"),
         ("scenes__road", "from vehicle_pf_tracker.parameters.table import specs"),
         ("evaluation__runs", "from vehicle_pf_tracker import __version__"),
-        ("cli__replay", "def run():\n    from vehicle_pf_tracker.ros.player import play"),
+        ("cli__replay", "def run():\n    from vehicle_pf_tracker.ros.replay.player import play"),
         ("cli__main", "from vehicle_pf_tracker.cli import replay"),
         ("ros__node", "import rclpy\nfrom sensor_msgs.msg import Image"),
     ],

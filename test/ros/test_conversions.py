@@ -18,7 +18,6 @@ from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.images import read_image
 from vehicle_pf_tracker.ros.messages import (
     LEVELS,
     REJECTED,
@@ -32,7 +31,8 @@ from vehicle_pf_tracker.ros.messages import (
     stamp_ns,
     velocity_message,
 )
-from vehicle_pf_tracker.ros.target_messages import box_of_point, box_of_polygon, box_of_region
+from vehicle_pf_tracker.ros.node.images import read_image
+from vehicle_pf_tracker.ros.node.target_messages import box_of_point, box_of_polygon, box_of_region
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode, read_only
 
 

@@ -11,7 +11,7 @@ from vehicle_pf_tracker.cli import demo
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.ros.tracker_process import tracker_process
+from vehicle_pf_tracker.ros.replay.tracker_process import tracker_process
 
 pytestmark = pytest.mark.ros
 

@@ -11,7 +11,7 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
-from vehicle_pf_tracker.ros.node import TrackerNode
+from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 WIDTH, HEIGHT = 160, 120

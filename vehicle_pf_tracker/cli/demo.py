@@ -91,9 +91,9 @@ def _record(path: Path) -> Recording:
 def _through_ros(recording: Recording, name: str) -> Sequence[EstimateRow]:
     """Replay in lock-step to a node that runs as a process of its own."""
     _stay_local()
-    from vehicle_pf_tracker.ros.replay_options import ReplayOptions
-    from vehicle_pf_tracker.ros.replaying import replay
-    from vehicle_pf_tracker.ros.tracker_process import tracker_process
+    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+    from vehicle_pf_tracker.ros.replay.replaying import replay
+    from vehicle_pf_tracker.ros.replay.tracker_process import tracker_process
 
     print(f"2. the node {name}_tracker, fed in lock-step through ROS", flush=True)
     node = f"/{name}_tracker"

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.evaluation.output_files import make_folder
 from vehicle_pf_tracker.recordings.reader import Recording
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.ros.replay_options import NodeReport, ReplayOptions, ReplayReport
+    from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions, ReplayReport
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -88,8 +88,8 @@ def run(args: argparse.Namespace) -> int:
     """
     if args.loop and args.output:
         raise UsageError("-o needs an end, so it cannot go with --loop")
-    from vehicle_pf_tracker.ros.interruption import noted_interrupts
-    from vehicle_pf_tracker.ros.replaying import NoTargetError, replay
+    from vehicle_pf_tracker.ros.replay.interruption import noted_interrupts
+    from vehicle_pf_tracker.ros.replay.replaying import NoTargetError, replay
 
     recording = Recording(args.recording, args.topic)
     told = recording.notices
@@ -112,7 +112,7 @@ def run(args: argparse.Namespace) -> int:
 
 def options_of(args: argparse.Namespace) -> ReplayOptions:
     """Collect the options of a parsed command line."""
-    from vehicle_pf_tracker.ros.replay_options import ReplayOptions
+    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
     return ReplayOptions(
         rate=args.rate,

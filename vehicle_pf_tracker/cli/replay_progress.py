@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.ros.replay_options import Progress as ReplayProgress
+    from vehicle_pf_tracker.ros.replay.replay_options import Progress as ReplayProgress
 
 _LINE_SECONDS = 5.0
 

@@ -1,1 +1,1 @@
-"""The ROS 2 layer: conversions, parameters, diagnostics, the node, the bag player."""
+"""The ROS 2 layer: messages, the transport of images, the node and the replay."""

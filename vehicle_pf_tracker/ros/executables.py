@@ -27,11 +27,11 @@ def main(variant: str, args: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status; see `vehicle_pf_tracker.ros.process.run_node`.
+        Exit status; see `vehicle_pf_tracker.ros.node.process.run_node`.
     """
     # Imported late, so that Ctrl-C while libraries load ends the program without a traceback.
     try:
-        from vehicle_pf_tracker.ros.process import run_node  # noqa: PLC0415
+        from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
         from vehicle_pf_tracker.trackers.registry import find_variant  # noqa: PLC0415
 
         return run_node(find_variant(variant), sys.argv[1:] if args is None else args)

@@ -18,7 +18,9 @@ BESIDE = "robustness"
 _PACKAGE = "vehicle_pf_tracker"
 _SHARED = frozenset({f"{_PACKAGE}.recordings.reader"})
 _OURS = frozenset({f"{_PACKAGE}.evaluation.offline"})
-_PEERS = frozenset(f"{_PACKAGE}.evaluation.baselines.{name}" for name in ("rows", "client", "worker"))
+_PEERS = frozenset(
+    f"{_PACKAGE}.evaluation.baselines.{name}" for name in ("rows", "client", "worker")
+)
 _STARTS = frozenset({f"{_PACKAGE}.evaluation.grid.starts", f"{_PACKAGE}.evaluation.grid.restarts"})
 
 

@@ -15,9 +15,9 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.allocator import keep_image_memory
-from vehicle_pf_tracker.ros.image_executor import ImageExecutor
-from vehicle_pf_tracker.ros.node import TrackerNode
+from vehicle_pf_tracker.ros.node.allocator import keep_image_memory
+from vehicle_pf_tracker.ros.node.image_executor import ImageExecutor
+from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.ros.transport import image_transport
 from vehicle_pf_tracker.trackers.registry import Variant
 

@@ -14,9 +14,9 @@ from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.answers import Answers
-from vehicle_pf_tracker.ros.discovery import DISCOVERY
-from vehicle_pf_tracker.ros.spinner import Spinner
+from vehicle_pf_tracker.ros.replay.answers import Answers
+from vehicle_pf_tracker.ros.replay.discovery import DISCOVERY
+from vehicle_pf_tracker.ros.replay.spinner import Spinner
 
 _DEEP = QoSProfile(depth=1000)
 

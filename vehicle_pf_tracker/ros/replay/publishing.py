@@ -17,8 +17,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 from vehicle_pf_tracker.ros.messages import image_message
-from vehicle_pf_tracker.ros.playable import Playable, PlayableTopic
-from vehicle_pf_tracker.ros.replay_options import ReplayOptions
+from vehicle_pf_tracker.ros.replay.playable import Playable, PlayableTopic
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
 _SUFFIX = "/compressed"
 _IMAGE_DEPTH = 10

@@ -9,9 +9,9 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from vehicle_pf_tracker.ros.health import Health
-from vehicle_pf_tracker.ros.image_input import ImageInput
 from vehicle_pf_tracker.ros.messages import LEVELS, key_values
+from vehicle_pf_tracker.ros.node.health import Health
+from vehicle_pf_tracker.ros.node.image_input import ImageInput
 
 PERIOD = 1.0
 SILENCE = 5.0

@@ -14,7 +14,7 @@ from tracker_rig import FIRST_NS, PERIOD_NS, Rig, on_target, overrides, road, va
 
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import ParameterSpec
-from vehicle_pf_tracker.ros.node import TrackerNode
+from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 from vehicle_pf_tracker.trackers.session import Session
 

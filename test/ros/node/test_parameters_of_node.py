@@ -26,7 +26,7 @@ from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.node_parameters import NodeParameters
 from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
 from vehicle_pf_tracker.parameters.table import specs
-from vehicle_pf_tracker.ros.node import TrackerNode
+from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 pytestmark = pytest.mark.ros

@@ -10,7 +10,7 @@ from rclpy.node import Node
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.topics import DIAGNOSTIC_ARRAY, IMAGE_TYPES
-from vehicle_pf_tracker.ros.spinner import Spinner
+from vehicle_pf_tracker.ros.replay.spinner import Spinner
 
 DISCOVERY = 5.0
 """As long as discovery usually takes at most, in s; no search for a node is shorter."""

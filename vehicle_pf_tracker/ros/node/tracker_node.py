@@ -13,14 +13,14 @@ from std_srvs.srv import Trigger
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.diagnostics import Diagnostics
-from vehicle_pf_tracker.ros.image_input import ImageInput, image_topic
-from vehicle_pf_tracker.ros.managed_node import ManagedNode
 from vehicle_pf_tracker.ros.messages import stamp_ns
-from vehicle_pf_tracker.ros.outputs import Outputs
-from vehicle_pf_tracker.ros.parameters import ParameterTable, unknown_overrides
-from vehicle_pf_tracker.ros.stream import Stream
-from vehicle_pf_tracker.ros.target_messages import box_of_point, box_of_polygon, box_of_region
+from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
+from vehicle_pf_tracker.ros.node.image_input import ImageInput, image_topic
+from vehicle_pf_tracker.ros.node.managed_node import ManagedNode
+from vehicle_pf_tracker.ros.node.outputs import Outputs
+from vehicle_pf_tracker.ros.node.parameters import ParameterTable, unknown_overrides
+from vehicle_pf_tracker.ros.node.stream import Stream
+from vehicle_pf_tracker.ros.node.target_messages import box_of_point, box_of_polygon, box_of_region
 from vehicle_pf_tracker.trackers.registry import Variant
 
 

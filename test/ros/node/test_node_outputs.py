@@ -12,8 +12,8 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Image, PointCloud2
 from tracker_rig import HEIGHT, PERIOD_NS, SPEED, WIDTH, Rig, on_target, road, values_of
 
-from vehicle_pf_tracker.ros import outputs
-from vehicle_pf_tracker.ros.overlay import Overlay
+from vehicle_pf_tracker.ros.node import outputs
+from vehicle_pf_tracker.ros.node.overlay import Overlay
 
 pytestmark = pytest.mark.ros
 

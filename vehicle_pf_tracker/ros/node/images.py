@@ -7,7 +7,7 @@ from sensor_msgs.msg import CompressedImage, Image
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.image.encodings import to_rgb
-from vehicle_pf_tracker.ros.serialized_image import SerializedImage
+from vehicle_pf_tracker.ros.node.serialized_image import SerializedImage
 
 
 def read_image(message: Image | SerializedImage | CompressedImage) -> Frame:

@@ -11,9 +11,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CompressedImage, Image
 from tracker_rig import Rig, header, on_target, road
 
-from vehicle_pf_tracker.ros import diagnostics
-from vehicle_pf_tracker.ros.health import Health
 from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.ros.node import diagnostics
+from vehicle_pf_tracker.ros.node.health import Health
 
 pytestmark = pytest.mark.ros
 

@@ -12,8 +12,8 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.replay_options import ReplayOptions
-from vehicle_pf_tracker.ros.replaying import replay
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+from vehicle_pf_tracker.ros.replay.replaying import replay
 
 pytestmark = pytest.mark.ros
 

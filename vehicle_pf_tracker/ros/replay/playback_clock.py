@@ -7,7 +7,7 @@ from rclpy.clock import ClockType
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 
-from vehicle_pf_tracker.ros.pacing import Pace
+from vehicle_pf_tracker.ros.replay.pacing import Pace
 
 
 class PlaybackClock:

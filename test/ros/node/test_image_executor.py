@@ -12,8 +12,8 @@ import rclpy
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger
 
-from vehicle_pf_tracker.ros import image_executor
-from vehicle_pf_tracker.ros.image_executor import ImageExecutor
+from vehicle_pf_tracker.ros.node import image_executor
+from vehicle_pf_tracker.ros.node.image_executor import ImageExecutor
 
 pytestmark = pytest.mark.ros
 

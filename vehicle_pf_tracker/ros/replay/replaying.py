@@ -13,20 +13,20 @@ from rclpy.signals import SignalHandlerOptions
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
-from vehicle_pf_tracker.ros.discovery import Lookout
-from vehicle_pf_tracker.ros.interruption import noted_interrupts
-from vehicle_pf_tracker.ros.playable import Playable
-from vehicle_pf_tracker.ros.player import Player
-from vehicle_pf_tracker.ros.publishing import TopicPublisher, decompressed, make_publishers
-from vehicle_pf_tracker.ros.replay_options import (
+from vehicle_pf_tracker.ros.replay.discovery import Lookout
+from vehicle_pf_tracker.ros.replay.interruption import noted_interrupts
+from vehicle_pf_tracker.ros.replay.playable import Playable
+from vehicle_pf_tracker.ros.replay.player import Player
+from vehicle_pf_tracker.ros.replay.publishing import TopicPublisher, decompressed, make_publishers
+from vehicle_pf_tracker.ros.replay.replay_options import (
     NodeReport,
     Progress,
     ReplayOptions,
     ReplayReport,
 )
-from vehicle_pf_tracker.ros.spinner import Interrupted, Spinner
-from vehicle_pf_tracker.ros.starting_target import Targets, first_image, starting_target
-from vehicle_pf_tracker.ros.tracker_link import TrackerLink
+from vehicle_pf_tracker.ros.replay.spinner import Interrupted, Spinner
+from vehicle_pf_tracker.ros.replay.starting_target import Targets, first_image, starting_target
+from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink
 from vehicle_pf_tracker.ros.transport import image_transport
 
 NODE_NAME = "bag_replay"

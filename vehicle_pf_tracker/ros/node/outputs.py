@@ -21,7 +21,7 @@ from vehicle_pf_tracker.ros.messages import (
     position_message,
     velocity_message,
 )
-from vehicle_pf_tracker.ros.overlay import Overlay
+from vehicle_pf_tracker.ros.node.overlay import Overlay
 from vehicle_pf_tracker.trackers.estimate import Estimate
 
 _RELIABLE = QoSProfile(depth=10)

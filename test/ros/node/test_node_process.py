@@ -47,7 +47,7 @@ def test_a_second_ctrl_c_does_not_reach_the_clean_up(start_process):
     code = (
         "import os, signal, sys\n"
         "from vehicle_pf_tracker.ros.executables import apf_tracker\n"
-        "from vehicle_pf_tracker.ros.node import TrackerNode\n"
+        "from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode\n"
         "destroy = TrackerNode.destroy_node\n"
         "def interrupted(node):\n"
         "    os.kill(os.getpid(), signal.SIGINT)\n"
@@ -70,7 +70,7 @@ def test_a_signal_while_libraries_load_leaves_no_traceback(start_process):
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "class Interrupting:\n"
         "    def find_spec(self, name, path=None, target=None):\n"
-        "        if name == 'vehicle_pf_tracker.ros.process':\n"
+        "        if name == 'vehicle_pf_tracker.ros.node.process':\n"
         "            os.kill(os.getpid(), signal.SIGINT)\n"
         "sys.meta_path.insert(0, Interrupting())\n"
         "from vehicle_pf_tracker.ros.executables import apf_tracker\n"
@@ -160,7 +160,7 @@ def test_two_nodes_live_under_their_namespaces(bench, start_node):
 
 def test_the_node_loads_neither_recordings_nor_evaluation():
     code = (
-        "import sys; import vehicle_pf_tracker.ros.process; "
+        "import sys; import vehicle_pf_tracker.ros.node.process; "
         "print(*sorted(name for name in sys.modules if name.startswith('vehicle_pf_tracker.')))"
     )
     loaded = subprocess.run(

@@ -18,7 +18,7 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 pytestmark = pytest.mark.ros
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 FUNCTIONS = {"eval", "exec", "compile", "__import__"}
 METHODS = {"system", "popen", "unsafe_load", "full_load", "Unpickler"}
 

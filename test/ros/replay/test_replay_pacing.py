@@ -2,9 +2,9 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.ros.answers import Answers
-from vehicle_pf_tracker.ros.pacing import Pace
-from vehicle_pf_tracker.ros.starting_target import nearest_frame
+from vehicle_pf_tracker.ros.replay.answers import Answers
+from vehicle_pf_tracker.ros.replay.pacing import Pace
+from vehicle_pf_tracker.ros.replay.starting_target import nearest_frame
 
 
 class Watch:

@@ -1,0 +1,1 @@
+"""The tracker node: images in, estimates out."""
