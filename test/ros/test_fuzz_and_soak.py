@@ -1,4 +1,4 @@
-"""The long runs of benchmarks/, kept short."""
+"""The long runs of test/robustness/, kept short."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 pytestmark = pytest.mark.ros
 
-BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
+ROBUSTNESS = Path(__file__).resolve().parents[1] / "robustness"
 
 
 def run(start_process, script: str, *words: str) -> str:
-    process = start_process(str(BENCHMARKS / script), *words)
+    process = start_process(str(ROBUSTNESS / script), *words)
     status = process.wait(60)
     assert status == 0, process.output
     return process.output

@@ -1,6 +1,6 @@
 """Run a node at a camera's rate with faults mixed in, and see whether it stays as it was.
 
-    python benchmarks/soak.py --minutes 10
+    python test/robustness/soak.py --minutes 10
 
 prints images in and out, the time from sending a good image to its answer, and how the resident
 memory went. Exit status 1 if a good image stayed unanswered or had no estimate.

@@ -1,7 +1,7 @@
 """Fuzz a running node through Fast DDS, in lock-step.
 
-    python benchmarks/fuzz_node.py --images 10000 --targets 10000
-    python benchmarks/fuzz_node.py --messages 200000
+    python test/robustness/fuzz_node.py --images 10000 --targets 10000
+    python test/robustness/fuzz_node.py --messages 200000
 
 Every image, good or faulty, has to be answered once; a good one has to have an estimate. Exit
 status 1 names the first message that was not answered so.

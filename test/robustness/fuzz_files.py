@@ -1,6 +1,6 @@
 """Fuzz parameter files and recordings.
 
-    python benchmarks/fuzz_files.py --parameters 10000 --recordings 10000
+    python test/robustness/fuzz_files.py --parameters 10000 --recordings 10000
 
 A parameter file must be refused with a sentence, or give exactly the values that it names, both to
 the command line and to a node. A recording must be refused with one line and status 1, or tracked
@@ -153,14 +153,14 @@ def try_recording(path: Path, folder: Path) -> str:
 
 
 @contextlib.contextmanager
-def _captured():  # noqa: ANN202
+def _captured():
     told, errors = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(told), contextlib.redirect_stderr(errors):
         yield told, errors
 
 
 @contextlib.contextmanager
-def _quiet():  # noqa: ANN202
+def _quiet():
     """Keep what C libraries write from the terminal."""
     kept = os.dup(2)
     nowhere = os.open(os.devnull, os.O_WRONLY)
