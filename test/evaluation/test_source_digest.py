@@ -53,7 +53,9 @@ def test_a_table_and_what_it_lists_do_not_count(root, monkeypatch):
 
 
 def test_one_variant_does_not_decide_another():
-    names = [f"vehicle_pf_tracker.trackers.{name}" for name in ("apf", "ms", "session")]
+    names = [
+        f"vehicle_pf_tracker.trackers.{name}" for name in ("papers.apf", "papers.ms", "session")
+    ]
     assert len({source_digest([name]) for name in names}) == 3
     found = module._imported("vehicle_pf_tracker.trackers.session", module._ROOT, module._PACKAGE)
     assert "vehicle_pf_tracker.trackers.registry" in found
