@@ -5,6 +5,7 @@ PYTHON =
 NOBLE_PYTHON =
 PYTEST_ARGS =
 BENCH_ARGS =
+FIGURES = all
 
 BIN := .venv/bin
 INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
@@ -13,7 +14,7 @@ CORE_AND_NODE := $(wildcard $(addprefix test/,core parameters filtering image tr
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: demo test test-slow test-noble lint types format config colcon peers bench clean
+.PHONY: demo test test-slow test-noble lint types format config colcon peers bench reproduce clean
 
 demo: .venv/installed
 	$(BIN)/vehicle-pf-tracker demo -o results/demo
@@ -38,6 +39,10 @@ peers: .venv-peers/locked
 bench: .venv/installed .venv-peers/locked
 	$(BIN)/python -m benchmarks.bench $(BENCH_ARGS)
 	$(BIN)/python -m benchmarks.bench.performance_page results/bench/bench.json docs
+
+# The papers' experiments; what was run before is not run again.
+reproduce: .venv/installed
+	$(BIN)/python -m reproduction $(FIGURES) --docs docs
 
 lint: .venv/installed
 	$(BIN)/ruff check .

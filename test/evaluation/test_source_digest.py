@@ -36,6 +36,19 @@ def test_whatever_is_imported_counts_also_late(root, name):
     assert digest(root, "made.start") == before
 
 
+def test_a_start_in_another_package_counts_with_what_it_imports_from_both(root):
+    (root / "guest").mkdir()
+    (root / "guest" / "cells.py").write_text("from guest import scenes\nimport made.start\n")
+    (root / "guest" / "scenes.py").write_text("S = 1\n")
+    before = digest(root, "guest.cells")
+    for folder, name in (("guest", "scenes.py"), ("made", "middle.py")):
+        file = root / folder / name
+        kept = file.read_text()
+        file.write_text(kept + "# changed")
+        assert digest(root, "guest.cells") != before
+        file.write_text(kept)
+
+
 def test_what_is_not_imported_does_not_count(root):
     before = digest(root, "made.start")
     (root / "made" / "other.py").write_text("Y = 2\n")
@@ -57,5 +70,6 @@ def test_one_variant_does_not_decide_another():
         f"vehicle_pf_tracker.trackers.{name}" for name in ("papers.apf", "papers.ms", "session")
     ]
     assert len({source_digest([name]) for name in names}) == 3
-    found = module._imported("vehicle_pf_tracker.trackers.session", module._ROOT, module._PACKAGE)
+    ours = frozenset({module._PACKAGE})
+    found = module._imported("vehicle_pf_tracker.trackers.session", module._ROOT, ours)
     assert "vehicle_pf_tracker.trackers.registry" in found

@@ -96,7 +96,6 @@ def test_frame_rate_changes_the_stamps_only():
         ("motorbike", {}, ["'motorbike'", "bar", "highway"]),
         ("bar", {"settings": ["widht=3"]}, ["'widht'", "bar", "width", "vehicle_width"]),
         ("bar", {"settings": {"widht": 3}}, ["'widht'", "bar", "width", "vehicle_width"]),
-        ("video01", {"settings": {"speed": 3}}, ["'speed'", "video01", "none"]),
         ("clear", {"settings": ["disturbance=wild"]}, ["disturbance", "clean, rough", "'wild'"]),
         ("highway", {"settings": ["width=3"]}, ["'width'", "highway", "noise"]),
         ("bar", {"settings": ["width"]}, ["name=value", "'width'"]),
@@ -121,16 +120,3 @@ def test_the_docs_name_every_scene():
     page = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text(encoding="utf-8")
     for name in ALL:
         assert f"`{name}`" in page, name
-
-
-def test_scenes_of_one_table_show_different_vehicles():
-    names = [name for name in ALL if name.startswith("video")]
-    colours = {
-        tuple((_window(some(name, 1)[0]) // 32).tolist()) for name in names[:4] + names[7:12]
-    }
-    assert len(colours) > 4
-
-
-def _window(shot):
-    x, y = (round(value) for value in shot.truth.box.centre)
-    return np.median(shot.frame[y - 6 : y + 6, x - 12 : x + 12], axis=(0, 1)).astype(int)

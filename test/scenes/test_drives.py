@@ -6,9 +6,7 @@ from itertools import groupby, pairwise
 import pytest
 
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.scenes.cases import CASES
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
-from vehicle_pf_tracker.scenes.videos import VIDEOS
 
 NONE, PARTIAL, TOTAL = Occlusion.NONE, Occlusion.PARTIAL, Occlusion.TOTAL
 SEEDS = range(4)
@@ -42,15 +40,6 @@ def _truths(name, seed, settings):
     return list(make_scene(name, seed=seed, settings=dict(settings)).truths())
 
 
-def occluded_by_itself(runs):
-    """Whether there is a partial occlusion that neither begins nor ends a total one."""
-    states = [state for state, _ in runs]
-    return any(
-        state is PARTIAL and TOTAL not in (*states[i - 1 : i], *states[i + 1 : i + 2])
-        for i, state in enumerate(states)
-    )
-
-
 @pytest.mark.parametrize("name", TOTALS)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_total_occlusions_come_as_often_and_last_as_long_as_said(name, seed):
@@ -74,7 +63,7 @@ def test_nothing_hides_the_target_where_nothing_is_in_the_way(name, seed):
 
 
 def test_every_scene_is_judged_here():
-    assert {*TOTALS, *PARTIALS, *CLEAR, *VIDEOS, *CASES} == set(DRIVES)
+    assert {*TOTALS, *PARTIALS, *CLEAR} == set(DRIVES)
 
 
 @pytest.mark.parametrize("name", DRIVES)
@@ -110,59 +99,6 @@ def test_length_size_and_rate_are_those_of_the_papers(name):
     assert 70 <= scene.frame_count <= 200
     assert (scene.width, scene.height) in {(640, 480), (768, 576)}
     assert scene.frame_rate == 15
-
-
-@pytest.mark.parametrize("name", VIDEOS)
-@pytest.mark.parametrize("seed", range(8))
-def test_videos_have_the_occlusions_of_their_row(name, seed):
-    runs = phases(truths_of(name, seed))
-    states = {state for state, _ in runs}
-    promised = VIDEOS[name].occlusion
-    assert (TOTAL in states) == ("total" in promised)
-    assert occluded_by_itself(runs) == ("partial" in promised)
-    assert (states == {NONE}) == (promised == "none")
-
-
-def test_videos_follow_table_i():
-    """Vehicle and resolution of the paper's rows."""
-    rows = [video.parameters for video in VIDEOS.values()]
-    kinds = ["suv", "car", "suv", "car", *3 * ["truck"], *3 * ["car"], "truck", *9 * ["car"]]
-    assert [row.vehicle for row in rows] == kinds
-    assert {row.resolution for row in rows[11:18]} == {"768x576"}
-    assert {row.resolution for row in rows[:11] + rows[18:]} == {"640x480"}
-    assert list(VIDEOS) == [f"video{number:02d}" for number in range(1, 21)]
-
-
-@pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("seed", SEEDS)
-def test_cases_have_the_occlusions_they_say(name, seed):
-    runs = phases(truths_of(name, seed))
-    states = {state for state, _ in runs}
-    promised = CASES[name].occlusion
-    assert (TOTAL in states) == ("total" in promised)
-    assert occluded_by_itself(runs) == ("partial" in promised)
-
-
-@pytest.mark.parametrize("seed", SEEDS)
-def test_cases_four_and_five_and_the_phases_last_as_long_as_in_the_papers(seed):
-    four, five = (
-        [length for state, length in phases(truths_of(name, seed)) if state is TOTAL]
-        for name in ("case4", "case5")
-    )
-    assert four == [pytest.approx(70, abs=3)]
-    assert len(five) == 2
-    assert max(five) <= 10
-    states, lengths = zip(*phases(truths_of("phases", seed)), strict=True)
-    assert states == (NONE, PARTIAL, TOTAL, PARTIAL, NONE)
-    assert lengths[:3] == pytest.approx((40, 30, 20), abs=2)
-    assert lengths[4] >= 40
-
-
-@pytest.mark.parametrize("seed", SEEDS)
-def test_case_six_turns_out_of_sight(seed):
-    hidden = [t.box for t in truths_of("case6", seed) if t.visible_fraction < 1]
-    assert hidden[0].width > 1.5 * hidden[0].height
-    assert hidden[-1].width < hidden[-1].height
 
 
 @pytest.mark.parametrize("name", ["bridge", "turn_occluded", "scale", "cross"])

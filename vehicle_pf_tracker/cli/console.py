@@ -20,9 +20,9 @@ class UsageError(Exception):
     """The command line lacks something that no file could give; ends with status 2."""
 
 
-def tell_error(sentence: str) -> None:
+def tell_error(sentence: str, program: str = PROGRAM) -> None:
     """Say why nothing came of it, in one line."""
-    print(f"{PROGRAM}: error: {' '.join(sentence.split())}", file=sys.stderr, flush=True)
+    print(f"{program}: error: {' '.join(sentence.split())}", file=sys.stderr, flush=True)
 
 
 def tell_notices(sentences: Iterable[str]) -> None:

@@ -6,7 +6,7 @@ import argparse
 import importlib
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
 from vehicle_pf_tracker import __doc__ as _summary
@@ -25,10 +25,14 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "tune": ("tune", "search a variant's parameters on recordings, and try them on others"),
         "report": ("report", "make the report of an evaluation again"),
         "replay": ("replay", "feed a recording to ROS nodes"),
-        "reproduce": ("reproduce", "make the papers' figures and tables again, with verdicts"),
     }
 )
 """Module in this package and one line of help, by verb."""
+
+_REPRODUCE = (
+    "the papers' experiments are not part of the installed package: run `python -m reproduction "
+    "FIGURE…` or `make reproduce` in the repository"
+)
 
 FAILED, USAGE, INTERRUPTED, PIPE_CLOSED = 1, 2, 130, 141
 """Exit statuses; the last two are those of a program that a signal ended."""
@@ -37,16 +41,21 @@ FAILED, USAGE, INTERRUPTED, PIPE_CLOSED = 1, 2, 130, 141
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line `argv`, that of the process if None, and return the exit status."""
     words = sys.argv[1:] if argv is None else argv
+    return exit_status(lambda: _run(list(words)))
+
+
+def exit_status(action: Callable[[], int], program: str = PROGRAM) -> int:
+    """Return the status of `action`, or print the error that ended it in one line."""
     try:
-        status = _run(list(words))
+        status = action()
         sys.stdout.flush()
     except (InputError, UsageError) as error:
-        tell_error(str(error))
+        tell_error(str(error), program)
         return USAGE if isinstance(error, UsageError) else FAILED
     except ModuleNotFoundError as error:
         if (error.name or "").startswith(__package__.partition(".")[0]):
             raise  # a fault of ours, not something that is left to install
-        tell_error(_missing(error))
+        tell_error(_missing(error), program)
         return FAILED
     except KeyboardInterrupt:
         return INTERRUPTED
@@ -56,7 +65,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return PIPE_CLOSED
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
-        tell_error(f"{where}{error.strerror or error}")
+        tell_error(f"{where}{error.strerror or error}", program)
         return FAILED
     return status
 
@@ -81,6 +90,8 @@ def _parser(words: list[str]) -> argparse.ArgumentParser:
     No other verb is loaded, so that help is quick and nothing needs ROS but what uses it.
     """
     asked = next((word for word in words if not word.startswith("-")), None)
+    if asked == "reproduce":
+        raise UsageError(_REPRODUCE)
     parser = argparse.ArgumentParser(prog=PROGRAM, description=_summary)
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {__version__}")
     verbs = parser.add_subparsers(metavar="VERB", required=True)

@@ -29,7 +29,7 @@ def variant_modules(variant: Variant) -> set[str]:
 
 @functools.cache
 def code_digest(modules: frozenset[str]) -> str:
-    """Digest the code of `modules`, and of all that they import from the package."""
+    """Digest the code of `modules`, and of all that they import from the package or their own."""
     return source_digest(modules)
 
 

@@ -15,7 +15,7 @@ _TABLES = frozenset({f"{_PACKAGE}.trackers.registry"})
 
 
 def source_digest(modules: Iterable[str], root: Path = _ROOT, package: str = _PACKAGE) -> str:
-    """Digest the sources of modules, and of all that they import from the package.
+    """Digest the sources of modules, and of all that they import from the package or their own.
 
     Parameters
     ----------
@@ -23,16 +23,17 @@ def source_digest(modules: Iterable[str], root: Path = _ROOT, package: str = _PA
         Full names, such as ``vehicle_pf_tracker.trackers.papers.apf``. The registry of variants
         does not count, so that a variant that comes or changes leaves the others' digests.
     root : Path
-        The folder that holds the package's folder.
+        The folder that holds the packages' folders.
     package : str
         The package's name.
     """
     seen: set[str] = set()
     waiting = set(modules)
+    packages = frozenset({package, *(name.split(".")[0] for name in waiting)})
     while waiting:
         name = waiting.pop()
         seen.add(name)
-        waiting |= _imported(name, root, package) - seen - _TABLES
+        waiting |= _imported(name, root, packages) - seen - _TABLES
     digest = hashlib.sha256()
     for name in sorted(seen):
         digest.update(name.encode() + b"\0" + _source(name, root) + b"\0")
@@ -45,11 +46,11 @@ def _source(name: str, root: Path) -> bytes:
 
 
 @functools.cache
-def _imported(name: str, root: Path, package: str) -> frozenset[str]:
+def _imported(name: str, root: Path, packages: frozenset[str]) -> frozenset[str]:
     tree = ast.parse(_source(name, root))
     wanted = (target for node in ast.walk(tree) for target in _targets(node))
     return frozenset(
-        target for target in wanted if target.split(".")[0] == package and _path(target, root)
+        target for target in wanted if target.split(".")[0] in packages and _path(target, root)
     )
 
 

@@ -9,9 +9,7 @@ from typing import Any
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.scenes.bar import BarParameters, bar
-from vehicle_pf_tracker.scenes.cases import CASES
 from vehicle_pf_tracker.scenes.drive import DriveParameters
-from vehicle_pf_tracker.scenes.fixed_scenes import NoParameters
 from vehicle_pf_tracker.scenes.highway import HighwayParameters, highway
 from vehicle_pf_tracker.scenes.light import (
     IlluminationParameters,
@@ -39,7 +37,6 @@ from vehicle_pf_tracker.scenes.standing_obstacles import (
     signs,
     trees,
 )
-from vehicle_pf_tracker.scenes.videos import VIDEOS
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,46 +79,49 @@ SCENES: dict[str, SceneKind] = {
     "turn": SceneKind(DriveParameters, turn, "the target turns into a side road"),
     "turn_occluded": SceneKind(DriveParameters, turn_occluded, "it turns behind a house"),
     "scale": SceneKind(ScaleParameters, scale, "the target drives into depth and changes its size"),
-    **{
-        name: SceneKind(NoParameters, row.scene, row.summary)
-        for name, row in (VIDEOS | CASES).items()
-    },
 }
+"""The scenes that come with the package, by name."""
 
 
 def make_scene(
-    name: str, *, seed: int = 0, settings: Mapping[str, object] | Sequence[str] = ()
+    name: str,
+    *,
+    seed: int = 0,
+    settings: Mapping[str, object] | Sequence[str] = (),
+    scenes: Mapping[str, SceneKind] = SCENES,
 ) -> Scene:
     """Make the scene `name`.
 
     Parameters
     ----------
     name : str
-        A key of `SCENES`.
+        A key of `scenes`.
     seed : int
         At least 0. Changes textures, noise and what the scene leaves to chance.
     settings : mapping or sequence of str
         Scene parameters by name, or ``key=value`` words.
+    scenes : mapping of str to SceneKind
+        The scenes to choose from.
 
     Raises
     ------
     InputError
         If the scene or a setting is unknown (naming the known ones), or a value does not fit.
     """
-    if name not in SCENES:
-        raise InputError(f"there is no scene {name!r}; choose one of {', '.join(SCENES)}")
-    kind = SCENES[name]
+    if name not in scenes:
+        raise InputError(f"there is no scene {name!r}; choose one of {', '.join(scenes)}")
+    kind = scenes[name]
     if isinstance(settings, Mapping):
-        _check_names(name, settings)
+        _check_names(name, kind, settings)
         values: Mapping[str, object] = settings
     else:
-        _check_names(name, (word.partition("=")[0] for word in settings))
+        _check_names(name, kind, (word.partition("=")[0] for word in settings))
         values = parse_assignments(specs(kind.parameters), settings)
     return kind.build(from_mapping(kind.parameters, values), check_seed(seed))
 
 
-def _check_names(scene: str, names: Iterable[str]) -> None:
-    known = specs(SCENES[scene].parameters)
+def _check_names(scene: str, kind: SceneKind, names: Iterable[str]) -> None:
+    known = specs(kind.parameters)
     unknown = [name for name in names if name not in known]
     if unknown:
         raise InputError(

@@ -1,0 +1,182 @@
+"""Figure 4 of the first paper: both similarities and the threshold, for bars of 1 and 30 px."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from reproduction.apf_artificial import (
+    SETTING,
+    SPEED,
+    artificial_video,
+    covered,
+)
+from reproduction.apf_systems import (
+    READINGS,
+    READINGS_TOLD,
+    with_sigma,
+)
+from reproduction.cells import Result, RunCell
+from reproduction.data_table import DataTable, Entry
+from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.numbers import counted, median_and_range, share
+from reproduction.verdict import Claim, Finding, Holds, Verdict
+
+_WIDTHS = 1, 30
+_TAU = 0.8
+_PLACE = "section IV, figure 4"
+_RECORD = ("pi", "pi_up", "regime")
+_SHOWN = {"pi": "Pi", "pi_up": "Pi_up"}
+_LINES = {1: ((0, (1, 1.2)), "#D55E00"), 30: ("-", "#0072B2")}
+_SLACK = 3
+"""Frames before and after the covered ones in which an occlusion may be noticed."""
+
+
+def cells(size: Size) -> list[RunCell]:
+    """Run every reading on both widths with every seed."""
+    return [
+        _cell(reading, width, seed)
+        for width in _WIDTHS
+        for reading in READINGS
+        for seed in size.seeds
+    ]
+
+
+def report(results: Results, size: Size) -> Report:
+    """Draw the first seed's similarities, and judge all seeds."""
+    rows: list[tuple[Entry, ...]] = []
+    for reading in READINGS:
+        for width in _WIDTHS:
+            for seed in size.seeds:
+                trace = results[_cell(reading, width, seed)]["trace"]
+                columns = zip(trace["pi"], trace["pi_up"], trace["regime"], strict=True)
+                rows += [
+                    (reading, width, seed, frame, *values)
+                    for frame, values in enumerate(columns, start=1)
+                ]
+    names = ("reading", "width", "seed", "frame", "pi", "pi_up", "regime")
+    return Report(DataTable(names, tuple(rows)), _figure(results, size), _verdict(results, size))
+
+
+def _cell(reading: str, width: int, seed: int) -> RunCell:
+    system = with_sigma(READINGS[reading], SPEED)
+    return RunCell(artificial_video(width), system, seed, _RECORD)
+
+
+def _figure(results: Results, size: Size) -> Figure:
+    figure = Figure(figsize=(11, 5.2), layout="constrained")
+    axes = figure.subplots(2, len(READINGS), sharex=True, sharey=True)
+    for column, reading in enumerate(READINGS):
+        for row, (scalar, name) in enumerate(_SHOWN.items()):
+            traces = {
+                width: results[_cell(reading, width, size.seeds[0])]["trace"][scalar]
+                for width in _WIDTHS
+            }
+            _draw(axes[row, column], traces)
+            axes[row, 0].set(ylabel=name)
+        axes[0, column].set(title=reading)
+        axes[1, column].set(xlabel="frame")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
+    return figure
+
+
+def _draw(axes: Axes, traces: dict[int, list[float | None]]) -> None:
+    span = covered(artificial_video(_WIDTHS[-1]).truths())
+    assert span is not None
+    axes.axvspan(*span, color="0.9", lw=0, label=f"{_WIDTHS[-1]} px bar covers a part or all")
+    for width, trace in traces.items():
+        style, colour = _LINES[width]
+        # The first frame has no similarity yet: it is the reference.
+        axes.plot(
+            range(2, len(trace) + 1), [value or 0.0 for value in trace[1:]], ls=style,
+            color=colour, lw=1.6, label=f"width {width} px",
+        )  # fmt: skip
+    axes.axhline(_TAU, color="black", ls="--", lw=1.0, label=f"tau = {_TAU:g}")
+    axes.set_ylim(0, 1)
+
+
+def _verdict(results: Results, size: Size) -> Verdict:
+    def runs(reading: str, width: int) -> list[Result]:
+        return [results[_cell(reading, width, seed)] for seed in size.seeds]
+
+    narrow, wide = _WIDTHS
+    return Verdict(
+        (
+            Claim(
+                f"with {narrow} px the similarities stay above the threshold, and occlusion mode "
+                "is not entered",
+                _PLACE,
+                tuple(_ignored(reading, runs(reading, narrow)) for reading in READINGS),
+            ),
+            Claim(
+                f"with {wide} px the similarities fall below the threshold, and the occlusion is "
+                "detected",
+                _PLACE,
+                tuple(_detected(reading, runs(reading, wide)) for reading in READINGS),
+            ),
+        ),
+        f"{SETTING} It passes at {SPEED:g} px/frame, sigma is the same number; {len(size.seeds)} "
+        "seeds. Curves are those of the first seed. "
+        f"{READINGS_TOLD}",
+    )
+
+
+def _ignored(reading: str, runs: Sequence[Result]) -> Finding:
+    least = [_least(run, "pi") for run in runs]
+    least_up = [_least(run, "pi_up") for run in runs]
+    never = [sum(_occluded(run)) == 0 for run in runs]
+    above = [min(pair) >= _TAU for pair in zip(least, least_up, strict=True)]
+    near_bar = _span(_WIDTHS[0])
+    caused = [any(_occluded(run)[near_bar]) for run in runs]
+    frames = [sum(_occluded(run)) for run in runs]
+    return Finding(
+        reading,
+        Holds.of(all(never), not any(caused)),
+        f"least Pi {median_and_range(least, 2)}, least Pi_up {median_and_range(least_up, 2)}; "
+        f"above {_TAU:g} throughout in {counted(above)} runs; {median_and_range(frames, 0)} "
+        f"frames in occlusion mode, none in {counted(never)} runs; at the bar in {counted(caused)}",
+    )
+
+
+def _detected(reading: str, runs: Sequence[Result]) -> Finding:
+    least, least_up = ([_least(run, name) for run in runs] for name in _SHOWN)
+    fell = [min(pair) < _TAU for pair in zip(least, least_up, strict=True)]
+    span = _span(_WIDTHS[-1])
+    entered = [any(_occluded(run)[span]) for run in runs]
+    before = [sum(_occluded(run)[: span.start]) for run in runs]
+    # Whoever is in occlusion mode all the time detects nothing.
+    hits = [
+        fall and enter and frames < span.start / 2
+        for fall, enter, frames in zip(fell, entered, before, strict=True)
+    ]
+    return Finding(
+        reading,
+        Holds.share(share(hits)),
+        f"least Pi {median_and_range(least, 2)}, least Pi_up {median_and_range(least_up, 2)}; "
+        f"occlusion mode at the bar in {counted(entered)} runs, before it in "
+        f"{median_and_range(before, 0)} frames",
+    )
+
+
+def _least(run: Result, scalar: str) -> float:
+    found: list[float | None] = run["trace"][scalar]
+    return min(value for value in found if value is not None)
+
+
+def _occluded(run: Result) -> list[bool]:
+    return [regime == "occlusion" for regime in run["trace"]["regime"]]
+
+
+def _span(width: int) -> slice:
+    """Return the indices of the frames in which the bar covers the vehicle, and a few around."""
+    found = covered(artificial_video(width).truths())
+    assert found is not None
+    return slice(found[0] - 1 - _SLACK, found[1] + _SLACK)
+
+
+EXPERIMENT = Experiment(
+    "apf-fig4", "APF, figure 4: Pi and Pi_up with occlusions of 1 and 30 px", cells, report
+)

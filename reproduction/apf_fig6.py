@@ -1,0 +1,87 @@
+"""Figure 6 of the first paper: the error in each frame, of all six trackers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from statistics import median
+
+from reproduction import apf_video3 as video3
+from reproduction.apf_systems import READINGS, RIVALS, SIX
+from reproduction.data_table import DataTable
+from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.numbers import median_and_range
+from reproduction.verdict import Claim, Finding, Holds, Verdict
+from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
+from vehicle_pf_tracker.evaluation.plots import error_figure
+from vehicle_pf_tracker.evaluation.scores import Scores
+
+_PLACE = "section IV, figure 6"
+
+
+def report(results: Results, size: Size) -> Report:
+    """Draw the first seed's errors, and judge all seeds."""
+    runs = video3.all_scores(results, size)
+    drawn = {system.label: runs[system.label][0] for system in SIX}
+    return Report(
+        video3.data(runs, size),
+        error_figure(drawn),
+        _verdict(runs, size),
+        {"Median of the seeds' mean errors, px:": _table(runs)},
+    )
+
+
+def _mean_errors(of_seeds: Sequence[Scores]) -> tuple[list[float], list[float]]:
+    """Mean error before the first and after the last total occlusion, for each seed."""
+    before, after = [], []
+    for scored in of_seeds:
+        first, last = video3.total_span(scored)
+        errors = [(f.row.frame, f.error) for f in scored.counted if f.error is not None]
+        head = [error for frame, error in errors if frame < first]
+        tail = [error for frame, error in errors if frame >= last + SETTLING_FRAMES]
+        before.append(sum(head) / len(head))
+        after.append(sum(tail) / len(tail))
+    return before, after
+
+
+def _table(runs: dict[str, list[Scores]]) -> DataTable:
+    rows = []
+    for label, of_seeds in runs.items():
+        before, after = _mean_errors(of_seeds)
+        rows.append((label, median_and_range(before), median_and_range(after)))
+    return DataTable(("tracker", "before the first total occlusion", "after the last"), tuple(rows))
+
+
+def _verdict(runs: dict[str, list[Scores]], size: Size) -> Verdict:
+    findings = tuple(
+        _finding(reading, runs[system.label], runs) for reading, system in READINGS.items()
+    )
+    return Verdict(
+        (
+            Claim(
+                "before and after the total occlusions APF's errors are smaller than the others'",
+                _PLACE,
+                findings,
+            ),
+        ),
+        f"{video3.SETTING} {len(size.seeds)} seeds; curves are those of the first, on a "
+        f'logarithmic scale. "After" begins {SETTLING_FRAMES} frames after the last hidden one.',
+    )
+
+
+def _finding(reading: str, own: Sequence[Scores], runs: dict[str, list[Scores]]) -> Finding:
+    ours = _mean_errors(own)
+    rivals = {rival.label: _mean_errors(runs[rival.label]) for rival in RIVALS}
+    smaller, words = [], []
+    for index, when in enumerate(("before", "after")):
+        best = min(rivals, key=lambda label: median(rivals[label][index]))
+        smaller.append(median(ours[index]) <= median(rivals[best][index]))
+        words.append(
+            f"{when}: {median_and_range(ours[index])} px against {best}'s "
+            f"{median_and_range(rivals[best][index])} px"
+        )
+    return Finding(reading, Holds.of(all(smaller), any(smaller)), "; ".join(words))
+
+
+EXPERIMENT = Experiment(
+    "apf-fig6", "APF, figure 6: the error in each frame, of all six trackers", video3.cells, report
+)

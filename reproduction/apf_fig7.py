@@ -1,0 +1,72 @@
+"""Figure 7 of the first paper: the vehicle's way along x, as all six trackers see it."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from reproduction import apf_video3 as video3
+from reproduction.apf_systems import READINGS, RIVALS, SIX
+from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.numbers import counted, share
+from reproduction.verdict import Claim, Finding, Holds, Verdict
+from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
+from vehicle_pf_tracker.evaluation.scores import Scores
+
+_PLACE = "section IV, figure 7"
+
+
+def report(results: Results, size: Size) -> Report:
+    """Draw the first seed's x, and judge all seeds."""
+    runs = video3.all_scores(results, size)
+    drawn = {system.label: runs[system.label][0] for system in SIX}
+    return Report(video3.data(runs, size), _figure(drawn), _verdict(runs, size))
+
+
+def _figure(runs: dict[str, Scores]) -> Figure:
+    figure = Figure(figsize=(9, 4.4), layout="constrained")
+    axes = figure.add_subplot()
+    first = next(iter(runs.values()))
+    shade_occlusions(axes, first)
+    true = [(f.row.frame, f.truth.box.centre[0]) for f in first.frames if f.truth is not None]
+    axes.plot(*zip(*true, strict=True), color="0.55", lw=4.5, alpha=0.6, label="truth")
+    for (label, scored), style in zip(runs.items(), STYLES, strict=True):
+        drawn = [(f.row.frame, f.row.x) for f in scored.frames if f.row.x is not None]
+        axes.plot(*zip(*drawn, strict=True), color=style.colour, ls=style.line, lw=1.6, label=label)
+    axes.set(xlabel="frame", ylabel="x, px")
+    axes.margins(x=0.01)
+    video3.legend_below(axes)
+    return figure
+
+
+def _verdict(runs: dict[str, list[Scores]], size: Size) -> Verdict:
+    own = {reading: video3.recoveries(runs[system.label]) for reading, system in READINGS.items()}
+    others = {rival.label: video3.recoveries(runs[rival.label]) for rival in RIVALS}
+    lost = [not hit for hits in others.values() for hit in hits]
+    told = "; ".join(f"{label} {counted(hits)}" for label, hits in others.items())
+    return Verdict(
+        (
+            Claim(
+                "APF overcomes the total occlusions and follows the vehicle again",
+                _PLACE,
+                tuple(
+                    Finding(
+                        reading,
+                        Holds.share(share(hits), partly=0.25),
+                        f"{counted(hits)} total occlusions recovered from",
+                    )
+                    for reading, hits in own.items()
+                ),
+            ),
+            Claim(
+                "PF, SAPF, HPFMS, PFCL and MS do not",
+                _PLACE,
+                (Finding("their defaults", Holds.share(share(lost)), f"recovered from: {told}"),),
+            ),
+        ),
+        f"{video3.SETTING} {len(size.seeds)} seeds; curves are those of the first.",
+    )
+
+
+EXPERIMENT = Experiment(
+    "apf-fig7", "APF, figure 7: the way along x, as all six trackers see it", video3.cells, report
+)

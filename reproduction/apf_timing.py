@@ -1,0 +1,120 @@
+"""The processing times of the first paper's section IV, as ratios."""
+
+from __future__ import annotations
+
+from statistics import median
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from reproduction import apf_video3 as video3
+from reproduction.apf_systems import APF, RIVALS, SIX, ruled
+from reproduction.data_table import DataTable
+from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.numbers import median_and_range
+from reproduction.timing_cell import TimingCell
+from reproduction.verdict import Claim, Finding, Holds, Verdict
+
+_MINUTES = {"APF": 14.5, "PF": 14.7, "SAPF": 14.8, "HPFMS": 15.2, "PFCL": 14.8, "MS": 12.7}
+_PLACE = "section IV, processing times on Video3"
+_ALIKE = 1.1
+"""Ratios from one over this to this count as alike."""
+
+
+def cells(size: Size) -> list[TimingCell]:
+    """Run all six in turns, once for each seed."""
+    return [_cell(seed) for seed in size.seeds]
+
+
+def report(results: Results, size: Size) -> Report:
+    """Compare the times as ratios to APF's."""
+    times = {seed: results[_cell(seed)]["step_ms"] for seed in size.seeds}
+    medians = {s.label: [median(times[seed][s.label]) for seed in size.seeds] for s in SIX}
+    ratios = {
+        label: [own / ours for own, ours in zip(found, medians[APF.label], strict=True)]
+        for label, found in medians.items()
+    }
+    rows = tuple(
+        (system.label, seed, frame, step)
+        for system in SIX
+        for seed in size.seeds
+        for frame, step in enumerate(times[seed][system.label], start=2)
+    )
+    table = DataTable(
+        ("tracker", "ms per frame", "over APF's", "in the paper, min", "over APF's there"),
+        tuple(
+            (label, median_and_range(medians[label], 2), median_and_range(ratios[label], 2),
+             f"{_MINUTES[label]:.1f}", f"{_MINUTES[label] / _MINUTES[APF.label]:.2f}")
+            for label in medians
+        ),
+    )  # fmt: skip
+    return Report(
+        DataTable(("tracker", "seed", "frame", "step_ms"), rows),
+        _figure(ratios),
+        _verdict(ratios, size),
+        {"Median over the frames; median and range over the seeds:": table},
+    )
+
+
+def _cell(seed: int) -> TimingCell:
+    systems = tuple(ruled(video3.SCENE, system, seed).system for system in SIX)
+    return TimingCell(video3.SCENE, systems, seed)
+
+
+def _figure(ratios: dict[str, list[float]]) -> Figure:
+    figure = Figure(figsize=(7, 3.6), layout="constrained")
+    axes = figure.add_subplot()
+    places = np.arange(len(ratios))
+    ours = [median(found) for found in ratios.values()]
+    paper = [_MINUTES[label] / _MINUTES[APF.label] for label in ratios]
+    axes.bar(places - 0.2, paper, 0.38, color="0.75", ec="black", hatch="//", label="paper")
+    axes.bar(places + 0.2, ours, 0.38, color="#0072B2", ec="black", label="here")
+    ranges = [[min(found), max(found)] for found in ratios.values()]
+    axes.vlines(places + 0.2, *zip(*ranges, strict=True), color="black", lw=1.5)
+    axes.axhline(1, color="black", lw=0.8, ls=":")
+    axes.set_xticks(places, list(ratios))
+    axes.set(ylabel="time per frame over APF's")
+    axes.legend(frameon=False)
+    return figure
+
+
+def _verdict(ratios: dict[str, list[float]], size: Size) -> Verdict:
+    middle = {label: median(found) for label, found in ratios.items()}
+    filters = [rival.label for rival in RIVALS if rival.label != "MS"]
+    told = ", ".join(f"{label} {median_and_range(ratios[label], 2)}" for label in filters)
+    cheaper = [label for label in filters if middle[label] < 1]
+    alike = [1 / _ALIKE <= middle[label] <= _ALIKE for label in filters]
+    mean_shift = f"{median_and_range(ratios['MS'], 2)} of APF's time"
+    return Verdict(
+        (
+            Claim(
+                "APF takes no more time than the other particle filters",
+                _PLACE,
+                (Finding("their defaults", Holds.of(not cheaper, len(cheaper) < len(filters)),
+                         f"times over APF's: {told}"),),
+            ),
+            Claim(
+                "all particle filters take about the same time (within 5 % in the paper)",
+                _PLACE,
+                (Finding("their defaults", Holds.of(all(alike), any(alike)),
+                         f"times over APF's: {told}"),),
+            ),
+            Claim(
+                "mean shift takes the least time",
+                _PLACE,
+                (Finding("their defaults", Holds.of(middle["MS"] <= min(middle.values())),
+                         mean_shift),),
+            ),
+        ),
+        f"{video3.SETTING} Processor time of one thread per step, all six in turns on each frame, "
+        f"{len(size.seeds)} passes; the numbers of particles are the defaults (200; 25 with mean "
+        "shift; four layers of 50). The paper gives minutes for the whole video, so only ratios "
+        "compare.",
+        ("Times differ from run to run and from machine to machine: these numbers, and those of "
+         "`resampling-cost`, are the only ones on this page that do.",),
+    )  # fmt: skip
+
+
+EXPERIMENT = Experiment(
+    "apf-timing", "APF, processing times: the six trackers' times as ratios", cells, report
+)

@@ -1,0 +1,71 @@
+"""All experiments by name, in the order of the papers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from reproduction import (
+    apf_fig1,
+    apf_fig2,
+    apf_fig3,
+    apf_fig4,
+    apf_fig5,
+    apf_fig6,
+    apf_fig7,
+    apf_table2,
+    apf_timing,
+    mfpf_errors,
+    mfpf_frames,
+    mfpf_histograms,
+    mfpf_similarities,
+    mfpf_table1,
+    mfpf_table2,
+    mfpf_table3,
+    resampling_cost,
+    resampling_fig4,
+    resampling_fig5,
+    resampling_frames,
+)
+from reproduction.experiment import Experiment
+from vehicle_pf_tracker.core.errors import InputError
+
+_APF = (
+    apf_fig1, apf_fig2, apf_fig3, apf_fig4, apf_fig5, apf_fig6, apf_fig7, apf_table2, apf_timing,
+)  # fmt: skip
+_MFPF = (
+    mfpf_table1, mfpf_table2, mfpf_table3, mfpf_similarities, mfpf_errors, mfpf_frames,
+    mfpf_histograms,
+)  # fmt: skip
+_RESAMPLING = resampling_fig4, resampling_fig5, resampling_frames, resampling_cost
+
+PAPERS: Mapping[str, tuple[Experiment, ...]] = MappingProxyType(
+    {
+        "Scharcanski et al. 2011: APF": tuple(module.EXPERIMENT for module in _APF),
+        "Abdulla et al. 2022: MFPF": tuple(module.EXPERIMENT for module in _MFPF),
+        "Khong et al.: adaptive resampling": tuple(module.EXPERIMENT for module in _RESAMPLING),
+    }
+)
+"""The experiments of each paper."""
+EXPERIMENTS: Mapping[str, Experiment] = MappingProxyType(
+    {experiment.name: experiment for of_paper in PAPERS.values() for experiment in of_paper}
+)
+"""By name."""
+ALL = "all"
+
+
+def find_experiments(names: Sequence[str]) -> list[Experiment]:
+    """Look up experiments, each once and in the catalogue's order; `ALL` stands for all.
+
+    Raises
+    ------
+    InputError
+        If there is none of a name.
+    """
+    unknown = [name for name in names if name not in EXPERIMENTS and name != ALL]
+    if unknown:
+        raise InputError(
+            f"there is no experiment {', '.join(map(repr, unknown))}; "
+            f"choose {ALL} or some of {', '.join(EXPERIMENTS)}"
+        )
+    return [e for e in EXPERIMENTS.values() if ALL in names or e.name in names]

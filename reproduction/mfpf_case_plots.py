@@ -1,0 +1,66 @@
+"""The second paper's figures 5 to 15: a plot over the frames for each case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from reproduction import mfpf_systems as mfpf
+from reproduction.experiment import Size
+
+_COLUMNS = 2
+_WIDTH, _LEGEND_HEIGHT = 11.0, 0.5
+"""In inches."""
+
+
+def draw_by_case(
+    size: Size,
+    draw: Callable[[Axes, str], None],
+    value: str,
+    *,
+    height: float,
+    one_scale: bool = False,
+) -> Figure:
+    """Let `draw` fill the plot of each case.
+
+    Parameters
+    ----------
+    size : Size
+        Says which cases there are.
+    draw : callable
+        Draws one case, with labels for the legend below all.
+    value : str
+        What stands at the y axes.
+    height : float
+        Of one plot, in inches.
+    one_scale : bool
+        Whether all have the same y axis.
+    """
+    names = mfpf.cases(size)
+    rows = -(-len(names) // _COLUMNS)
+    figure = Figure(figsize=(_WIDTH, height * rows + _LEGEND_HEIGHT), layout="constrained")
+    axes = figure.subplots(rows, _COLUMNS, sharey=one_scale, squeeze=False)
+    for ax, case in zip(axes.flat, names, strict=True):
+        draw(ax, case)
+        ax.set_title(f"case {case[-1]}: {mfpf.told(case)}", fontsize="medium")
+        ax.set(xlabel="")
+    for ax in axes[-1]:
+        ax.set(xlabel="frame")
+    for ax in axes[:, 0] if one_scale else axes.flat:
+        ax.set(ylabel=value)
+    _share_legend(figure, axes.flat)
+    return figure
+
+
+def _share_legend(figure: Figure, axes: Iterable[Axes]) -> None:
+    """Put one legend below all plots, each name once."""
+    handles: dict[str, Artist] = {}
+    for ax in axes:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+    figure.legend(
+        list(handles.values()), list(handles), loc="outside lower center", ncols=7, frameon=False
+    )

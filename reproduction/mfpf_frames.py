@@ -1,0 +1,85 @@
+"""Figures 4, 6, 8, 10, 12 and 14 of the second paper: frames of the six cases."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from reproduction import mfpf_systems as mfpf
+from reproduction.data_table import DataTable
+from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.mfpf_systems import FOUR, MFPF, OURS, SINGLES
+from reproduction.strips import strip_figure, telling_frames
+from reproduction.verdict import Claim, Finding, Holds, Verdict
+from vehicle_pf_tracker.core.truth import Occlusion
+
+_FRAMES = 5
+_LONG = 60, 80
+"""Hidden frames that are about the 70 of the paper's case 4."""
+
+
+def report(results: Results, size: Size) -> Report:
+    """Show the first seed, and hold the scenes against what the paper tells of its videos."""
+    seed = size.seeds[0]
+    rows = tuple(
+        (case, system.label, seed, f.row.frame, f.row.x, f.row.y, f.truth.box.centre[0],
+         f.truth.box.centre[1], f.truth.occlusion.name.lower(), f.truth.visible_fraction)
+        for case in mfpf.cases(size)
+        for system in FOUR
+        for f in mfpf.run_scores(results, case, system, seed).frames
+        if f.truth is not None
+    )  # fmt: skip
+    columns = ("case", "filter", "seed", "frame", "x", "y", "true_x", "true_y", "occlusion",
+               "visible_fraction")  # fmt: skip
+    return Report(
+        DataTable(columns, rows),
+        _figure(results, size),
+        Verdict(
+            (Claim("the six cases show what the paper's do", "section V, figures 4 to 14",
+                   (_finding(results, size),)),),
+            f"{mfpf.setting(size)} The picture shows the first seed, in grey, cut to what "
+            "is around the true position; an arrow points to a filter that is elsewhere.",
+        ),
+    )  # fmt: skip
+
+
+def _figure(results: Results, size: Size) -> Figure:
+    rows = {}
+    for case in mfpf.cases(size):
+        # MFPF first: its line is solid.
+        runs = {
+            system.label: mfpf.run_scores(results, case, system, size.seeds[0])
+            for system in (MFPF, *SINGLES)
+        }
+        choice = mfpf.cell(case, MFPF, size.seeds[0]).scene
+        rows[f"case {case[-1]}"] = choice, runs, telling_frames(runs[MFPF.label], _FRAMES)
+    return strip_figure(rows)
+
+
+def _finding(results: Results, size: Size) -> Finding:
+    fits, told = [], []
+    for case in mfpf.cases(size):
+        hidden, partial = [], []
+        for seed in size.seeds:
+            truths = [f.truth for f in mfpf.run_scores(results, case, MFPF, seed).frames]
+            kinds = [truth.occlusion for truth in truths if truth is not None]
+            hidden.append(kinds.count(Occlusion.TOTAL))
+            partial.append(kinds.count(Occlusion.PARTIAL))
+        fits.append(_fits(case, hidden, partial))
+        told.append(
+            f"{case} ({mfpf.told(case)}) {min(partial)} to {max(partial)} partly and "
+            f"{min(hidden)} to {max(hidden)} fully hidden frames"
+        )
+    return Finding(OURS, Holds.of(all(fits), any(fits)), "; ".join(told))
+
+
+def _fits(case: str, hidden: list[int], partial: list[int]) -> bool:
+    if case == "case4":
+        return _LONG[0] <= min(hidden) and max(hidden) <= _LONG[1]
+    if case in mfpf.FULLY_HIDDEN:
+        return min(hidden) > 0
+    return max(hidden) == 0 and (case == "case3") == (max(partial) == 0)
+
+
+EXPERIMENT = Experiment(
+    "mfpf-frames", "MFPF, figures 4 to 14: frames of the six cases", mfpf.cells, report
+)

@@ -1,0 +1,298 @@
+"""Figure 1 of the second paper: the three histograms in the clear, in shadow and occluded."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import asdict, dataclass
+from statistics import fmean
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from reproduction.cells import Probe, Result, SceneChoice
+from reproduction.data_table import DataTable, Entry
+from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.mfpf_systems import (
+    FEATURES,
+    MFPF,
+    OURS,
+    READINGS,
+    read_as,
+    read_label,
+)
+from reproduction.numbers import mean_and_spread
+from reproduction.verdict import Claim, Finding, Holds, Verdict
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
+from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, hellinger_distance
+from vehicle_pf_tracker.image.window_feature import WindowFeature
+from vehicle_pf_tracker.scenes.scene import SceneFrame
+from vehicle_pf_tracker.trackers.contract import WindowParameters
+from vehicle_pf_tracker.trackers.papers.mfpf import edge_feature
+from vehicle_pf_tracker.trackers.papers.mfpf_parameters import TEXTURES, MfpfParameters
+from vehicle_pf_tracker.trackers.target import Target
+
+_PLACE = "section III-D, figure 1"
+_SCENES = {"shadow": "case3", "partial": "case2", "full": "case4"}
+"""Where each disturbance is at its purest."""
+_TITLES = {
+    "initial": "initial", "shadow": "in shadow", "partial": "partly hidden", "full": "fully hidden",
+}  # fmt: skip
+_HALF = 0.6
+"""A vehicle of which less than this share is seen counts as partly hidden."""
+_INFORMATIVE = 0.6
+"""Hellinger distances from the first histogram below this still say something."""
+
+
+@dataclass(frozen=True, slots=True)
+class HistogramCell:
+    """The features of the true window of every frame, under one reading.
+
+    Its result has `distance`: for each feature the Hellinger distance of every frame's histogram
+    from the first one's, and `visible`: the share of the vehicle that is seen.
+    """
+
+    scene: SceneChoice
+    reading: str
+
+    @property
+    def label(self) -> str:
+        """Scene and what is done."""
+        return f"{self.scene.name} histograms"
+
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """Name the variant whose features these are."""
+        return ("mfpf",)
+
+    @property
+    def alone(self) -> bool:
+        """Others may run beside it."""
+        return False
+
+    def facts(self) -> dict[str, Any]:
+        """Give scene and features."""
+        return {"scene": asdict(self.scene), "features": repr(features(self.reading))}
+
+    def start(self) -> Probe:
+        """Begin to measure."""
+        return _Histograms(self.reading)
+
+
+class _Histograms:
+    def __init__(self, reading: str) -> None:
+        self._features = features(reading)
+        self._target: Target | None = None
+        self._first: dict[str, Any] = {}
+        self._distance: dict[str, list[float]] = {name: [] for name in FEATURES}
+        self._visible: list[float] = []
+
+    def feed(self, shown: SceneFrame) -> None:
+        if self._target is None:
+            self._target = Target(shown.frame, shown.truth.box)
+        found = histograms(self._features, self._target, shown)
+        self._first = self._first or found
+        for name, histogram in found.items():
+            rho = bhattacharyya_coefficient(histogram, self._first[name])
+            self._distance[name].append(float(hellinger_distance(np.asarray(rho))))
+        visible = shown.truth.visible_fraction
+        self._visible.append(1.0 if visible is None else visible)
+
+    def result(self) -> Result:
+        return {"distance": self._distance, "visible": self._visible}
+
+
+def features(reading: str) -> dict[str, WindowFeature]:
+    """Make the three features as `mfpf` has them under a reading."""
+    settings: MfpfParameters = read_as(MFPF, reading).parameters(0).effective()
+    return {
+        "color": RgbMarginals(),
+        "edge": edge_feature(settings.edges),
+        "texture": TEXTURES[settings.texture](),
+    }
+
+
+def histograms(made: dict[str, WindowFeature], target: Target, shown: SceneFrame) -> dict[str, Any]:
+    """Describe the true window of a frame by every feature."""
+    at, window = np.asarray([shown.truth.box.centre]), target.window(WindowParameters())
+    return {name: f.histograms(shown.frame, at, window)[0] for name, f in made.items()}
+
+
+def cells(size: Size) -> list[HistogramCell]:
+    """Measure along the cases with a shadow, a partial and a full occlusion."""
+    return [
+        HistogramCell(SceneChoice.of(case).seeded(seed), reading)
+        for case in _SCENES.values()
+        for seed in size.seeds
+        for reading in READINGS
+    ]
+
+
+def report(results: Results, size: Size) -> Report:
+    """Draw the first seed's histograms, and judge all seeds."""
+    rows: list[tuple[Entry, ...]] = [
+        (reading, situation, seed, FEATURES[name], distance)
+        for reading in READINGS
+        for situation in _SCENES
+        for seed in size.seeds
+        for name, distance in _distances(results, situation, seed, reading).items()
+    ]
+    found = {
+        reading: {
+            situation: {
+                name: [_distances(results, situation, seed, reading)[name] for seed in size.seeds]
+                for name in FEATURES
+            }
+            for situation in _SCENES
+        }
+        for reading in READINGS
+    }
+    table = DataTable(
+        ("", *(read_label(label, reading)
+               for reading in READINGS for label in FEATURES.values())),
+        tuple(
+            (_TITLES[situation], *(mean_and_spread(found[reading][situation][name], 2)
+                                   for reading in READINGS for name in FEATURES))
+            for situation in _SCENES
+        ),
+    )  # fmt: skip
+    return Report(
+        DataTable(("reading", "situation", "seed", "feature", "distance"), tuple(rows)),
+        _figure(size),
+        Verdict(_claims(found), _setting(size)),
+        {"Hellinger distance from the first frame's histogram, mean ± standard deviation over the "
+         "seeds:": table},
+    )  # fmt: skip
+
+
+def _setting(size: Size) -> str:
+    return (
+        f"Windows at the true position, seeds {size.seeds.start} to {size.seeds.stop - 1}; "
+        f"shadow: the frames of `{_SCENES['shadow']}` (the quarter that is furthest from the "
+        f"first in colour, to have those in shadow); partly hidden: those of "
+        f"`{_SCENES['partial']}` with less than {100 * _HALF:.0f} % of the vehicle in sight; fully "
+        f"hidden: those of `{_SCENES['full']}`. The picture shows the first seed under our "
+        "reading: first frame, then the furthest of each kind."
+    )
+
+
+def _chosen(result: Result, situation: str) -> list[int]:
+    """Give the indices of the frames of a situation."""
+    visible = result["visible"]
+    if situation == "shadow":
+        order = sorted(range(len(visible)), key=lambda index: -result["distance"]["color"][index])
+        return sorted(order[: max(len(order) // 4, 1)])
+    limit = 0.1 if situation == "full" else _HALF
+    return [index for index, share in enumerate(visible) if share < limit]
+
+
+def _distances(results: Results, situation: str, seed: int, reading: str) -> dict[str, float]:
+    choice = SceneChoice.of(_SCENES[situation]).seeded(seed)
+    # Frames are chosen alike for both readings.
+    chosen = _chosen(results[HistogramCell(choice, OURS)], situation)
+    result = results[HistogramCell(choice, reading)]
+    return {name: fmean(result["distance"][name][index] for index in chosen) for name in FEATURES}
+
+
+def _claims(found: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[Claim, ...]:
+    return (
+        Claim(
+            "in shadow and under a partial occlusion the edge histogram changes the least, colour "
+            "the most, texture is in between",
+            _PLACE,
+            tuple(_order(reading, of) for reading, of in found.items()),
+        ),
+        Claim(
+            "under a full occlusion no histogram is informative",
+            _PLACE,
+            tuple(_empty(reading, of) for reading, of in found.items()),
+        ),
+    )
+
+
+def _order(reading: str, of: dict[str, dict[str, list[float]]]) -> Finding:
+    holds, told = [], []
+    for situation in ("shadow", "partial"):
+        means = {name: fmean(values) for name, values in of[situation].items()}
+        order = sorted(means, key=means.__getitem__)
+        holds.append(Holds.of(order == ["edge", "texture", "color"], order[0] == "edge"))
+        values = " < ".join(f"{FEATURES[name]} {means[name]:.2f}" for name in order)
+        told.append(f"{_TITLES[situation]}: {values}")
+    return Finding(reading, Holds.all(holds), f"mean distances, {'; '.join(told)}")
+
+
+def _empty(reading: str, of: dict[str, dict[str, list[float]]]) -> Finding:
+    means = {name: fmean(values) for name, values in of["full"].items()}
+    empty = [value >= _INFORMATIVE for value in means.values()]
+    told = ", ".join(f"{FEATURES[name]} {value:.2f}" for name, value in means.items())
+    return Finding(
+        reading, Holds.of(all(empty), any(empty)),
+        f"distances (at least {_INFORMATIVE:g} counts as not informative): {told}",
+    )  # fmt: skip
+
+
+def _figure(size: Size) -> Figure:
+    shown = _pictures(size.seeds[0])
+    figure = Figure(figsize=(11, 1.9 * len(shown)), layout="constrained")
+    grid = figure.subplots(len(shown), 4, width_ratios=(1, 1.6, 1.6, 1.6))
+    colours = (("red", "#D55E00", "-"), ("green", "#009E73", "--"), ("blue", "#0072B2", ":"))
+    for axes, (situation, (window, found)) in zip(grid, shown.items(), strict=True):
+        axes[0].imshow(window)
+        axes[0].set(xticks=[], yticks=[], ylabel=_TITLES[situation])
+        for index, (name, colour, line) in enumerate(colours):
+            part = found["color"].reshape(3, -1)[index]
+            axes[1].plot(part, color=colour, ls=line, lw=1.5, label=name, drawstyle="steps-mid")
+        for ax, name in zip(axes[2:], ("edge", "texture"), strict=True):
+            ax.bar(range(len(found[name])), found[name], 1.0, color="0.25")
+        for ax in axes[1:]:
+            ax.margins(x=0.01)
+            ax.tick_params(labelsize="small")
+    titles = "window", "RGB, 3 x 21 bins", "edge directions, 64 bins", "co-occurrences, 8 x 8 bins"
+    for ax, title in zip(grid[0], titles, strict=True):
+        ax.set_title(title, fontsize="medium")
+    grid[0, 1].legend(frameon=False, fontsize="small")
+    return figure
+
+
+def _pictures(seed: int) -> dict[str, tuple[Frame, dict[str, Any]]]:
+    """Cut out the true window, and describe it: the first frame's, and the worst of each kind."""
+    made = features(OURS)
+    pictures: dict[str, tuple[Frame, dict[str, Any]]] = {}
+    for situation, case in _SCENES.items():
+        target: Target | None = None
+        worst = -1.0
+        first: dict[str, Any] = {}
+        for shown in itertools.islice(SceneChoice.of(case).seeded(seed).make().frames(), None):
+            target = target or Target(shown.frame, shown.truth.box)
+            found = histograms(made, target, shown)
+            first = first or found
+            if situation == "shadow" and "initial" not in pictures:
+                pictures["initial"] = _cut(shown), found
+            rho = bhattacharyya_coefficient(found["color"], first["color"])
+            distance = float(hellinger_distance(np.asarray(rho)))
+            if _is(situation, shown) and distance > worst:
+                worst = distance
+                pictures[situation] = _cut(shown), found
+    return pictures
+
+
+def _is(situation: str, shown: SceneFrame) -> bool:
+    if situation == "shadow":
+        return True
+    kind = Occlusion.TOTAL if situation == "full" else Occlusion.PARTIAL
+    return shown.truth.occlusion is kind
+
+
+def _cut(shown: SceneFrame) -> Frame:
+    box = shown.truth.box
+    left, top = max(round(box.x), 0), max(round(box.y), 0)
+    rows, columns = slice(top, round(box.y + box.height)), slice(left, round(box.x + box.width))
+    return np.array(shown.frame[rows, columns])
+
+
+EXPERIMENT = Experiment(
+    "mfpf-histograms", "MFPF, figure 1: three histograms in the clear, in shadow and occluded",
+    cells, report,
+)  # fmt: skip

@@ -1,0 +1,84 @@
+"""Tables II and III of the second paper as table and picture: percent by case and filter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+from reproduction import mfpf_systems as mfpf
+from reproduction.case_figure import (
+    GROUND_TOLD,
+    SHADES,
+    Values,
+    draw_cases,
+)
+from reproduction.data_table import DataTable, Entry
+from reproduction.experiment import Report, Size
+from reproduction.mfpf_systems import OURS
+from reproduction.numbers import mean_and_spread
+from reproduction.scenes.cases import CASES
+from reproduction.verdict import Claim, Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class ShareWords:
+    """What the percentages are called: above the table, in the data's columns, at the axis."""
+
+    title: str
+    of: str
+    column: str
+    axis: str
+
+
+def share_report(
+    shares: Mapping[str, Values],
+    paper: Mapping[str, Sequence[float]],
+    size: Size,
+    told: ShareWords,
+    claims: Sequence[Claim],
+) -> Report:
+    """Show percentages by reading, case and filter, for each seed, and what was claimed of them."""
+    rows: list[tuple[Entry, ...]] = [
+        (reading, case, label, seed, value)
+        for reading, found in shares.items()
+        for case, of_case in found.items()
+        for label, values in of_case.items()
+        for seed, value in zip(size.seeds, values, strict=True)
+    ]
+    return Report(
+        DataTable(("reading", "case", told.of, "seed", told.column), tuple(rows)),
+        _share_figure(shares[OURS], told.axis),
+        Verdict(tuple(claims), mfpf.setting(size)),
+        {told.title: _share_table(shares, paper)},
+    )
+
+
+def _share_table(shares: Mapping[str, Values], paper: Mapping[str, Sequence[float]]) -> DataTable:
+    """Put every reading's percentages, and the paper's for its six cases, below each other."""
+    cases = list(next(iter(shares.values())))
+    rows = [
+        (
+            mfpf.read_label(label, reading),
+            *(mean_and_spread(of_case[label]) for of_case in found.values()),
+        )
+        for reading, found in shares.items()
+        for label in paper
+    ]
+    rows += [
+        (f"{label} in the paper", *(f"{values[int(case[-1]) - 1]:.1f}" for case in cases))
+        for label, values in paper.items()
+    ]
+    return DataTable(("", *cases), tuple(rows))
+
+
+def _share_figure(found: Values, what: str) -> Figure:
+    """Draw percentages by case; `what` they are of stands at the axis."""
+    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    axes = figure.add_subplot()
+    draw_cases(axes, found, {case: SHADES[CASES[case].occlusion] for case in found})
+    axes.set_xticks(range(len(found)), [case.removeprefix("case") for case in found])
+    axes.set(ylim=(-3, 103), ylabel=what, xlabel=f"case {GROUND_TOLD}")
+    figure.legend(loc="outside lower center", ncols=4, frameon=False)
+    return figure

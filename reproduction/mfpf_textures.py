@@ -1,0 +1,87 @@
+"""The three textures that the second paper tried, in the filters that have one: part of table I."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from statistics import fmean
+
+from reproduction import mfpf_systems as mfpf
+from reproduction.cells import RunCell, System
+from reproduction.data_table import DataTable
+from reproduction.experiment import Results, Size
+from reproduction.mfpf_systems import MFPF, OURS, TEXTURE
+from reproduction.numbers import mean_and_spread
+from reproduction.verdict import Claim, Finding, Holds
+
+_KEPT = "glcm"
+_LEFT = {
+    name: (
+        MFPF.but({"texture": name}),
+        System.of(f"Texture by {name}", "sfpf_texture", {"texture": name}),
+    )
+    for name in ("lbp", "haralick")
+}
+"""The textures that the paper tried and left, in both filters that have one."""
+_USED = {_KEPT: (MFPF, TEXTURE)} | _LEFT
+
+
+def cells(size: Size) -> list[RunCell]:
+    """Run both filters with the textures that were left; those with the other run anyway."""
+    return [
+        mfpf.cell(case, system, seed)
+        for case in mfpf.cases(size)
+        for pair in _LEFT.values()
+        for system in pair
+        for seed in size.seeds
+    ]
+
+
+def rows(results: Results, size: Size) -> Iterator[tuple[str, str, str, int, float]]:
+    """Give texture, case, filter, seed and RMS of those runs."""
+    for texture, pair in _LEFT.items():
+        for case in mfpf.cases(size):
+            for system in pair:
+                values = _rms(results, size, case, system)
+                for seed, rms in zip(size.seeds, values, strict=True):
+                    yield texture, case, system.label, seed, rms
+
+
+def table(results: Results, size: Size) -> DataTable:
+    """Put the RMS of all textures below each other, by case and over all."""
+    made = []
+    for texture, systems in _USED.items():
+        for name, system in zip(("MFPF", "texture alone"), systems, strict=True):
+            values = [_rms(results, size, case, system) for case in mfpf.cases(size)]
+            told = map(mean_and_spread, [*values, _over_cases(results, size, system)])
+            made.append((f"{name}, {texture}", *told))
+    return DataTable(("filter", *mfpf.cases(size), "all"), tuple(made))
+
+
+def claim(results: Results, size: Size) -> Claim:
+    """Judge which texture is the best."""
+    found = {
+        texture: [_over_cases(results, size, system) for system in systems]
+        for texture, systems in _USED.items()
+    }
+    first = [
+        min(found, key=lambda texture: fmean(found[texture][which])) == _KEPT for which in (0, 1)
+    ]
+    told = "; ".join(
+        f"{texture} {mean_and_spread(joint)} px in MFPF, {mean_and_spread(alone)} px alone"
+        for texture, (joint, alone) in found.items()
+    )
+    return Claim(
+        "of the three textures the elements of the co-occurrence matrix are the most successful",
+        "section III-D",
+        (Finding(OURS, Holds.of(all(first), any(first)), f"mean RMS over all cases: {told}"),),
+    )
+
+
+def _rms(results: Results, size: Size, case: str, system: System) -> list[float]:
+    return mfpf.per_seed(results, size, case, system, OURS, "rmse_px")
+
+
+def _over_cases(results: Results, size: Size, system: System) -> list[float]:
+    """Mean RMS over the cases, for each seed."""
+    values = [_rms(results, size, case, system) for case in mfpf.cases(size)]
+    return [fmean(of) for of in zip(*values, strict=True)]

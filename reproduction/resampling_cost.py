@@ -1,0 +1,119 @@
+"""What the third paper says of time: adaptive resampling does not take more of it."""
+
+from __future__ import annotations
+
+import textwrap
+from statistics import median
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from reproduction import resampling_systems as resampling
+from reproduction.data_table import DataTable
+from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.numbers import median_and_range
+from reproduction.resampling_systems import READINGS
+from reproduction.timing_cell import TimingCell
+from reproduction.verdict import Claim, Finding, Holds, Verdict
+
+_SYSTEMS = tuple(dict.fromkeys(system for pair in READINGS.values() for system in pair))
+_SEEDS, _QUICK_SEEDS = 3, 1
+"""Runs that are timed: each frame of each is a measurement."""
+
+
+def cells(size: Size) -> list[TimingCell]:
+    """Run all in turns, once for each of a few seeds."""
+    return [_cell(seed) for seed in _timed(size)]
+
+
+def report(results: Results, size: Size) -> Report:
+    """Compare the times as ratios to the conventional filter's."""
+    seeds = _timed(size)
+    times = {seed: results[_cell(seed)]["step_ms"] for seed in seeds}
+    means = {
+        system.label: [float(np.mean(times[seed][system.label])) for seed in seeds]
+        for system in _SYSTEMS
+    }
+    ratios = {
+        reading: [
+            own / other
+            for other, own in zip(*(means[system.label] for system in pair), strict=True)
+        ]
+        for reading, pair in READINGS.items()
+    }
+    rows = tuple(
+        (system.label, seed, frame, step)
+        for system in _SYSTEMS
+        for seed in seeds
+        for frame, step in enumerate(times[seed][system.label], start=2)
+    )
+    table = DataTable(
+        ("reading", "conventional, ms per frame", "adaptive, ms per frame", "ratio"),
+        tuple(
+            (reading, *(median_and_range(means[system.label], 2) for system in pair),
+             median_and_range(ratios[reading], 2))
+            for reading, pair in READINGS.items()
+        ),
+    )  # fmt: skip
+    return Report(
+        DataTable(("filter", "seed", "frame", "step_ms"), rows),
+        _figure(means),
+        _verdict(ratios, size),
+        {"Mean over the frames; median and range over the seeds:": table},
+    )
+
+
+def _timed(size: Size) -> range:
+    return size.seeds[: size.of(_SEEDS, _QUICK_SEEDS)]
+
+
+def _cell(seed: int) -> TimingCell:
+    return TimingCell(resampling.SCENE.seeded(seed), _SYSTEMS, seed)
+
+
+def _figure(means: dict[str, list[float]]) -> Figure:
+    figure = Figure(figsize=(10, 4.4), layout="constrained")
+    axes = figure.add_subplot()
+    places = np.arange(len(READINGS))
+    looks = ("0.75", "//"), ("#0072B2", "")
+    for which, (name, (colour, hatch)) in enumerate(
+        zip(("conventional", "adaptive"), looks, strict=True)
+    ):
+        found = [means[pair[which].label] for pair in READINGS.values()]
+        at = places + (which - 0.5) * 0.4
+        axes.bar(
+            at, [median(f) for f in found], 0.38, ec="black", label=name, color=colour, hatch=hatch
+        )
+        axes.vlines(at, [min(f) for f in found], [max(f) for f in found], color="black", lw=1.5)
+    axes.set_xticks(places, [textwrap.fill(name, 14) for name in READINGS])
+    axes.set(ylabel="processor time, ms per frame")
+    axes.legend(frameon=False)
+    return figure
+
+
+def _verdict(ratios: dict[str, list[float]], size: Size) -> Verdict:
+    return Verdict(
+        (
+            Claim(
+                "the adaptive filter takes no more time than the conventional one",
+                "abstract and section VI",
+                tuple(
+                    Finding(
+                        reading,
+                        Holds.of(max(found) <= 1, median(found) <= 1),
+                        f"{median_and_range(found, 2)} times the conventional filter's time",
+                    )
+                    for reading, found in ratios.items()
+                ),
+            ),
+        ),
+        f"{resampling.SETTING} Processor time of one thread per step, all filters in turns on each "
+        f"frame, {len(_timed(size))} seeds, nothing beside it.",
+        ("Times differ from run to run and from machine to machine.",),
+    )
+
+
+EXPERIMENT = Experiment(
+    "resampling-cost", "Adaptive resampling: processor time per frame of both filters", cells,
+    report,
+)  # fmt: skip

@@ -1,0 +1,180 @@
+"""Figure 4 of the third paper: the error in each frame, before, during and after an occlusion."""
+
+from __future__ import annotations
+
+from statistics import median
+
+from matplotlib.figure import Figure
+
+from reproduction import resampling_systems as resampling
+from reproduction.data_table import DataTable
+from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.numbers import median_and_range
+from reproduction.resampling_systems import (
+    ADAPTIVE,
+    BOTH,
+    CONVENTIONAL,
+    PHASES,
+    READINGS,
+)
+from reproduction.verdict import Claim, Finding, Holds, Verdict
+from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
+
+_PLACE = "section VI, figure 4"
+_LOW = 15.0
+"""RMSE in px that counts as on the vehicle."""
+_ALIKE = 1.25
+"""Ratios up to this count as almost the same."""
+_HIGHER = 1.5
+_AT_MOST = 1.05
+
+Errors = dict[str, dict[str, list[float]]]
+"""RMSE of each seed, by filter and phase."""
+
+
+def report(results: Results, size: Size) -> Report:
+    """Draw all seeds' errors, and judge."""
+    errors = {reading: _errors(results, size, reading) for reading in READINGS}
+    table = DataTable(
+        ("filter", *PHASES, "all"),
+        tuple(
+            (f"{variant}, {reading}", *(median_and_range(of[name]) for name in (*PHASES, "all")))
+            for reading, found in errors.items()
+            for variant, of in found.items()
+        ),
+    )
+    return Report(
+        resampling.data(results, size),
+        _figure(results, size),
+        Verdict(
+            _claims(errors),
+            f"{resampling.SETTING} {len(size.seeds)} seeds. Thick curves are the medians of the "
+            "seeds' errors, thin ones the seeds; shades are those of the first seed.",
+        ),
+        {"RMSE in px by phase, median and range over the seeds:": table},
+    )
+
+
+def _errors(results: Results, size: Size, reading: str) -> Errors:
+    found: Errors = {}
+    for system in READINGS[reading]:
+        of: dict[str, list[float]] = {name: [] for name in (*PHASES, "all")}
+        for seed in size.seeds:
+            scored = resampling.run_scores(results, system, seed)
+            for name, chosen in resampling.phases(scored).items():
+                of[name].append(resampling.rms(scored, chosen))
+            of["all"].append(resampling.rms(scored, list(range(len(scored.frames)))))
+        found[system.variant] = of
+    return found
+
+
+def _figure(results: Results, size: Size) -> Figure:
+    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    axes = figure.add_subplot()
+    shade_occlusions(axes, resampling.run_scores(results, CONVENTIONAL, size.seeds[0]))
+    for system, style in zip(reversed(BOTH), STYLES, strict=False):
+        runs = [
+            [max(frame.error or 0.0, 0.5) for frame in scored.frames]
+            for scored in (resampling.run_scores(results, system, s) for s in size.seeds)
+        ]
+        for run in runs:
+            axes.plot(range(1, len(run) + 1), run, color=style.colour, lw=0.5, alpha=0.4)
+        middle = [median(errors) for errors in zip(*runs, strict=False)]
+        axes.plot(range(1, len(middle) + 1), middle, color=style.colour, ls=style.line, lw=2.4,
+                  label=system.label)  # fmt: skip
+    axes.set(xlabel="frame", ylabel="error of the centre, px", yscale="log")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.margins(x=0.01)
+    figure.legend(loc="outside lower center", ncols=4, frameon=False)
+    return figure
+
+
+def _claims(errors: dict[str, Errors]) -> tuple[Claim, ...]:
+    return (
+        Claim(
+            "before the occlusion both filters follow the vehicle",
+            f"{_PLACE}, case I",
+            tuple(_both_low(reading, found, "before") for reading, found in errors.items()),
+        ),
+        Claim(
+            "while it is partly hidden both have almost the same, low error",
+            f"{_PLACE}, case II",
+            tuple(_alike(reading, found) for reading, found in errors.items()),
+        ),
+        Claim(
+            "while it is hidden the conventional filter's error is much higher than the adaptive "
+            "one's",
+            f"{_PLACE}, case III",
+            tuple(_worse(reading, found, "full") for reading, found in errors.items()),
+        ),
+        Claim(
+            "after the occlusion the adaptive filter has the vehicle again, the conventional one "
+            "has lost it",
+            f"{_PLACE}, case IV",
+            tuple(_lost(reading, found) for reading, found in errors.items()),
+        ),
+        Claim(
+            f"(not in the paper in numbers) the adaptive filter's median RMSE is at most "
+            f"{_AT_MOST:g} times the conventional one's",
+            _PLACE,
+            tuple(_no_worse(reading, found) for reading, found in errors.items()),
+        ),
+    )
+
+
+def _told(found: Errors, phase: str) -> str:
+    return ", ".join(f"{variant} {median_and_range(of[phase])} px" for variant, of in found.items())
+
+
+def _medians(found: Errors, phase: str) -> tuple[float, float]:
+    """Conventional's, and adaptive's."""
+    return (
+        median(found[CONVENTIONAL.variant][phase]),
+        median(found[ADAPTIVE.variant][phase]),
+    )
+
+
+def _both_low(reading: str, found: Errors, phase: str) -> Finding:
+    low = [value < _LOW for value in _medians(found, phase)]
+    return Finding(reading, Holds.of(all(low), any(low)), _told(found, phase))
+
+
+def _alike(reading: str, found: Errors) -> Finding:
+    pair = _medians(found, "partial")
+    alike = max(pair) <= _ALIKE * min(pair)
+    return Finding(reading, Holds.of(alike and max(pair) < _LOW, alike), _told(found, "partial"))
+
+
+def _worse(reading: str, found: Errors, phase: str) -> Finding:
+    conventional, adaptive = _medians(found, phase)
+    return Finding(
+        reading,
+        Holds.of(conventional >= _HIGHER * adaptive, conventional > _ALIKE * adaptive),
+        _told(found, phase),
+    )
+
+
+def _lost(reading: str, found: Errors) -> Finding:
+    back = {variant: [value < _LOW for value in of["after"]] for variant, of in found.items()}
+    ours, others = (sum(back[s.variant]) for s in (ADAPTIVE, CONVENTIONAL))
+    runs = len(back[ADAPTIVE.variant])
+    return Finding(
+        reading,
+        Holds.of(ours >= 0.8 * runs and others <= 0.2 * runs, ours > others),
+        f"{_told(found, 'after')}; below {_LOW:g} px in {ours} of {runs} runs of adaptive and "
+        f"{others} of conventional",
+    )
+
+
+def _no_worse(reading: str, found: Errors) -> Finding:
+    conventional, adaptive = _medians(found, "all")
+    return Finding(
+        reading, Holds.of(adaptive <= _AT_MOST * conventional),
+        f"{_told(found, 'all')}: {adaptive / conventional:.2f} times",
+    )  # fmt: skip
+
+
+EXPERIMENT = Experiment(
+    "resampling-fig4", "Adaptive resampling, figure 4: the error in the four phases",
+    resampling.cells, report,
+)  # fmt: skip

@@ -1,0 +1,106 @@
+"""Figures 2 and 3 of the third paper: frames of both filters in the four phases."""
+
+from __future__ import annotations
+
+from reproduction import resampling_systems as resampling
+from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.resampling_systems import (
+    ADAPTIVE,
+    CONVENTIONAL,
+    OURS,
+    PHASES,
+    PRINTED,
+    READINGS,
+)
+from reproduction.strips import strip_figure
+from reproduction.verdict import Claim, Finding, Holds, Verdict
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.evaluation.scores import Scores
+
+_PLACE = "section VI, figures 2 and 3"
+
+
+def report(results: Results, size: Size) -> Report:
+    """Show the first seed in the middle of each phase, and judge all seeds there."""
+    seed = size.seeds[0]
+    rows = {}
+    for reading in (OURS, PRINTED):
+        runs = {
+            system.variant: resampling.run_scores(results, system, seed)
+            for system in READINGS[reading]
+        }
+        numbers = [index + 1 for index in _middles(runs[CONVENTIONAL.variant])]
+        rows[reading] = (resampling.SCENE.seeded(seed), runs, numbers)
+    return Report(
+        resampling.data(results, size),
+        strip_figure(rows),
+        Verdict(
+            (
+                Claim(
+                    "the adaptive filter is on the vehicle in all four phases",
+                    _PLACE,
+                    tuple(_on_it(results, size, r, ADAPTIVE.variant) for r in (OURS, PRINTED)),
+                ),
+                Claim(
+                    "the conventional filter is on it before and while it is partly hidden, and "
+                    "stays at the parked vehicle afterwards",
+                    _PLACE,
+                    tuple(_stuck(results, size, r) for r in (OURS, PRINTED)),
+                ),
+            ),
+            f"{resampling.SETTING} {len(size.seeds)} seeds, judged in the middle frame of each "
+            "phase and in the last frame of all; the picture shows the first seed, cut "
+            "to what is around the true position; an arrow points to a filter that is elsewhere.",
+        ),
+    )
+
+
+def _middles(scored: Scores) -> list[int]:
+    """Return the index of the middle frame of each phase; of the last one the end."""
+    found = resampling.phases(scored)
+    return [*(found[name][len(found[name]) // 2] for name in PHASES[:-1]), found["after"][-1]]
+
+
+def _hits(results: Results, size: Size, reading: str, variant: str) -> list[int]:
+    """Count the seeds whose estimate is within the true box, by phase."""
+    (system,) = (s for s in READINGS[reading] if s.variant == variant)
+    hits = [0] * len(PHASES)
+    for seed in size.seeds:
+        scored = resampling.run_scores(results, system, seed)
+        for place, index in enumerate(_middles(scored)):
+            frame = scored.frames[index]
+            assert frame.truth is not None
+            hits[place] += _contains(frame.truth.box, frame.row.position)
+    return hits
+
+
+def _contains(box: Box, position: tuple[float, float] | None) -> bool:
+    if position is None:
+        return False
+    x, y = position
+    return box.x <= x <= box.x + box.width and box.y <= y <= box.y + box.height
+
+
+def _told(hits: list[int], size: Size) -> str:
+    phases = ", ".join(f"{name} {count}" for name, count in zip(PHASES, hits, strict=True))
+    return f"within the true box, of {len(size.seeds)} runs: {phases}"
+
+
+def _on_it(results: Results, size: Size, reading: str, variant: str) -> Finding:
+    hits = _hits(results, size, reading, variant)
+    enough = [count >= 0.8 * len(size.seeds) for count in hits]
+    return Finding(reading, Holds.of(all(enough), all(enough[:2])), _told(hits, size))
+
+
+def _stuck(results: Results, size: Size, reading: str) -> Finding:
+    hits = _hits(results, size, reading, CONVENTIONAL.variant)
+    runs = len(size.seeds)
+    on_it = all(count >= 0.8 * runs for count in hits[:2])
+    lost = hits[-1] <= 0.2 * runs
+    return Finding(reading, Holds.of(on_it and lost, on_it or lost), _told(hits, size))
+
+
+EXPERIMENT = Experiment(
+    "resampling-frames", "Adaptive resampling, figures 2 and 3: frames of the four phases",
+    resampling.cells, report,
+)  # fmt: skip

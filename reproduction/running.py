@@ -1,0 +1,95 @@
+"""Runs cells: together where they share a scene, in several processes, each result kept at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TypeAlias
+
+from reproduction.cells import Cell, Result
+from reproduction.identity import key
+from vehicle_pf_tracker.evaluation.processes import run_in_processes
+from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
+from vehicle_pf_tracker.evaluation.result_store import ResultStore
+
+_LARGEST_BATCH = 48
+"""Cells that run together: more share a rendering, fewer are lost by an interruption."""
+
+_Batch: TypeAlias = tuple[Cell, ...]
+
+
+def complete(
+    cells: Sequence[Cell], store: ResultStore, workers: int, on_progress: OnProgress
+) -> Mapping[Cell, Result]:
+    """Run the cells that `store` does not have, and return the results of all.
+
+    Parameters
+    ----------
+    cells : sequence of Cell
+        May repeat.
+    store : ResultStore
+        Takes every result as soon as it is there.
+    workers : int
+        Processes; with 1 this one does the work. Results do not depend on it.
+    on_progress : callable
+        Is told at the start and after every batch.
+
+    Raises
+    ------
+    InputError
+        If a process is ended from outside, or a cell cannot be run.
+    """
+    keys = {cell: key(cell) for cell in cells}
+    missing = [cell for cell, name in keys.items() if name not in store]
+    batches = sorted(_batches(missing), key=_is_alone)
+    done = 0
+    for batch, results, running in _run(batches, workers):
+        for cell, result in zip(batch, results, strict=False):
+            store.add(keys[cell], cell.label, result)
+        done += len(results)
+        on_progress(Progress(done, len(missing), tuple(b[0].label for b in running)))
+    return {cell: store[name] for cell, name in keys.items()}
+
+
+def run_together(batch: _Batch) -> list[Result]:
+    """Render the scene that all of `batch` are on once, and run all on it."""
+    probes = [cell.start() for cell in batch]
+    for shown in batch[0].scene.make().frames():
+        for probe in probes:
+            probe.feed(shown)
+    return [probe.result() for probe in probes]
+
+
+def _batches(cells: Sequence[Cell]) -> Iterator[_Batch]:
+    by_scene: dict[object, list[Cell]] = {}
+    for cell in cells:
+        by_scene.setdefault(cell if cell.alone else cell.scene, []).append(cell)
+    for group in by_scene.values():
+        for begin in range(0, len(group), _LARGEST_BATCH):
+            yield tuple(group[begin : begin + _LARGEST_BATCH])
+
+
+def _is_alone(batch: _Batch) -> bool:
+    return batch[0].alone
+
+
+def _run(
+    batches: Sequence[_Batch], workers: int
+) -> Iterator[tuple[_Batch, list[Result], Sequence[_Batch]]]:
+    """Give each batch with its results when it is done, and those that run by then.
+
+    Before the first there is one without results.
+    """
+    beside = [] if workers == 1 else [batch for batch in batches if not _is_alone(batch)]
+    if beside:
+        yield from _run_in_processes(beside, workers)
+    for batch in batches[len(beside) :]:
+        yield batch, [], [batch]
+        yield batch, run_together(batch), []
+
+
+def _run_in_processes(
+    batches: Sequence[_Batch], workers: int
+) -> Iterator[tuple[_Batch, list[Result], Sequence[_Batch]]]:
+    for turn in run_in_processes(run_together, batches, workers):
+        batch, results = turn.ended or (batches[0], [])
+        yield batch, results, turn.running

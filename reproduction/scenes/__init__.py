@@ -1,0 +1,1 @@
+"""Scenes after the papers' videos and cases, beside those of the package."""

@@ -1,0 +1,24 @@
+import io
+
+from vehicle_pf_tracker.cli.work_progress import telling
+from vehicle_pf_tracker.evaluation.progress import Progress
+
+
+def told(*progresses):
+    now = iter(range(0, 1000, 10))
+    stream = io.StringIO()
+    with telling("apf-fig1", stream, lambda: next(now)) as on_progress:
+        for progress in progresses:
+            on_progress(progress)
+    return stream.getvalue().splitlines()
+
+
+def test_progress_tells_done_running_and_time_left():
+    lines = told(
+        Progress(0, 8, ("bar PF",)), Progress(4, 8, ("bar PF", "bar MS")), Progress(8, 8, ())
+    )
+    assert lines == [
+        "apf-fig1: 0 of 8 runs done, time left unknown; running bar PF",
+        "apf-fig1: 4 of 8 runs done, about 20 s left; running bar PF, bar MS",
+        "apf-fig1: 8 of 8 runs done, about 0 s left",
+    ]

@@ -1,0 +1,157 @@
+"""Every experiment in its smallest size: it runs, draws and judges."""
+
+import json
+import math
+
+import pytest
+
+from reproduction import apf_conditions, apf_systems
+from reproduction.catalogue import EXPERIMENTS, find_experiments
+from reproduction.cells import SceneChoice
+from reproduction.experiment import Size
+from reproduction.output import write_report
+from reproduction.running import complete
+from reproduction.scenes.videos import VIDEOS
+from reproduction.verdict import Holds
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.result_store import ResultStore
+
+SIZE = Size(range(100, 101), quick=True)
+LARGE = ("apf-fig1", "apf-table2", "mfpf-table1", "mfpf-histograms", "resampling-cost")
+
+
+@pytest.fixture(scope="module")
+def reports(tmp_path_factory):
+    """Make each report once; what they share is run once too."""
+    store = ResultStore(tmp_path_factory.mktemp("reports") / "cells.jsonl")
+    made = {}
+
+    def report(name):
+        if name not in made:
+            experiment = EXPERIMENTS[name]
+            results = complete(experiment.cells(SIZE), store, 1, lambda progress: None)
+            made[name] = experiment.report(results, SIZE)
+        return made[name]
+
+    return report
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=pytest.mark.slow) if n in LARGE else n for n in EXPERIMENTS],
+)
+def test_an_experiment_gives_data_figure_and_verdict(reports, tmp_path, name):
+    report = reports(name)
+    write_report(tmp_path, EXPERIMENTS[name], report, SIZE)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "data.csv", "figure.svg", "figure.png", "verdict.json", "verdict.md",
+    }  # fmt: skip
+    assert len(report.data.rows) > 0
+    assert all(len(row) == len(report.data.columns) for row in report.data.rows)
+    verdict = json.loads((tmp_path / "verdict.json").read_text())
+    assert verdict["holds"] in {"yes", "partly", "no"}
+    assert all(claim["findings"] for claim in verdict["claims"])
+    text = (tmp_path / "verdict.md").read_text()
+    assert f"python -m reproduction {name} --quick --seeds 1 --first-seed 100`" in text
+
+
+def test_figures_are_the_same_every_time(tmp_path):
+    experiment = EXPERIMENTS["apf-fig2"]
+    for name in ("once", "again"):
+        write_report(tmp_path / name, experiment, experiment.report({}, SIZE), SIZE)
+    for file in ("figure.svg", "figure.png", "verdict.md"):
+        assert (tmp_path / "once" / file).read_bytes() == (tmp_path / "again" / file).read_bytes()
+
+
+def findings(report, claim):
+    return {f.reading: f for f in report.verdict.claims[claim].findings}
+
+
+def test_figure_3_judges_every_reading(reports):
+    tracked = findings(reports("apf-fig3"), 0)
+    assert list(tracked) == ["our reading", "ours with tau 0.8", "as printed"]
+    assert tracked["our reading"].holds is Holds.YES
+    assert tracked["as printed"].holds is Holds.NO
+    assert tracked["our reading"].numbers.startswith("4 of 4 runs")
+
+
+def test_figure_2_has_a_bar_that_hides_all_of_the_vehicle(reports):
+    occlusions = [row[3] for row in reports("apf-fig2").data.rows]
+    assert {"none", "partial", "total"} == set(occlusions)
+
+
+def test_figure_6_and_7_have_every_frame_of_every_tracker(reports):
+    data = reports("apf-fig6").data
+    frames = len(SceneChoice.of("video03").seeded(100).truths())
+    assert len(data.rows) == 8 * frames
+    assert {row[0] for row in data.rows} >= {"APF", "PF", "SAPF", "HPFMS", "PFCL", "MS"}
+    errors = [math.dist(row[3:5], row[7:9]) for row in data.rows]
+    assert errors == pytest.approx([row[6] for row in data.rows])
+    assert reports("apf-fig7").data == data
+
+
+def test_timing_gives_ratios_to_apf(reports):
+    (table,) = reports("apf-timing").tables.values()
+    assert table.rows[0][2] == "1.00 (1.00 to 1.00)"
+    assert [row[4] for row in table.rows] == ["1.00", "1.01", "1.02", "1.05", "1.02", "0.88"]
+
+
+def test_table_2_has_an_average_row_and_the_total_occlusions_apart():
+    experiment = EXPERIMENTS["apf-table2"]
+    results = {
+        cell: {
+            "metrics": {
+                "rmse_px": {"apf": 10.0}.get(cell.system.variant, 40.0) * (1 + cell.seed - 100),
+                "rmse_visible_px": 1.0,
+                "on_target": 1.0,
+                "occlusions": [{"recovered": cell.system.variant == "apf"}],
+            }
+        }
+        for cell in experiment.cells(Size(range(100, 102), quick=True))
+    }
+    report = experiment.report(results, Size(range(100, 102), quick=True))
+    table = next(iter(report.tables.values()))
+    rows = {row[0]: dict(zip(table.columns, row, strict=True)) for row in table.rows}
+    assert rows["**average**"]["APF"] == "15.0 ± 7.1"
+    assert rows["**total occlusion**"]["PF"] == "60.0 ± 28.3"
+    assert rows["paper's average"]["APF"] == "17.32"
+    average = findings(report, 0)["our reading"]
+    assert average.holds is Holds.YES
+    assert "0.25 times" in average.numbers
+    assert report.verdict.claims[3].findings[0].holds is Holds.YES
+
+
+def test_table_2_has_all_videos_all_trackers_and_a_fresh_scene_for_each_seed():
+    cells = EXPERIMENTS["apf-table2"].cells(Size(range(3)))
+    videos = [cell for cell in cells if cell.scene.name in VIDEOS]
+    assert len(videos) == 20 * 3 * 9
+    assert all(cell.scene.seed == cell.seed for cell in cells)
+    assert len(cells) - len(videos) == len(apf_conditions.CONDITIONS) * 3 * 9
+
+
+def test_every_condition_is_unoccluded_and_comes_with_both_cameras():
+    assert len(apf_conditions.CONDITIONS) == 14
+    for name, choice in apf_conditions.CONDITIONS.items():
+        assert name.startswith("rough") == (("disturbance", "rough") in choice.settings)
+        assert all(truth.occlusion == 0 for truth in choice.truths())
+
+
+@pytest.mark.parametrize(("speed", "sigma"), [(2.0, 5.0), (5.0, 7.5), (15.0, 10.0)])
+def test_one_rule_sets_sigma(speed, sigma):
+    scene = SceneChoice.of("clear", {"speed": speed})
+    for system in apf_systems.SIX:
+        ruled = apf_systems.ruled(scene, system, 7).system
+        assert apf_systems.sigma_of(ruled) == (None if system.variant == "ms" else sigma)
+        parameters = ruled.parameters(7)
+        if system.variant == "apf":
+            assert parameters.motion.sigma_w == sigma
+        elif system.variant != "ms":
+            assert parameters.sigma == sigma
+        assert parameters.seed == 7
+
+
+def test_experiments_are_found_by_name():
+    assert [e.name for e in find_experiments(["apf-fig4", "apf-fig1"])] == ["apf-fig1", "apf-fig4"]
+    assert len(find_experiments(["all"])) == len(EXPERIMENTS)
+    with pytest.raises(InputError, match=r"'apf-fig99'.*apf-fig1"):
+        find_experiments(["apf-fig99"])

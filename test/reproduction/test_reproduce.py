@@ -1,0 +1,104 @@
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from reproduction.__main__ import main
+
+ROOT = Path(__file__).resolve().parents[2]
+WORDS = ["--quick", "--seeds", "1", "--first-seed", "100", "--workers", "1"]
+
+
+def reproduce(out, *words):
+    return main([*words, *WORDS, "-o", str(out)])
+
+
+def test_the_experiments_are_listed(capsys):
+    assert main(["--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.partition(":")[0] for line in lines][:3] == ["apf-fig1", "apf-fig2", "apf-fig3"]
+
+
+def test_one_experiment_writes_its_folder_and_the_page(tmp_path, capsys):
+    out, docs = tmp_path / "out", tmp_path / "docs"
+    assert reproduce(out, "apf-fig4", "--docs", str(docs)) == 0
+    assert {path.name for path in (out / "apf-fig4").iterdir()} == {
+        "data.csv", "figure.svg", "figure.png", "verdict.json", "verdict.md",
+    }  # fmt: skip
+    page = (docs / "reproduction.md").read_text()
+    (picture,) = (docs / "images" / "reproduction").iterdir()
+    assert f"(images/reproduction/{picture.name})" in page
+    sizes = [(out / "apf-fig4" / f"figure.{kind}").stat().st_size for kind in ("svg", "png")]
+    assert picture.stat().st_size == min(sizes)
+    word = json.loads((out / "apf-fig4" / "verdict.json").read_text())["holds"]
+    assert f"and 30 px | {word} |" in page
+    assert f"apf-fig4: {word}  (" in capsys.readouterr().out
+
+
+def test_the_page_has_what_was_made_before_too_and_a_second_time_nothing_changes(tmp_path):
+    out, docs = tmp_path / "out", tmp_path / "docs"
+    reproduce(out, "apf-fig4")
+    reproduce(out, "apf-fig2", "--docs", str(docs))
+    page = (docs / "reproduction.md").read_text()
+    assert (
+        page.index("\n## Scharcanski") < page.index("\n### apf-fig2") < page.index("\n### apf-fig4")
+    )
+    assert "Khong" not in page  # nothing of it was made
+    files = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    reproduce(out, "apf-fig2", "apf-fig4", "--docs", str(docs))
+    assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == files
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "said"),
+    [
+        ([], 2, "--list"),
+        (["apf-fig99"], 1, "'apf-fig99'"),
+        (["apf-fig2", "--workers", "0"], 2, "'0' is no whole number from 1 on"),
+        (["apf-fig2", "--seeds", "two"], 2, "'two' is no whole number from 1 on"),
+        (["apf-fig2", "--first-seed", "-1"], 2, "first-seed"),
+    ],
+)
+def test_mistakes_are_told(words, status, said, capsys, tmp_path):
+    assert main([*words, "-o", str(tmp_path)]) == status
+    assert said in capsys.readouterr().err
+
+
+def test_an_output_that_is_a_file_is_told(tmp_path, capsys):
+    (tmp_path / "out").write_text("")
+    assert reproduce(tmp_path / "out", "apf-fig2") == 1
+    assert "is a file" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
+def test_what_was_ended_continues_and_comes_out_the_same(tmp_path, number):
+    whole, ended = tmp_path / "whole", tmp_path / "ended"
+    assert reproduce(whole, "apf-fig3") == 0
+    # Those who start us in the background may have had SIGINT ignored, which a child inherits.
+    code = (
+        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "from reproduction.__main__ import main; sys.exit(main())"
+    )
+    words = ["apf-fig3", *WORDS[:-1], "2", "-o", str(ended)]
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, *words], cwd=ROOT, stderr=subprocess.PIPE, text=True
+    )
+    cells = ended / "cells.jsonl"
+    deadline = time.monotonic() + 60
+    while not (cells.exists() and cells.stat().st_size) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.send_signal(number)
+    _, told = process.communicate(timeout=10)
+    if number == signal.SIGINT:
+        assert process.returncode == 130
+        assert "Traceback" not in told
+    assert cells.stat().st_size > 0
+    assert not (ended / "apf-fig3").exists()
+    assert reproduce(ended, "apf-fig3") == 0
+    for file in ("data.csv", "figure.svg", "verdict.json"):
+        assert (ended / "apf-fig3" / file).read_bytes() == (whole / "apf-fig3" / file).read_bytes()

@@ -1,0 +1,108 @@
+"""The third paper's experiments: phases, counts, and what is judged from made-up results."""
+
+import pytest
+
+from reproduction import resampling_systems as resampling
+from reproduction.catalogue import EXPERIMENTS
+from reproduction.experiment import Size
+from reproduction.verdict import Holds
+
+SIZE = Size(range(100, 102), quick=True)
+
+
+def result(cell, error, passes, count):
+    truths = cell.scene.truths()
+    frames = len(truths)
+    return {
+        "metrics": {},
+        "trace": {
+            "x": [truth.box.centre[0] + error for truth in truths],
+            "y": [truth.box.centre[1] for truth in truths],
+            "width": [40.0] * frames,
+            "height": [24.0] * frames,
+            "mode": ["tracking"] * frames,
+            "regime": ["regular"] * frames,
+            "n_eff": [150.0] * frames,
+            "resampling_passes": [0] + [passes] * (frames - 1),
+            "resampled_particles": [0] + [count] * (frames - 1),
+        },
+    }
+
+
+@pytest.fixture(scope="module")
+def results():
+    """Let conventional be 30 px off with 20 passes of 200, adaptive 4 px with one of 50."""
+    return {
+        cell: result(cell, 30.0, 20, 4000)
+        if cell.system.variant == "conventional"
+        else result(cell, 4.0, 1, 50)
+        for cell in resampling.cells(SIZE)
+    }
+
+
+def findings(report, claim):
+    return {f.reading: f for f in report.verdict.claims[claim].findings}
+
+
+def test_phases_follow_each_other_and_leave_nothing_out(results):
+    scored = resampling.run_scores(results, resampling.ADAPTIVE, 100)
+    found = resampling.phases(scored)
+    assert list(found) == ["before", "partial", "full", "after"]
+    # The first frame is where the filters are started.
+    assert sorted(index for of in found.values() for index in of) == list(
+        range(1, len(scored.frames))
+    )
+    assert max(found["before"]) < min(found["partial"]) < min(found["full"])
+    assert max(found["full"]) < min(found["after"])
+    assert resampling.rms(scored, found["full"]) == pytest.approx(4.0)
+
+
+def test_figure_4_sees_who_is_lost(results):
+    report = EXPERIMENTS["resampling-fig4"].report(results, SIZE)
+    readings = list(findings(report, 0))
+    assert readings[:2] == ["our reading", "as printed"]
+    assert readings[-3:] == ["residual", "systematic", "stratified"]
+    assert findings(report, 0)["our reading"].holds is Holds.PARTLY  # conventional is 30 px off
+    assert findings(report, 2)["our reading"].holds is Holds.YES
+    after = findings(report, 3)["our reading"]
+    assert after.holds is Holds.YES
+    assert "in 2 of 2 runs of adaptive and 0 of conventional" in after.numbers
+    assert findings(report, 4)["our reading"].numbers.endswith("0.13 times")
+
+
+def test_figure_5_counts_particles(results):
+    report = EXPERIMENTS["resampling-fig5"].report(results, SIZE)
+    assert findings(report, 0)["our reading"].holds is Holds.YES
+    saving = findings(report, 3)["our reading"]
+    assert saving.holds is Holds.YES
+    assert "0.013 (0.013 to 0.013) times" in saving.numbers
+    (table,) = report.tables.values()
+    assert table.rows[0][1:] == ("20.0 / 4000",) * 4
+
+
+def test_frames_are_judged_in_the_middle_of_each_phase(results):
+    report = EXPERIMENTS["resampling-frames"].report(results, SIZE)
+    assert findings(report, 0)["our reading"].holds is Holds.YES
+    assert findings(report, 1)["our reading"].numbers.endswith(
+        "before 0, partial 0, full 0, after 0"
+    )
+
+
+def test_cost_compares_mean_times():
+    experiment = EXPERIMENTS["resampling-cost"]
+    (cell,) = experiment.cells(SIZE)
+    assert cell.alone
+    times = {s.label: [2.0 if s.variant == "conventional" else 1.0] * 3 for s in cell.systems}
+    report = experiment.report({cell: {"step_ms": times}}, SIZE)
+    (table,) = report.tables.values()
+    assert table.rows[0][3] == "0.50 (0.50 to 0.50)"
+    assert report.verdict.holds is Holds.YES
+
+
+def test_both_filters_differ_in_nothing_but_how_they_resample():
+    for pair in resampling.READINGS.values():
+        conventional, adaptive = (system.parameters(7) for system in pair)
+        shared = ("num_particles", "sigma", "criterion", "most_passes", "likelihood", "resampling")
+        for name in shared:
+            assert getattr(conventional, name) == getattr(adaptive, name)
+        assert conventional.most_passes == 20
