@@ -22,6 +22,17 @@ class FrameFolder:
 
     A gap in the numbers is a gap in the stamps. Truth belongs to the image of its number.
 
+    Attributes
+    ----------
+    images : mapping of int to Path
+        The image files by their numbers, in order.
+    truth : mapping of int to TruthRow
+        The truth by the number of its image; empty where there is none.
+    total : int
+        Number of images.
+    fps : float
+        Frames per second.
+
     Raises
     ------
     InputError
@@ -30,24 +41,24 @@ class FrameFolder:
     """
 
     def __init__(self, folder: Path) -> None:
-        self._images = _numbered_images(folder)
-        self.total: int | None = len(self._images)
+        self.images = _numbered_images(folder)
+        self.total: int | None = len(self.images)
         self.fps = _frame_rate(folder / "sequence.json")
         truth_path = folder / "groundtruth.csv"
-        self._truth = read_truth_table(truth_path) if truth_path.exists() else {}
-        if self._truth and not self._truth.keys() & self._images.keys():
+        self.truth = read_truth_table(truth_path) if truth_path.exists() else {}
+        if self.truth and not self.truth.keys() & self.images.keys():
             raise InputError(f"no frame of the truth {truth_path} has an image")
 
     def pictures(self) -> Iterator[Picture]:
         """Yield the images by their numbers; the first is at the start, whatever its number."""
-        first = min(self._images)
-        for number, path in self._images.items():
+        first = min(self.images)
+        for number, path in self.images.items():
             stamp = stamp_of(number - first, self.fps)
-            yield _picture(path, stamp, self._truth.get(number))
+            yield _picture(path, stamp, self.truth.get(number))
 
     def notices(self) -> list[str]:
         """Tell of truth without an image."""
-        lost = len(self._truth.keys() - self._images.keys())
+        lost = len(self.truth.keys() - self.images.keys())
         return [f"frames of the truth without an image: {lost}"] if lost else []
 
 

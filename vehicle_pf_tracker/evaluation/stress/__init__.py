@@ -1,0 +1,60 @@
+"""The stress battery: from a few sequences with truth, about fifty cases of each.
+
+A *case* is a small frozen description; its frames are made one by one when asked for, so that
+nothing large is stored, and the same case always gives the same frames and the same truth.
+
+>>> from vehicle_pf_tracker.evaluation.stress import (                    # doctest: +SKIP
+...     find_sequences, quick_battery, run_battery, run_case, score_case, variant_system)
+>>> sources = find_sequences("sequences", cameras=None)       # or Path("cameras.csv")
+>>> cases = quick_battery(sources)                            # or full_battery, list_cases
+>>> case = cases[0]
+>>> for frame, elapsed, truth in case.play():                 # RGB uint8, float, Truth or None
+...     ...
+>>> case.start_box(), case.fps, case.truths(), case.kind, case.camera, case.label("path")
+>>> score_case(case, estimates)                               # one Estimate per frame
+>>> run_case(case, StressSystem("mine", MyTracker), seed=0)   # MyTracker(seed) -> start, step
+>>> results = run_battery(cases, [variant_system("fusion", {"num_particles": 50})],
+...                       seeds=range(3), workers=2, store=Path("scores.jsonl"))
+>>> [(r.case.name, r.system, r.seed, r.score.on_target, r.score.recovered) for r in results]
+
+`docs/evaluation.md` lists the kinds of cases and the measures.
+"""
+
+from vehicle_pf_tracker.evaluation.stress.battery import full_battery, list_cases, quick_battery
+from vehicle_pf_tracker.evaluation.stress.calibration import Reliability
+from vehicle_pf_tracker.evaluation.stress.cases import Case, StressFrame
+from vehicle_pf_tracker.evaluation.stress.footage import StressSource, find_sequences
+from vehicle_pf_tracker.evaluation.stress.kinds import KINDS, Kind
+from vehicle_pf_tracker.evaluation.stress.running import (
+    Follower,
+    Result,
+    StressSystem,
+    follow,
+    run_battery,
+    run_case,
+    variant_system,
+)
+from vehicle_pf_tracker.evaluation.stress.scoring import Score, score_case, score_estimates
+
+__all__ = [
+    "KINDS",
+    "Case",
+    "Follower",
+    "Kind",
+    "Reliability",
+    "Result",
+    "Score",
+    "StressFrame",
+    "StressSource",
+    "StressSystem",
+    "find_sequences",
+    "follow",
+    "full_battery",
+    "list_cases",
+    "quick_battery",
+    "run_battery",
+    "run_case",
+    "score_case",
+    "score_estimates",
+    "variant_system",
+]

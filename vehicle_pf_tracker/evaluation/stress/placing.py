@@ -1,0 +1,247 @@
+"""Where an occluder has to stand, or to drive, to hide the vehicle for a given time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import TOTAL_BELOW, Occlusion, Truth
+from vehicle_pf_tracker.evaluation.stress.background import Background
+from vehicle_pf_tracker.evaluation.stress.coverage import Floats
+from vehicle_pf_tracker.evaluation.stress.occluder import Motion, Occluder, similarities
+from vehicle_pf_tracker.evaluation.stress.painting import LORRY, POLE, Texture
+from vehicle_pf_tracker.scenes.randomness import stream
+
+LEAD, LEAST_LEAD = 40, 8
+"""Frames in full view before an occluder touches the vehicle: as many as there are, up to a
+second and a third; with fewer than eight a tracker has learnt nothing."""
+TAIL, LEAST_TAIL = 45, 20
+"""Frames after the last hidden one. A recovery is judged from 15 frames on, by at least 5."""
+_LONGEST_TOUCH = 60
+"""Frames that an occluder may cover the vehicle in part, before and after, together."""
+_HEADING_FRAMES = 15
+"""Frames before and after an occlusion that headings are taken over, half a second."""
+_TURNING_DEGREES = 15.0
+_LEAST_WAY = 0.15, 4.0
+"""Way in diagonals, and in px, below which a heading is noise of the truth."""
+_POLE_SHARES = (0.3, 0.5)
+"""Width of a pole in widths (or heights) of the vehicle: partial, never total."""
+_TOLERANCE = 0.25
+"""Deviation of the real duration from the wanted one, as a share, that is accepted."""
+
+
+class Wanted(NamedTuple):
+    """What is to be painted.
+
+    Attributes
+    ----------
+    style : str
+        Wall, pole or lorry.
+    duration : int
+        Totally hidden frames; for a pole there are none.
+    crossing : float
+        Frames that a lorry takes to cover the vehicle.
+    """
+
+    style: str
+    duration: int = 0
+    crossing: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """An occluder that does what was wanted.
+
+    Attributes
+    ----------
+    occluder : Occluder
+        Its texture is still to be chosen.
+    first, count : int
+        The frames of the sequence to play.
+    hidden : int
+        Totally hidden frames, of the exact truth.
+    path : str
+        ``straight`` or ``turning``: the vehicle's way across the occlusion.
+    """
+
+    occluder: Occluder
+    first: int
+    count: int
+    hidden: int
+    path: str
+
+
+class Placer:
+    """Places occluders in one sequence.
+
+    Parameters
+    ----------
+    truth : sequence of Truth or None
+        Of every frame.
+    background : Background
+        Standing occluders move along with it; they are refused where it is not coherent.
+    size : (int, int)
+        Of the images in px.
+    """
+
+    def __init__(
+        self, truth: Sequence[Truth | None], background: Background, size: tuple[int, int]
+    ) -> None:
+        self._truth = truth
+        self._background = background
+        self._size = size
+
+    def place(self, wanted: Wanted, anchor: int, seed: int) -> Placed | None:
+        """Place an occluder that hides the vehicle around frame `anchor`; None if that fails."""
+        if wanted.style != LORRY and not self._background.coherent:
+            return None
+        span = self._span(anchor, wanted.duration)
+        if span is None:
+            return None
+        rng = stream(seed, "place", anchor)
+        motion = self._motion(wanted, anchor, span, rng)
+        seen = self._relative(motion, span)
+        rectangles = _rectangles(wanted, seen, anchor - span.start, rng)
+        best = min(rectangles, key=lambda one: abs(_hidden(one, seen) - wanted.duration))
+        occluder = Occluder(best, motion, Texture(wanted.style, seed, anchor, (0, 0, 1, 1)))
+        return self._judge(occluder, span, wanted)
+
+    def _span(self, anchor: int, duration: int) -> range | None:
+        """Frames around `anchor`, all of them with truth, that an occlusion could matter in."""
+        reach = duration // 2 + _LONGEST_TOUCH + max(LEAD, TAIL)
+        first = last = anchor
+        while first > max(0, anchor - reach) and self._truth[first - 1] is not None:
+            first -= 1
+        end = min(len(self._truth) - 1, anchor + reach)
+        while last < end and self._truth[last + 1] is not None:
+            last += 1
+        enough = anchor - first >= LEAST_LEAD and last - anchor >= LEAST_TAIL
+        return range(first, last + 1) if enough and self._truth[anchor] is not None else None
+
+    def _motion(self, wanted: Wanted, anchor: int, span: range, rng: np.random.Generator) -> Motion:
+        standing = Motion(anchor)
+        if self._background.coherent and not self._background.stands:
+            matrices = [self._background.between(anchor, index) for index in span]
+            standing = Motion(anchor, (0.0, 0.0), span.start, similarities(matrices))
+        if wanted.style != LORRY:
+            return standing
+        seen = self._relative(standing, span)
+        near = slice(max(0, anchor - span.start - 5), anchor - span.start + 6)
+        velocity = np.mean(np.diff(_centres(seen[near]), axis=0), axis=0)
+        extent = seen[anchor - span.start, 2] - seen[anchor - span.start, 0]
+        passing = rng.choice([-1.0, 1.0]) * extent / wanted.crossing
+        x, y = (velocity + np.array([passing, 0.0])).tolist()
+        return replace(standing, velocity=(round(x, 3), round(y, 3)))
+
+    def _relative(self, motion: Motion, span: range) -> Floats:
+        """Take the vehicle's boxes to the occluder's coordinates: left, top, right, bottom."""
+        boxes = np.empty((len(span), 4))
+        for row, index in enumerate(span):
+            truth = self._truth[index]
+            assert truth is not None
+            corners = motion.unplace(np.asarray(truth.box.corners), index)
+            boxes[row] = *corners.min(axis=0), *corners.max(axis=0)
+        return boxes
+
+    def _judge(self, occluder: Occluder, span: range, wanted: Wanted) -> Placed | None:
+        """Choose the frames to play; None where the occlusion is not what was wanted."""
+        shares = np.array([self._share(occluder, index) for index in span])
+        hidden = np.flatnonzero(shares < TOTAL_BELOW)
+        touched = np.flatnonzero(shares < 1.0)
+        is_total = wanted.style != POLE
+        if not len(touched) or not _is_right(hidden, wanted) or touched[0] < LEAST_LEAD:
+            return None
+        core = hidden if is_total else touched
+        if np.ptp(touched) + 1 - len(hidden) > _LONGEST_TOUCH and not is_total:
+            return None
+        first = max(span.start + int(touched[0]) - LEAD, span.start)
+        last = min(span.start + int(core[-1]) + TAIL, span.stop - 1)
+        if core[0] - touched[0] > _LONGEST_TOUCH or not self._in_view(first, last):
+            return None
+        if last - (span.start + int(core[-1])) < LEAST_TAIL:
+            return None
+        path = self._path(occluder.motion, span.start + int(core[0]), span.start + int(core[-1]))
+        return Placed(occluder, first, last + 1 - first, len(hidden), path)
+
+    def _share(self, occluder: Occluder, index: int) -> float:
+        truth = self._truth[index]
+        assert truth is not None
+        return occluder.visible_share(truth.box, index, self._size)
+
+    def _in_view(self, first: int, last: int) -> bool:
+        """Tell whether the sequence itself shows the vehicle, in full where the case begins."""
+        own = [truth.occlusion for truth in self._truth[first : last + 1] if truth is not None]
+        return own[0] is Occlusion.NONE and Occlusion.TOTAL not in own
+
+    def _path(self, motion: Motion, entry: int, leaving: int) -> str:
+        standing = replace(motion, velocity=(0.0, 0.0))
+        before = range(max(0, entry - _HEADING_FRAMES), entry + 1)
+        after = range(leaving, min(len(self._truth) - 1, leaving + _HEADING_FRAMES) + 1)
+        headings = []
+        for frames in (before, after):
+            boxes = self._relative(standing, frames)
+            way = _centres(boxes)[-1] - _centres(boxes)[0]
+            diagonal = float(np.hypot(*(boxes[0, 2:] - boxes[0, :2])))
+            if np.hypot(*way) < max(_LEAST_WAY[0] * diagonal, _LEAST_WAY[1]):
+                return "straight"
+            headings.append(math.atan2(way[1], way[0]))
+        turn = math.degrees(abs(math.remainder(headings[1] - headings[0], 2 * math.pi)))
+        return "turning" if turn > _TURNING_DEGREES else "straight"
+
+
+def _rectangles(
+    wanted: Wanted, seen: Floats, anchor: int, rng: np.random.Generator
+) -> Iterator[Box]:
+    """Rectangles that hide the vehicle for longer and longer around row `anchor` of `seen`."""
+    margins = rng.uniform(0.15, 0.9, 4)
+    if wanted.style == LORRY:
+        margins = rng.uniform(0.05, 0.3, 4)
+    share = rng.uniform(*_POLE_SHARES)
+    for length in range(1, max(wanted.duration, 1) + 1):
+        begin = max(0, anchor - (length - 1) // 2)
+        inner = seen[begin : begin + length]
+        low, high = inner[:, :2].min(axis=0), inner[:, 2:].max(axis=0)
+        axis = _axis(seen, anchor) if wanted.style != LORRY else 0
+        if wanted.style == POLE:
+            middle, extent = (low[axis] + high[axis]) / 2, share * (high - low)[axis]
+            low[axis], high[axis] = middle - extent / 2, middle + extent / 2
+        across = 1 - axis
+        side = high[across] - low[across]
+        low[across] -= margins[0] * side
+        high[across] += margins[1] * side
+        left, top, width, height = (round(float(v), 2) for v in (*low, *(high - low)))
+        yield Box(left, top, width, height)
+
+
+def _axis(seen: Floats, anchor: int) -> int:
+    """Axis that the vehicle passes a standing occluder along: 0 for x, 1 for y."""
+    near = _centres(seen[max(0, anchor - 10) : anchor + 11])
+    way = np.abs(near[-1] - near[0]) / (seen[anchor, 2:] - seen[anchor, :2])
+    return int(way[1] > way[0])
+
+
+def _hidden(rectangle: Box, seen: Floats) -> int:
+    """Count the boxes, as the occluder sees them, that are behind the rectangle."""
+    low = np.maximum(seen[:, :2], (rectangle.x, rectangle.y))
+    high = np.minimum(seen[:, 2:], (rectangle.x + rectangle.width, rectangle.y + rectangle.height))
+    shared = np.prod(np.maximum(high - low, 0.0), axis=1)
+    areas = np.prod(seen[:, 2:] - seen[:, :2], axis=1)
+    return int(np.count_nonzero(shared > (1 - TOTAL_BELOW) * areas))
+
+
+def _is_right(hidden: npt.NDArray[np.intp], wanted: Wanted) -> bool:
+    if wanted.style == POLE:
+        return len(hidden) == 0
+    is_one_run = len(hidden) > 0 and np.ptp(hidden) + 1 == len(hidden)
+    slack = max(1.0, _TOLERANCE * wanted.duration)
+    return bool(is_one_run) and abs(len(hidden) - wanted.duration) <= slack
+
+
+def _centres(boxes: Floats) -> Floats:
+    return np.asarray((boxes[:, :2] + boxes[:, 2:]) / 2)

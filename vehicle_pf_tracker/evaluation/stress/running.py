@@ -1,0 +1,259 @@
+"""Runs trackers over cases, in several processes, and keeps every score."""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
+from vehicle_pf_tracker.evaluation.identity import result_key, variant_modules
+from vehicle_pf_tracker.evaluation.processes import run_in_processes
+from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
+from vehicle_pf_tracker.evaluation.result_store import ResultStore
+from vehicle_pf_tracker.evaluation.stress.cases import Case
+from vehicle_pf_tracker.evaluation.stress.scoring import Score, score_case
+from vehicle_pf_tracker.parameters.table import Value, from_mapping, to_mapping
+from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+WORKERS = 2
+_THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
+
+
+class Follower(Protocol):
+    """What is run: every tracker of the package, or anything like it."""
+
+    def start(self, frame: Frame, box: Box) -> Estimate:
+        """Learn the target in the first frame."""
+        ...
+
+    def step(self, frame: Frame, elapsed: float = 1.0) -> Estimate:
+        """Find it in the next one."""
+        ...
+
+
+@dataclass(frozen=True)
+class StressSystem:
+    """A tracker under test.
+
+    Attributes
+    ----------
+    label : str
+        Its name in all tables.
+    make : callable
+        Makes a new tracker for a seed. For several processes it has to be picklable: a function or
+        a class of a module, or a `functools.partial` of one.
+    facts : mapping
+        Plain values that decide about its estimates besides `make`: parameters, a version.
+    modules : tuple of str
+        Modules of this package that it begins in; a change of their code invalidates kept scores.
+    is_deterministic : bool
+        The seed has no effect: it runs once.
+    """
+
+    label: str
+    make: Callable[[int], Follower]
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    modules: tuple[str, ...] = ()
+    is_deterministic: bool = False
+
+    @classmethod
+    def of(cls, system: VariantSystem) -> StressSystem:
+        """Put a variant with its parameters to the test."""
+        variant = find_variant(system.variant)
+        facts = {"variant": system.variant, "parameters": dict(system.parameters)}
+        make = functools.partial(_make_variant, system)
+        modules = tuple(sorted(variant_modules(variant)))
+        return cls(system.label, make, facts, modules, system.is_deterministic)
+
+
+class Result(NamedTuple):
+    """The score of a system in a case, with a seed."""
+
+    case: Case
+    system: str
+    seed: int
+    score: Score
+
+
+class _Task(NamedTuple):
+    case: Case
+    system: StressSystem
+    seed: int
+
+    @property
+    def label(self) -> str:
+        return f"{self.case.name} {self.system.label} {self.seed}"
+
+    def key(self) -> str:
+        facts = {
+            "sequence": self.case.origin.source.digest,
+            "case": repr([(name, value) for name, value in _fields(self.case) if name != "origin"]),
+            "system": dict(self.system.facts),
+            "make": getattr(self.system.make, "__qualname__", self.system.label),
+            "seed": self.seed,
+        }
+        return result_key(facts, {__name__, *self.system.modules})
+
+
+def run_case(case: Case, system: StressSystem, seed: int = 0) -> Score:
+    """Run a new tracker through a case and score it."""
+    estimates: list[Estimate] = []
+    fault = ""
+    try:
+        estimates.extend(follow(case, system.make(seed)))
+    except InputError as error:
+        fault = str(error)
+    except Exception as error:  # a fault of one tracker must not cost the rest of a long battery
+        fault = f"it ended with a fault of the program: {error!r}"
+    return score_case(case, estimates, fault)
+
+
+def follow(case: Case, tracker: Follower) -> Iterator[Estimate]:
+    """Run a tracker through a case: one estimate per frame."""
+    if hasattr(tracker, "frame_period"):
+        tracker.frame_period = 1.0 / case.fps
+    box = case.start_box()
+    for number, (frame, elapsed, _) in enumerate(case.play()):
+        yield tracker.step(frame, elapsed) if number else tracker.start(frame, box)
+
+
+def run_battery(
+    cases: Sequence[Case],
+    systems: Sequence[StressSystem],
+    *,
+    seeds: Sequence[int] = (0,),
+    workers: int = WORKERS,
+    store: Path | None = None,
+    on_progress: OnProgress | None = None,
+) -> list[Result]:
+    """Run systems over cases; the results do not depend on the number of workers.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        See `battery`.
+    systems : sequence of StressSystem
+        Each with its own label.
+    seeds : sequence of int
+        A deterministic system runs with the first.
+    workers : int
+        Processes, each with one thread; 0 runs in this one, without limiting its threads.
+    store : Path or None
+        File that keeps each score as soon as it is there. Scores that it has under the same case,
+        footage, system, code and versions are not computed again.
+    on_progress : callable or None
+        Is told whenever a run begins or ends.
+
+    Returns
+    -------
+    list of Result
+        System by system, each in the order of the cases.
+
+    Raises
+    ------
+    InputError
+        If the store cannot be written, or a process is ended from outside.
+    """
+    tasks = [
+        _Task(case, system, seed)
+        for system in systems
+        for case in cases
+        for seed in (seeds[:1] if system.is_deterministic else seeds)
+    ]
+    keys = [task.key() for task in tasks]
+    kept = ResultStore(store) if store is not None else None
+    scores = {key: kept[key] for key in keys if kept is not None and key in kept}
+    # Sequence by sequence, so that a recording is decoded once.
+    missing = [(task, key) for task, key in zip(tasks, keys, strict=True) if key not in scores]
+    missing.sort(key=lambda pair: pair[0].case.origin.name)
+    for ended, running in _run(missing, workers):
+        if ended is not None:
+            (task, key), score = ended
+            scores[key] = score
+            if kept is not None:
+                kept.add(key, task.label, score)
+        if on_progress is not None:
+            on_progress(Progress(len(scores), len(tasks), running))
+    return [
+        Result(task.case, task.system.label, task.seed, Score.from_json(scores[key]))
+        for task, key in zip(tasks, keys, strict=True)
+    ]
+
+
+_Keyed = tuple[_Task, str]
+_Ended = tuple[_Keyed, dict[str, Any]] | None
+
+
+def _run(tasks: Sequence[_Keyed], workers: int) -> Iterator[tuple[_Ended, tuple[str, ...]]]:
+    """Run tasks; give each with its score, and the labels of those that run now."""
+    if workers == 0:
+        for task in tasks:
+            yield None, (task[0].label,)
+            yield (task, _score(task)), ()
+        return
+    with _single_threaded():
+        for turn in run_in_processes(_score, tasks, workers):
+            yield turn.ended, tuple(task.label for task, _ in turn.running)
+
+
+def _score(task: _Keyed) -> dict[str, Any]:
+    case, system, seed = task[0]
+    return run_case(case, system, seed).to_json()
+
+
+@contextmanager
+def _single_threaded() -> Iterator[None]:
+    """Let processes that begin now compute on one thread each."""
+    before = {name: os.environ.get(name) for name in _THREADS}
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def variant_system(
+    name: str, parameters: Mapping[str, Value] | None = None, label: str | None = None
+) -> StressSystem:
+    """Make the system of a variant from its registry name.
+
+    Parameters
+    ----------
+    name : str
+        As in the registry.
+    parameters : mapping of str to Value or None
+        Those that differ from the defaults, by their dotted names.
+    label : str or None
+        Its name in tables; None takes `name`.
+
+    Raises
+    ------
+    InputError
+        If there is no such variant, or a parameter does not fit.
+    """
+    kind = find_variant(name).parameters
+    values = to_mapping(from_mapping(kind, dict(parameters or {})))
+    values.pop("seed")
+    overrides = tuple(sorted((parameters or {}).items()))
+    return StressSystem.of(VariantSystem(label or name, name, "", overrides, tuple(values.items())))
+
+
+def _make_variant(system: VariantSystem, seed: int) -> Follower:
+    return find_variant(system.variant).tracker(system.tracker_parameters(seed))
+
+
+def _fields(case: Case) -> list[tuple[str, object]]:
+    return [(each.name, getattr(case, each.name)) for each in fields(case)]
