@@ -6,9 +6,8 @@ import statistics
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from vehicle_pf_tracker.core.array import Array
 
 
 def median_and_range(values: Sequence[float], decimals: int = 1) -> str:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.bench.naive import ThreeHistograms
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.glcm import Cooccurrence
 from vehicle_pf_tracker.image.gradients import GradientDirections
@@ -15,7 +16,6 @@ from vehicle_pf_tracker.image.kernels.choice import load_kernels
 from vehicle_pf_tracker.image.kernels.interface import Kernels, SimilarityMap
 from vehicle_pf_tracker.image.reference import Reference
 from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
-from vehicle_pf_tracker.image.similarity import Array
 from vehicle_pf_tracker.image.window import Positions, Window
 
 _THREE = RgbMarginals(), GradientDirections(), Cooccurrence()

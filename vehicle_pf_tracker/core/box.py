@@ -8,8 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from vehicle_pf_tracker.core.errors import InputError
+
+Position: TypeAlias = tuple[float, float]
+"""Coordinates (x, y) in px."""
 
 _LARGEST_SHARE = 4
 """Sides of the image that a target may be long: vehicles close to the camera overlap it."""
@@ -25,12 +29,12 @@ class Box:
     height: float
 
     @classmethod
-    def around(cls, centre: tuple[float, float], width: float, height: float) -> Box:
+    def around(cls, centre: Position, width: float, height: float) -> Box:
         """Make the box of this size whose centre is `centre` (px)."""
         return cls(centre[0] - width / 2, centre[1] - height / 2, width, height)
 
     @property
-    def centre(self) -> tuple[float, float]:
+    def centre(self) -> Position:
         """Centre (x, y) in px."""
         return self.x + self.width / 2, self.y + self.height / 2
 
@@ -45,7 +49,7 @@ class Box:
         return self.width * self.height
 
     @property
-    def corners(self) -> tuple[tuple[float, float], ...]:
+    def corners(self) -> tuple[Position, ...]:
         """The four corners, clockwise in the image from the top left."""
         right, bottom = self.x + self.width, self.y + self.height
         return (self.x, self.y), (right, self.y), (right, bottom), (self.x, bottom)
@@ -82,7 +86,7 @@ def check_target(box: Box, width: int, height: int) -> Box:
     return box
 
 
-def clip_position(position: tuple[float, float], width: int, height: int) -> tuple[float, float]:
+def clip_position(position: Position, width: int, height: int) -> Position:
     """Move `position` to the nearest pixel centre range of an image of `width` x `height` px."""
     x = min(max(position[0], 0.5), width - 0.5)
     y = min(max(position[1], 0.5), height - 0.5)

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.evaluation.scores import FrameScore
 
-FloatArray: TypeAlias = NDArray[np.float64]
-
-PRECISION_THRESHOLDS: FloatArray = np.arange(51, dtype=np.float64)
+PRECISION_THRESHOLDS: Array = np.arange(51, dtype=np.float64)
 """Errors of the centre in px: 0, 1, ... 50."""
-SUCCESS_THRESHOLDS: FloatArray = np.linspace(0.0, 1.0, 21)
+SUCCESS_THRESHOLDS: Array = np.linspace(0.0, 1.0, 21)
 """Intersections over union: 0, 0.05, ... 1."""
-NORMALISED_THRESHOLDS: FloatArray = np.linspace(0.0, 0.5, 51)
+NORMALISED_THRESHOLDS: Array = np.linspace(0.0, 0.5, 51)
 """Errors of the centre in sizes of the true box: 0, 0.01, ... 0.5."""
 
 
@@ -31,8 +28,8 @@ class Curve:
         The shares are from 0 to 1.
     """
 
-    thresholds: FloatArray
-    shares: FloatArray
+    thresholds: Array
+    shares: Array
 
     @property
     def auc(self) -> float:
@@ -75,7 +72,7 @@ def success_curve(frames: Sequence[FrameScore]) -> Curve | None:
     return Curve(SUCCESS_THRESHOLDS, shares)
 
 
-def _at_most(errors: Sequence[float | None], thresholds: FloatArray) -> Curve | None:
+def _at_most(errors: Sequence[float | None], thresholds: Array) -> Curve | None:
     if not errors:
         return None
     known = np.array([np.inf if error is None else error for error in errors])

@@ -7,9 +7,8 @@ equations 10 and 12 are no densities, and equation 20 loses a term).
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from vehicle_pf_tracker.core.array import Array
 
 RAYLEIGH_MEAN = float(np.sqrt(np.pi / 2))
 """Mean of a Rayleigh variable in units of its parameter."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.glcm import LEVELS, Cooccurrence
 from vehicle_pf_tracker.image.window import Positions, Window
 from vehicle_pf_tracker.image.window_feature import Histograms, WindowFeature
-
-Array = npt.NDArray[np.float64]
 
 DESCRIPTORS = ("maximum probability", "contrast", "homogeneity", "uniformity", "entropy")
 

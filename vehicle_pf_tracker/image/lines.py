@@ -12,12 +12,12 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.window import Bounds
 
 Segments = npt.NDArray[np.float64]
 """x, y of both ends in continuous px, shape (S, 4)."""
-Array = npt.NDArray[np.float64]
 
 _MARGIN = 3
 """Pixels around the region that an edge on its border needs to be seen."""

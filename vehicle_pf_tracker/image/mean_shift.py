@@ -13,13 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import Histogram, bin_count, bin_indices
 from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient
 from vehicle_pf_tracker.image.window import Centres, Positions, Window, centres
 from vehicle_pf_tracker.image.window_feature import Coefficients
 
-Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 
 

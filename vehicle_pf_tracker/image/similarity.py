@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from vehicle_pf_tracker.core.array import Array
 
 
 def bhattacharyya_coefficient(p: Array, q: Array) -> Array:

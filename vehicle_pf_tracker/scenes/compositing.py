@@ -15,11 +15,11 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 
 Image: TypeAlias = npt.NDArray[np.float32]
 """RGB picture while it is composed, shape (height, width, 3), levels 0 to 255."""
-Array: TypeAlias = npt.NDArray[np.float64]
 Colour: TypeAlias = tuple[float, float, float]
 """Red, green and blue, levels 0 to 255."""
 

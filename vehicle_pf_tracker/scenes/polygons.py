@@ -7,7 +7,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.scenes.compositing import Array, PixelWindow
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.scenes.compositing import PixelWindow
 
 
 def cells_inside(

@@ -13,8 +13,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.compositing import Array, Colour, Sprite
+from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
 from vehicle_pf_tracker.scenes.polygons import cells_inside
 
 ELEVATION = math.radians(35)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle_pf_tracker.scenes.compositing import Array, Colour, Image
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.scenes.compositing import Colour, Image
 
 
 def value_noise(

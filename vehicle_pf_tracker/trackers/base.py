@@ -10,6 +10,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.filtering.resampling import systematic
@@ -18,7 +19,7 @@ from vehicle_pf_tracker.image.kernels.choice import load_kernels
 from vehicle_pf_tracker.image.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.parameters.table import specs, to_mapping
 from vehicle_pf_tracker.trackers.contract import CommonParameters, ParticleParameters
-from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode, read_only
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 from vehicle_pf_tracker.trackers.target import Target
 

@@ -6,14 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from types import MappingProxyType
-from typing import TypeAlias
 
-import numpy as np
-import numpy.typing as npt
-
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
-
-Array: TypeAlias = npt.NDArray[np.float64]
 
 
 class Mode(str, Enum):

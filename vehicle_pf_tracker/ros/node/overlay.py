@@ -7,8 +7,9 @@ from collections import deque
 import cv2
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 PATH_LENGTH = 300
 """Positions shown of the path."""

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.alignment import Alignment, Step
 from vehicle_pf_tracker.image.colour_share import (
@@ -31,11 +33,8 @@ from vehicle_pf_tracker.image.template import (
     halves,
     have_structure,
 )
-from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.fusion.parameters import CueParameters
 from vehicle_pf_tracker.trackers.fusion.view import CUES, View
-
-Place = tuple[float, float]
 
 _LEAST_TEMPLATE = 5
 """px of the region."""
@@ -87,7 +86,7 @@ class Likeness:
 class Aligned:
     """Place in px and scale that the following template fits best, and its correlation there."""
 
-    place: Place
+    place: Position
     scale: float
     coefficient: float
 
@@ -112,8 +111,8 @@ class Appearance:
     def __init__(
         self,
         frame: Frame,
-        centre: Place,
-        size: Place,
+        centre: Position,
+        size: Position,
         cues: CueParameters,
         *,
         grey: bool | None = None,
@@ -132,7 +131,7 @@ class Appearance:
         self._following = self._anchor.copy()
         self._target, self._background = self._histograms(region, centre, 1.0)
 
-    def reshaped(self, frame: Frame, centre: Place, size: Place) -> Appearance:
+    def reshaped(self, frame: Frame, centre: Position, size: Position) -> Appearance:
         """Learn the templates anew in a box of another shape; the colours mostly stay."""
         other = Appearance(frame, centre, size, self.cues, grey=self.grey)
         other.weights = self.weights
@@ -152,7 +151,7 @@ class Appearance:
         self.cues, self._base, self.weights = cues, base, base.copy()
 
     def look(
-        self, frame: Frame, centre: Place, scale: float, reach: float, steps: tuple[float, ...]
+        self, frame: Frame, centre: Position, scale: float, reach: float, steps: tuple[float, ...]
     ) -> View:
         """Map the similarity around `centre`.
 
@@ -213,7 +212,7 @@ class Appearance:
         )
         return _warped(template, matrix, (width, height))
 
-    def compare(self, view: View, centre: Place, scale: float) -> Likeness:
+    def compare(self, view: View, centre: Position, scale: float) -> Likeness:
         """Read all cues at one place and size."""
         anchor, following, colour = view.read(view.cues, np.array([centre]), np.array([scale]))[
             :, 0
@@ -224,7 +223,7 @@ class Appearance:
             anchor = following
         return Likeness(anchor, following, colour)
 
-    def align(self, view: View, centre: Place, scale: float, expected: float) -> Aligned:
+    def align(self, view: View, centre: Position, scale: float, expected: float) -> Aligned:
         """Align the following template, from a place and size on, to fractions of a pixel.
 
         Parameters
@@ -254,7 +253,7 @@ class Appearance:
                 break
         return best
 
-    def best_half(self, view: View, centre: Place, scale: float) -> float:
+    def best_half(self, view: View, centre: Position, scale: float) -> float:
         """Largest correlation of a half of the following template near its place.
 
         A vehicle that is half hidden is still half alike; 1 with `cues.parts` off would call it
@@ -278,12 +277,12 @@ class Appearance:
             found.append(best_coefficient(around, half))
         return max(found)
 
-    def learn(self, view: View, centre: Place, scale: float, rate: float) -> None:
+    def learn(self, view: View, centre: Position, scale: float, rate: float) -> None:
         """Let the following template take on `rate` of what is seen at a place and size."""
         seen = self._patch(view.region, centre, scale)
         self._following += np.float32(rate) * (seen - self._following)
 
-    def learn_colours(self, view: View, centre: Place, scale: float) -> None:
+    def learn_colours(self, view: View, centre: Position, scale: float) -> None:
         """Let the histograms follow, every few frames."""
         self._frames += 1
         if self._frames % _COLOURS_LEARNT_EVERY:
@@ -293,7 +292,7 @@ class Appearance:
         self._target += rate * (target - self._target)
         self._background += min(_BACKGROUND_RATE * rate, 1.0) * (background - self._background)
 
-    def weigh_cues(self, view: View, centre: Place, scale: float) -> None:
+    def weigh_cues(self, view: View, centre: Position, scale: float) -> None:
         """Give weight to cues by how far the target stands out from its surroundings (P2 eq. 8)."""
         if not self.cues.adaptive:
             return
@@ -305,11 +304,11 @@ class Appearance:
         wanted = self._base * np.maximum(margins, _LEAST_MARGIN)
         self.weights += _WEIGHT_RATE * (wanted / wanted.sum() - self.weights)
 
-    def _cut(self, frame: Frame, centre: Place, scale: float, reach: Place) -> Region:
+    def _cut(self, frame: Frame, centre: Position, scale: float, reach: Position) -> Region:
         size = self.size[0] * scale + 2 * reach[0], self.size[1] * scale + 2 * reach[1]
         return cut_region(frame, centre, size, self._zoom / scale)
 
-    def _patch(self, region: Region, centre: Place, scale: float) -> Patch:
+    def _patch(self, region: Region, centre: Position, scale: float) -> Patch:
         """Cut the box at a place and size out of a region, at canonical size."""
         x, y = region.to_canonical(np.asarray(centre)).tolist()
         width, height = self._shape
@@ -323,7 +322,7 @@ class Appearance:
         return _warped(region.grey, matrix, self._shape)
 
     def _histograms(
-        self, region: Region, centre: Place, scale: float
+        self, region: Region, centre: Position, scale: float
     ) -> tuple[Histogram, Histogram]:
         """Histograms of the box and of what is around it."""
         bins = colour_bins(region.image, grey=self.grey)

@@ -7,10 +7,9 @@ from collections import deque
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.history import carried
-
-Place = tuple[float, float]
 
 _KEPT = 24
 _LARGEST_GAP = 2.0
@@ -32,7 +31,7 @@ class Candidate:
     `strong` ones look as the target does in clear frames.
     """
 
-    place: Place
+    place: Position
     scale: float
     strong: bool
     age: float = 0.0
@@ -61,11 +60,11 @@ class Chain:
         return sum(one.strong for one in self.links) / len(self.links)
 
     @property
-    def velocity(self) -> Place:
+    def velocity(self) -> Position:
         """Their mean velocity, px per frame."""
         return _velocity(self.links[0], self.links[-1])
 
-    def proves(self, expected: Place, tolerance: float, confirm: int, away: float = 0.0) -> bool:
+    def proves(self, expected: Position, tolerance: float, confirm: int, away: float = 0.0) -> bool:
         """Whether these are the target.
 
         One that moves as foretold is believed soon; one that is only plausible has to look right
@@ -95,7 +94,7 @@ class Chain:
         return False
 
 
-def _is_plausible(velocity: Place, expected: Place) -> bool:
+def _is_plausible(velocity: Position, expected: Position) -> bool:
     """Whether a vehicle may have braked, sped up or swerved that far."""
     speed = math.hypot(*expected)
     if speed < 1:
@@ -152,7 +151,7 @@ def _agree(chain: list[Candidate], later: Candidate, earlier: Candidate, size: f
     return off <= max(2.0, 0.08 * size, 0.5 * math.hypot(*reference))
 
 
-def _velocity(earlier: Candidate, later: Candidate) -> Place:
+def _velocity(earlier: Candidate, later: Candidate) -> Position:
     time = earlier.age - later.age
     return (
         (later.place[0] - earlier.place[0]) / time,

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.fusion.foreground import Blob, Span
 from vehicle_pf_tracker.trackers.fusion.history import Trend
 from vehicle_pf_tracker.trackers.fusion.turning import Colour, Turns
-
-Place = tuple[float, float]
 
 _FRAMES = 4
 """Latest frames of a blob that its velocity and its growth are taken from."""
@@ -37,7 +36,7 @@ class Emerged:
     """The blob that has to be the target, and its velocity in px per frame."""
 
     blob: Blob
-    velocity: Place
+    velocity: Position
 
 
 class Emergence:
@@ -105,7 +104,7 @@ class Emergence:
         return len(track) >= _FRAMES and track[0].time > _THERE_BEFORE
 
 
-def _velocity(track: list[_Sighting]) -> Place:
+def _velocity(track: list[_Sighting]) -> Position:
     first, last = track[-_FRAMES], track[-1]
     (x, y), (u, v) = first.blob.centre, last.blob.centre
     time = last.time - first.time
@@ -145,7 +144,7 @@ def _is_far_enough(blob: Blob, trend: Trend) -> bool:
     return ahead and math.hypot(*away) >= 0.3 * math.hypot(*velocity) * trend.age
 
 
-def _drives(velocity: Place, before: Place) -> bool:
+def _drives(velocity: Position, before: Position) -> bool:
     """Whether a vehicle of the velocity `before` may have turned into this one."""
     speed, now = math.hypot(*before), math.hypot(*velocity)
     cross = velocity[0] * before[1] - velocity[1] * before[0]
@@ -154,7 +153,7 @@ def _drives(velocity: Place, before: Place) -> bool:
     return 0.35 * speed < now < 1.6 * speed and 0.45 < angle < 2.1
 
 
-def _square(frame: Frame, centre: Place, reach: float) -> Span:
+def _square(frame: Frame, centre: Position, reach: float) -> Span:
     width, height = frame_size(frame)
     x, y = centre
     return Span(

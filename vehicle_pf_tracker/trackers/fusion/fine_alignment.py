@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.trackers.fusion.appearance import Aligned, Appearance
 from vehicle_pf_tracker.trackers.fusion.view import View
-
-Place = tuple[float, float]
 
 _BAND = 0.06
 """Fall of the correlation below its level that is borne; from twice that on it is not trusted."""
@@ -29,8 +28,8 @@ class FineAlignment:
         self._level = None
 
     def improve(
-        self, appearance: Appearance, view: View, place: Place, scale: float, expected: float
-    ) -> tuple[Place, float]:
+        self, appearance: Appearance, view: View, place: Position, scale: float, expected: float
+    ) -> tuple[Position, float]:
         """Move a place (px) and scale towards their alignment, as far as it is trusted.
 
         `expected` is the scale that the motion foretells.

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.projective_motion import ProjectiveMotion, fit_motion
-
-Place = tuple[float, float]
 
 _KEPT = 80
 _FITTED = 24
@@ -27,7 +26,7 @@ _GROWTH_GAIN = 0.8
 class Sighting:
     """Place in px of the present frame and scale of the target, and when it was seen, in frames."""
 
-    place: Place
+    place: Position
     scale: float
     time: float
 
@@ -40,15 +39,15 @@ class Trend:
     age: float
 
     @classmethod
-    def still(cls, place: Place, scale: float) -> Trend:
+    def still(cls, place: Position, scale: float) -> Trend:
         """Stay where it is, since nothing better is known."""
         return cls(ProjectiveMotion(place, (0.0, 0.0), scale, 0.0), 0.0)
 
-    def now(self) -> tuple[Place, float]:
+    def now(self) -> tuple[Position, float]:
         """Place in px and scale in the present frame."""
         return self.motion.at(self.age)
 
-    def velocity(self) -> Place:
+    def velocity(self) -> Position:
         """Velocity in the present frame, px per frame."""
         return self.motion.velocity_at(self.age)
 
@@ -61,7 +60,7 @@ class Trend:
         return Trend(self.motion.moved(motion.shift, motion.scale), self.age)
 
 
-def carried(place: Place, motion: CameraMotion) -> Place:
+def carried(place: Position, motion: CameraMotion) -> Position:
     """Take a place along with the background."""
     x, y = motion.apply(np.array(place)).tolist()
     return x, y
@@ -90,7 +89,7 @@ class History:
             place = carried(one.place, motion)
             self._sightings[index] = Sighting(place, one.scale * motion.scale, one.time)
 
-    def see(self, place: Place, scale: float, age: float = 0.0) -> None:
+    def see(self, place: Position, scale: float, age: float = 0.0) -> None:
         """Keep a confident sighting, of this frame or of one `age` frames ago."""
         self._sightings.append(Sighting(place, scale, self._now - age))
 

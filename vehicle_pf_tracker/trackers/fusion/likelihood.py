@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.trackers.estimate import Array
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.trackers.fusion.history import Trend
 from vehicle_pf_tracker.trackers.fusion.particles import Particles
 from vehicle_pf_tracker.trackers.fusion.view import View
-
-Place = tuple[float, float]
 
 _NEAR_PREDICTION = 0.4
 """Standard deviation of the weak prior around the predicted mean, of the size."""
@@ -38,7 +37,7 @@ class Prior:
         Usual distance of estimates from the trend, of the size.
     """
 
-    predicted: Place
+    predicted: Position
     extent: float
     trend: Trend | None
     innovation: float

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import (
     RAYLEIGH_MEAN,
@@ -17,9 +19,6 @@ from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud
-from vehicle_pf_tracker.trackers.estimate import Array
-
-Place = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +48,8 @@ class Particles:
         cls,
         rng: np.random.Generator,
         count: int,
-        place: Place,
-        velocity: Place,
+        place: Position,
+        velocity: Position,
         scale: float,
         spread: Spread,
     ) -> Particles:
@@ -63,7 +62,7 @@ class Particles:
         )
 
     @property
-    def place(self) -> Place:
+    def place(self) -> Position:
         """Weighted mean of the positions."""
         x, y = (self.weights @ self.positions).tolist()
         return x, y
@@ -106,7 +105,7 @@ class Particles:
         self,
         rng: np.random.Generator,
         elapsed: float,
-        velocity: Place,
+        velocity: Position,
         scale: float,
         across: float,
         *,
@@ -145,7 +144,7 @@ class Particles:
             scales=np.minimum(np.maximum(self.scales, low), high),
         )
 
-    def drawn_towards(self, place: Place, velocity: Place, scale: float) -> Particles:
+    def drawn_towards(self, place: Position, velocity: Position, scale: float) -> Particles:
         """Move their means of place and velocity half way, that of scale wholly, to better ones."""
         off = np.asarray(place) - np.asarray(self.place)
         return replace(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vehicle_pf_tracker.trackers.estimate import Array
+from vehicle_pf_tracker.core.array import Array
 
 _RATES = np.linspace(-0.04, 0.04, 33)
 _RATE_NEEDS = 8

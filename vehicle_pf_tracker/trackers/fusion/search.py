@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.small_grey import SmallGrey
@@ -14,8 +14,6 @@ from vehicle_pf_tracker.trackers.fusion.background import Background
 from vehicle_pf_tracker.trackers.fusion.candidates import Candidate, Candidates, Chain
 from vehicle_pf_tracker.trackers.fusion.suspicion import Suspicion
 from vehicle_pf_tracker.trackers.fusion.view import View
-
-Place = tuple[float, float]
 
 _SIZES_AT_FIRST = tuple(1.04**step for step in (-2, -1, 0, 1, 2))
 _SIZES = tuple(1.12**step for step in (-3, -2, -1, 0, 1, 2, 3))
@@ -48,8 +46,8 @@ class Foretold:
         Standard deviation of the particles that drift around it, px.
     """
 
-    place: Place
-    velocity: Place
+    place: Position
+    velocity: Position
     scale: float
     extent: float
     width: float

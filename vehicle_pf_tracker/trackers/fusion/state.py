@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TypeAlias
 
 import numpy as np
 
-from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.image.camera_motion import CameraFlow, CameraMotion
 from vehicle_pf_tracker.image.small_grey import small_grey
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.base import Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.estimate import Array, Estimate, Mode
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion.background import Background
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
@@ -26,8 +26,6 @@ from vehicle_pf_tracker.trackers.fusion.particles import Particles, Spread
 from vehicle_pf_tracker.trackers.fusion.search import Search
 from vehicle_pf_tracker.trackers.fusion.suspicion import Suspicion
 from vehicle_pf_tracker.trackers.fusion.turning import Turns
-
-Place: TypeAlias = tuple[float, float]
 
 _LEAST_EXTENT = 7.0
 """px that the geometric mean of the sides of the box may shrink to."""
@@ -76,7 +74,7 @@ class FusionState(ParticleTracker[FusionParameters]):
         learnt = window.width or self._size[0], window.height or self._size[1]
         self._appearance = Appearance(target.patch, target.centre, learnt, self.parameters.cues)
 
-    def _scatter(self, centre: Place) -> Array:
+    def _scatter(self, centre: Position) -> Array:
         return np.asarray(centre) + sample_normal(self._rng, self.parameters.num_particles, 0.5)
 
     @property
@@ -89,10 +87,10 @@ class FusionState(ParticleTracker[FusionParameters]):
         """The same of the present box."""
         return self._side * self._scale
 
-    def _box(self, place: Place) -> Box:
+    def _box(self, place: Position) -> Box:
         return Box.around(place, self._size[0] * self._scale, self._size[1] * self._scale)
 
-    def _inside(self, frame: Frame, place: Place) -> Place:
+    def _inside(self, frame: Frame, place: Position) -> Position:
         x, y = keep_inside(frame, np.asarray(place)).tolist()
         return x, y
 

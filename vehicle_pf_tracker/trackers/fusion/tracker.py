@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TypeAlias
 
 import numpy as np
 
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
 from vehicle_pf_tracker.image.window import is_outside, keep_inside
@@ -29,8 +29,6 @@ from vehicle_pf_tracker.trackers.fusion.search import Foretold, Search
 from vehicle_pf_tracker.trackers.fusion.state import FusionState
 from vehicle_pf_tracker.trackers.fusion.suspicion import Sight, Verdict
 from vehicle_pf_tracker.trackers.fusion.view import View
-
-Place: TypeAlias = tuple[float, float]
 
 _SIZES = tuple(1.07**step for step in (-1, 0, 1))
 _LONGEST_STEP = 30.0
@@ -107,7 +105,7 @@ class FusionTracker(FusionState):
             motion.scale_sigma,
         )
 
-    def _look_around(self, frame: Frame, place: Place, scale: float) -> View:
+    def _look_around(self, frame: Frame, place: Position, scale: float) -> View:
         reach = 0.6 * max(self._size) * scale
         sizes = _SIZES if self.parameters.motion.scale else (1.0,)
         return self._appearance.look(frame, place, scale, reach, sizes)
@@ -140,7 +138,7 @@ class FusionTracker(FusionState):
 
     def _refined(
         self, frame: Frame, view: View, particles: Particles, expected_scale: float
-    ) -> tuple[Place, float]:
+    ) -> tuple[Position, float]:
         """Climb from the particles' mean to the peak, and align there while nothing is in doubt."""
         scale = particles.scale
         place = view.refine(particles.place, scale)
@@ -151,7 +149,7 @@ class FusionTracker(FusionState):
         return place, min(max(scale, low), high)
 
     def _take(
-        self, frame: Frame, particles: Particles, place: Place, scale: float, elapsed: float
+        self, frame: Frame, particles: Particles, place: Position, scale: float, elapsed: float
     ) -> None:
         """Move on to the estimate; the velocity takes its share of the displacement."""
         gain, motion = self.parameters.motion.gain, self._velocity

@@ -24,7 +24,6 @@ from vehicle_pf_tracker.trackers.fusion.foreground import (
     joined,
 )
 
-Place = tuple[float, float]
 Colour = Callable[[Frame], float]
 """Gives the mean share of pixels (n, 1, 3) that speaks for the target."""
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.image.region import Region
 from vehicle_pf_tracker.image.template import Map
-from vehicle_pf_tracker.trackers.estimate import Array
 
-Place = tuple[float, float]
 Indices = npt.NDArray[np.intp]
 
 CUES = ("anchor", "following", "colour")
@@ -30,7 +30,7 @@ _INSIDE = 1.001
 class Peak:
     """A place in px of the frame and a scale, with the fused similarity there."""
 
-    place: Place
+    place: Position
     scale: float
     height: float
 
@@ -91,7 +91,7 @@ class View:
         """Logarithm of the largest scale over the smallest."""
         return math.log(self.scales[-1] / self.scales[0])
 
-    def refine(self, place: Place, scale: float) -> Place:
+    def refine(self, place: Position, scale: float) -> Position:
         """Climb from `place` (px) to the nearest peak of the map for `scale` by mean shift."""
         fused = self.fused[int(np.argmin(np.abs(np.log(self.scales / scale))))]
         u, v = self.region.to_canonical(np.asarray(place)).tolist()
@@ -108,7 +108,7 @@ class View:
         x, y = self.region.to_frame(np.array([u, v])).tolist()
         return x, y
 
-    def best(self, expected: Place, reach: float, frame_size: tuple[int, int]) -> Peak:
+    def best(self, expected: Position, reach: float, frame_size: tuple[int, int]) -> Peak:
         """Find the most alike place in the image.
 
         Parameters

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import (
     RAYLEIGH_MEAN,
@@ -23,7 +24,6 @@ from vehicle_pf_tracker.image.joint_colour import JointColour
 from vehicle_pf_tracker.image.reference import Reference
 from vehicle_pf_tracker.image.similarity import hellinger_similarity
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.papers.apf_parameters import ApfParameters
 from vehicle_pf_tracker.trackers.papers.clear_level import ClearLevel
 from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood

@@ -12,6 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
@@ -21,7 +22,6 @@ from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
-from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.papers.shared_parameters import (

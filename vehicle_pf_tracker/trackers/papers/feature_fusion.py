@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.filtering.resampling import Ancestors
-from vehicle_pf_tracker.trackers.estimate import Array
 
 
 def average_similarities(distances: Array, best_share: float) -> Array:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.image.joint_colour import JointColour
@@ -18,7 +19,6 @@ from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.reference import Reference
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 

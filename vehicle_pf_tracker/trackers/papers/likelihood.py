@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.filtering.weights import Weights
 from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.trackers.estimate import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import sample_disc
 from vehicle_pf_tracker.filtering.resampling import SCHEMES, Ancestors
@@ -27,7 +28,6 @@ from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, helli
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.image.window_feature import Histograms, WindowFeature
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.papers.feature_fusion import (
     Fusion,
     average_similarities,

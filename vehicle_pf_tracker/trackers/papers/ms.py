@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.joint_colour import JointColour
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
@@ -19,7 +20,6 @@ from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
 from vehicle_pf_tracker.trackers.contract import CommonParameters
-from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.papers.colour_tracker import VELOCITY_WINDOW
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.papers.shared_parameters import histogram_bits_parameter

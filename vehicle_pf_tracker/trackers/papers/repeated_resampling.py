@@ -10,6 +10,7 @@ from abc import abstractmethod
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
@@ -17,7 +18,6 @@ from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.estimate import Array
 from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters, log_likelihood
 from vehicle_pf_tracker.trackers.papers.shared_parameters import as_printed_switch
