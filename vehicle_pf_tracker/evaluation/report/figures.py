@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.columns import RANKED
 from vehicle_pf_tracker.evaluation.report.panels import (
-    FloatArray,
     Interval,
     Line,
     curve_panel,
@@ -115,8 +115,8 @@ def stretches(truths: Mapping[int, Truth], occlusion: Occlusion) -> list[tuple[i
 
 
 def _curve(evaluation: ScoredEvaluation, label: str, name: str, slot: int | None) -> Line | None:
-    by_recording: dict[str, list[FloatArray]] = {}
-    thresholds: FloatArray | None = None
+    by_recording: dict[str, list[Array]] = {}
+    thresholds: Array | None = None
     for run in evaluation.of(system=label):
         if name in run.curves:
             by_recording.setdefault(run.recording, []).append(run.curves[name].shares)
@@ -127,6 +127,6 @@ def _curve(evaluation: ScoredEvaluation, label: str, name: str, slot: int | None
     return Line(label, slot, thresholds, np.mean(means, axis=0))
 
 
-def _same_length(errors: Sequence[FloatArray]) -> list[FloatArray]:
+def _same_length(errors: Sequence[Array]) -> list[Array]:
     longest = max(map(len, errors))
     return [np.pad(e, (0, longest - len(e)), constant_values=np.nan) for e in errors]

@@ -10,13 +10,12 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report.svg import STYLE, ink
 
-FloatArray = NDArray[np.float64]
 Spans = Mapping[str, Sequence[tuple[int, int]]]
 """First and last frames of the stretches with an occlusion, by ``partial`` and ``total``."""
 
@@ -45,11 +44,11 @@ class Line:
 
     label: str
     slot: int | None
-    xs: FloatArray
-    ys: FloatArray
+    xs: Array
+    ys: Array
 
 
-def error_panel(errors: Sequence[FloatArray], spans: Spans, highest: float) -> Figure:
+def error_panel(errors: Sequence[Array], spans: Spans, highest: float) -> Figure:
     """Draw the error over time of one system on one recording.
 
     Parameters
