@@ -60,9 +60,10 @@ class Background:
     coherent: bool
     from_first: Matrix
 
-    def between(self, anchor: int, index: int) -> Matrix:
-        """Return the similarity (3, 3) from frame `anchor` to frame `index`."""
-        return np.asarray(self.from_first[index] @ np.linalg.inv(self.from_first[anchor]))
+    def between(self, anchor: int, frames: range) -> Matrix:
+        """Return the similarities from frame `anchor` to `frames`, (len(frames), 3, 3)."""
+        inverse = np.linalg.inv(self.from_first[anchor])
+        return np.asarray(self.from_first[frames.start : frames.stop] @ inverse)
 
 
 @functools.lru_cache(maxsize=64)

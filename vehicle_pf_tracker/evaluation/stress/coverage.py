@@ -26,7 +26,7 @@ def visible_share(corners: Floats, box: Box, size: tuple[int, int]) -> float:
     """
     left, right = _span(box.x, box.x + box.width, size[0])
     top, bottom = _span(box.y, box.y + box.height, size[1])
-    if right <= left or bottom <= top:
+    if right <= left or bottom <= top or _is_beside(corners, (left, top, right, bottom)):
         return 1.0
     across = _share_of_pixels(left, right, box.x, box.x + box.width)
     down = _share_of_pixels(top, bottom, box.y, box.y + box.height)
@@ -62,6 +62,14 @@ def coverage(corners: Floats, region: tuple[int, int, int, int]) -> Floats:
     along = [np.clip(inside[i] + 0.5, 0, 1) + np.clip(inside[i + 2] + 0.5, 0, 1) for i in (0, 1)]
     shares = [np.clip(each - 1.0, 0, 1) for each in along]
     return np.asarray(shares[0] * shares[1])
+
+
+def _is_beside(corners: Floats, region: tuple[int, int, int, int]) -> bool:
+    """Tell quickly that a rectangle touches no pixel of a region, as in most frames."""
+    (left, top), (right, bottom) = corners.min(axis=0), corners.max(axis=0)
+    # Half a pixel more, since slanted edges are smoothed.
+    beside = right + 0.5 < region[0] or region[2] < left - 0.5
+    return bool(beside or bottom + 0.5 < region[1] or region[3] < top - 0.5)
 
 
 def _edges(corners: Floats) -> list[tuple[Floats, Floats]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -48,12 +48,17 @@ class Motion:
         turn = np.array([[a, b], [-b, a]])
         return np.asarray(moved @ turn + np.array([x, y]))
 
-    def unplace(self, points: Floats, index: int) -> Floats:
-        """Take points (N, 2) of frame `index` to frame `anchor`."""
-        a, b, x, y = self.carried[index - self.first] if self.carried else _STANDING
+    def unplace(self, points: Floats, first: int) -> Floats:
+        """Take points (frames, N, 2) of the frames from `first` on to frame `anchor`."""
+        count = len(points)
+        begin = first - self.first
+        carried = self.carried[begin : begin + count] if self.carried else (_STANDING,) * count
+        a, b, x, y = np.array(carried).T
+        moved = points - np.stack([x, y], axis=1)[:, np.newaxis]
         back = np.array([[a, -b], [b, a]]) / (a * a + b * b)
-        moved = (points - np.array([x, y])) @ back
-        return np.asarray(moved - (index - self.anchor) * np.asarray(self.velocity))
+        turned = np.einsum("fnk,kjf->fnj", moved, back)
+        own = np.arange(first, first + count)[:, np.newaxis] - self.anchor
+        return np.asarray(turned - (own * np.asarray(self.velocity))[:, np.newaxis])
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +108,7 @@ class Occluder:
         return lambda frame, index: blend(frame, texture, self.corners(index))
 
 
-def similarities(matrices: Sequence[Floats]) -> tuple[Similarity, ...]:
+def similarities(matrices: Iterable[Floats]) -> tuple[Similarity, ...]:
     """Write (3, 3) similarities as plain numbers, to a thousandth of a pixel."""
     return tuple(
         (

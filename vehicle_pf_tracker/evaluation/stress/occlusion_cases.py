@@ -29,7 +29,7 @@ _CROSSINGS = {"fast": 4.0, "slow": 15.0}
 _LORRIES = (("fast", 5), ("fast", 10), ("fast", 20), ("slow", 10), ("slow", 20), ("slow", 40))
 """A slow lorry that hides for 5 frames is shorter than the vehicle; a fast one for 40, a train."""
 _POLES = 3
-_ANCHORS = 16
+_ANCHORS = 32
 """Places in a sequence that are tried, evenly spread."""
 _LARGEST_SHARE = 0.6
 """Share of the image that an occluder may cover: more is no picture of a road any more."""

@@ -96,6 +96,10 @@ class Placer:
         self._truth = truth
         self._background = background
         self._size = size
+        nowhere = np.full((4, 2), np.nan)
+        self._corners = np.array(
+            [nowhere if each is None else each.box.corners for each in truth], float
+        )
 
     def place(self, wanted: Wanted, anchor: int, seed: int) -> Placed | None:
         """Place an occluder that hides the vehicle around frame `anchor`; None if that fails."""
@@ -108,9 +112,12 @@ class Placer:
         motion = self._motion(wanted, anchor, span, rng)
         seen = self._relative(motion, span)
         rectangles = _rectangles(wanted, seen, anchor - span.start, rng)
-        best = min(rectangles, key=lambda one: abs(_hidden(one, seen) - wanted.duration))
+        counts = [(abs(_hidden(each, seen) - wanted.duration), each) for each in rectangles]
+        miss, best = min(counts, key=lambda pair: pair[0])
+        if miss > 2 * _slack(wanted):  # far from it even by its outline, so look no closer
+            return None
         occluder = Occluder(best, motion, Texture(wanted.style, seed, anchor, (0, 0, 1, 1)))
-        return self._judge(occluder, span, wanted)
+        return self._judge(occluder, span, _near(best, seen), wanted)
 
     def _span(self, anchor: int, duration: int) -> range | None:
         """Frames around `anchor`, all of them with truth, that an occlusion could matter in."""
@@ -127,8 +134,8 @@ class Placer:
     def _motion(self, wanted: Wanted, anchor: int, span: range, rng: np.random.Generator) -> Motion:
         standing = Motion(anchor)
         if self._background.coherent and not self._background.stands:
-            matrices = [self._background.between(anchor, index) for index in span]
-            standing = Motion(anchor, (0.0, 0.0), span.start, similarities(matrices))
+            carried = similarities(self._background.between(anchor, span))
+            standing = Motion(anchor, (0.0, 0.0), span.start, carried)
         if wanted.style != LORRY:
             return standing
         seen = self._relative(standing, span)
@@ -141,17 +148,19 @@ class Placer:
 
     def _relative(self, motion: Motion, span: range) -> Floats:
         """Take the vehicle's boxes to the occluder's coordinates: left, top, right, bottom."""
-        boxes = np.empty((len(span), 4))
-        for row, index in enumerate(span):
-            truth = self._truth[index]
-            assert truth is not None
-            corners = motion.unplace(np.asarray(truth.box.corners), index)
-            boxes[row] = *corners.min(axis=0), *corners.max(axis=0)
-        return boxes
+        corners = motion.unplace(self._corners[span.start : span.stop], span.start)
+        return np.concatenate([corners.min(axis=1), corners.max(axis=1)], axis=1)
 
-    def _judge(self, occluder: Occluder, span: range, wanted: Wanted) -> Placed | None:
-        """Choose the frames to play; None where the occlusion is not what was wanted."""
-        shares = np.array([self._share(occluder, index) for index in span])
+    def _judge(
+        self, occluder: Occluder, span: range, near: npt.NDArray[np.bool_], wanted: Wanted
+    ) -> Placed | None:
+        """Choose the frames to play; None where the occlusion is not what was wanted.
+
+        Frames in which the occluder is not near the vehicle have nothing hidden.
+        """
+        shares = np.ones(len(span))
+        for row in np.flatnonzero(near).tolist():
+            shares[row] = self._share(occluder, span[row])
         hidden = np.flatnonzero(shares < TOTAL_BELOW)
         touched = np.flatnonzero(shares < 1.0)
         is_total = wanted.style != POLE
@@ -166,7 +175,7 @@ class Placer:
             return None
         if last - (span.start + int(core[-1])) < LEAST_TAIL:
             return None
-        path = self._path(occluder.motion, span.start + int(core[0]), span.start + int(core[-1]))
+        path = self._path(occluder.motion, span, int(core[0]), int(core[-1]))
         return Placed(occluder, first, last + 1 - first, len(hidden), path)
 
     def _share(self, occluder: Occluder, index: int) -> float:
@@ -179,10 +188,11 @@ class Placer:
         own = [truth.occlusion for truth in self._truth[first : last + 1] if truth is not None]
         return own[0] is Occlusion.NONE and Occlusion.TOTAL not in own
 
-    def _path(self, motion: Motion, entry: int, leaving: int) -> str:
+    def _path(self, motion: Motion, span: range, entry: int, leaving: int) -> str:
+        """Compare the headings before row `entry` and after row `leaving` of the span."""
         standing = replace(motion, velocity=(0.0, 0.0))
-        before = range(max(0, entry - _HEADING_FRAMES), entry + 1)
-        after = range(leaving, min(len(self._truth) - 1, leaving + _HEADING_FRAMES) + 1)
+        before = span[max(0, entry - _HEADING_FRAMES) : entry + 1]
+        after = span[leaving : leaving + _HEADING_FRAMES + 1]
         headings = []
         for frames in (before, after):
             boxes = self._relative(standing, frames)
@@ -226,6 +236,13 @@ def _axis(seen: Floats, anchor: int) -> int:
     return int(way[1] > way[0])
 
 
+def _near(rectangle: Box, seen: Floats) -> npt.NDArray[np.bool_]:
+    """Tell which boxes the rectangle may touch; smooth edges reach a pixel further."""
+    low = np.array([rectangle.x, rectangle.y])
+    high = low + np.array([rectangle.width, rectangle.height])
+    return np.asarray(((seen[:, :2] <= high + 2.0) & (low - 2.0 <= seen[:, 2:])).all(axis=1))
+
+
 def _hidden(rectangle: Box, seen: Floats) -> int:
     """Count the boxes, as the occluder sees them, that are behind the rectangle."""
     low = np.maximum(seen[:, :2], (rectangle.x, rectangle.y))
@@ -239,8 +256,11 @@ def _is_right(hidden: npt.NDArray[np.intp], wanted: Wanted) -> bool:
     if wanted.style == POLE:
         return len(hidden) == 0
     is_one_run = len(hidden) > 0 and np.ptp(hidden) + 1 == len(hidden)
-    slack = max(1.0, _TOLERANCE * wanted.duration)
-    return bool(is_one_run) and abs(len(hidden) - wanted.duration) <= slack
+    return bool(is_one_run) and abs(len(hidden) - wanted.duration) <= _slack(wanted)
+
+
+def _slack(wanted: Wanted) -> float:
+    return max(1.0, _TOLERANCE * wanted.duration)
 
 
 def _centres(boxes: Floats) -> Floats:
