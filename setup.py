@@ -5,11 +5,10 @@ from pathlib import Path
 
 from setuptools import find_packages, setup
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # pip's isolated builds leave it out
+from vehicle_pf_tracker.trackers.registry import VARIANTS  # needs no library
+
 NAME = "vehicle_pf_tracker"
-# Those of trackers/registry.py, in its order; a test holds them equal.
-VARIANTS = ("apf", "pf", "sapf", "hpfms", "pfcl", "ms", "mfpf")
-VARIANTS += ("sfpf_color", "sfpf_edge", "sfpf_texture")
-VARIANTS += ("conventional", "adaptive", "fusion")
 JAZZY_WHEELS = "sys_platform == 'linux' and platform_machine == 'x86_64'"
 
 RUNTIME = [
@@ -84,7 +83,7 @@ setup(
         "console_scripts": [
             f"vehicle-pf-tracker = {NAME}.cli.main:main",
             f"bag_replay = {NAME}.cli.main:bag_replay",
-            *(f"{name}_tracker = {NAME}.ros.executables:{name}_tracker" for name in VARIANTS),
+            *(f"{one.executable} = {NAME}.ros.executables:main" for one in VARIANTS.values()),
         ],
     },
 )

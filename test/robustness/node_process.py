@@ -43,8 +43,8 @@ class NodeProcess:
         words = [*(f"target.{name}:={value}" for name, value in box), *assignments]
         self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - open as long as the node
         code = (
-            f"from vehicle_pf_tracker.ros.executables import {variant}_tracker as main;"
-            "raise SystemExit(main())"
+            "from vehicle_pf_tracker.ros.executables import main;"
+            f"raise SystemExit(main({variant!r}))"
         )
         arguments = [word for one in words for word in ("-p", one)]
         self._process = subprocess.Popen(

@@ -206,8 +206,10 @@ def start_node(start_process):
     """Return a function that runs the executable of a variant: `start_node("apf", "-p", ...)`."""
 
     def start(variant: str, *ros_arguments: str, **environment: str) -> Process:
-        main = f"{variant}_tracker"
-        code = f"from vehicle_pf_tracker.ros.executables import {main}; raise SystemExit({main}())"
+        code = (
+            "from vehicle_pf_tracker.ros.executables import main;"
+            f"raise SystemExit(main({variant!r}))"
+        )
         words = ["--ros-args", *ros_arguments] if ros_arguments else []
         return start_process("-c", code, *words, **environment)
 

@@ -1,10 +1,10 @@
-"""The executables of the nodes: ``<variant>_tracker`` for every registered variant."""
+"""The one program behind all nodes: ``<variant>_tracker`` runs the variant it is named after."""
 
 from __future__ import annotations
 
-import functools
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
 
@@ -14,13 +14,13 @@ _NO_ROS = (
 )
 
 
-def main(variant: str, args: Sequence[str] | None = None) -> int:
+def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
     """Run the node of a variant.
 
     Parameters
     ----------
-    variant : str
-        Name in the registry.
+    variant : str, optional
+        Name in the registry; that of the running executable if left out.
     args : sequence of str, optional
         Command line without the program's name; that of the process if left out.
 
@@ -29,25 +29,18 @@ def main(variant: str, args: Sequence[str] | None = None) -> int:
     int
         Exit status; see `vehicle_pf_tracker.ros.node.process.run_node`.
     """
+    name = variant or Path(sys.argv[0]).stem.removesuffix("_tracker")
     # Imported late, so that Ctrl-C while libraries load ends the program without a traceback.
     try:
         from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
         from vehicle_pf_tracker.trackers.registry import find_variant  # noqa: PLC0415
 
-        return run_node(find_variant(variant), sys.argv[1:] if args is None else args)
+        return run_node(find_variant(name), sys.argv[1:] if args is None else args)
     except InputError as error:
-        print(f"{variant}_tracker: {error}", file=sys.stderr)
+        print(f"{name}_tracker: {error}", file=sys.stderr)
         return 1
     except ModuleNotFoundError as error:
-        print(f"{variant}_tracker: {_NO_ROS.format(error.name)}", file=sys.stderr)
+        print(f"{name}_tracker: {_NO_ROS.format(error.name)}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 0
-
-
-def __getattr__(name: str) -> Callable[[], int]:
-    """Make ``<variant>_tracker``, which the console scripts call, for any variant."""
-    variant = name.removesuffix("_tracker")
-    if variant == name:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return functools.partial(main, variant)

@@ -1,137 +1,152 @@
-"""The tracker variants by name: node executable minus ``_tracker``, and config file."""
+"""The tracker variants, one entry each: the only place where they are listed.
+
+Executables (through setup.py), parameter files, SROS 2 enclaves and the tables in the documentation
+are derived from these entries by `make config`. A tracker is imported when its class is first asked
+for, so that a node loads its own variant only; setup.py reads this file where neither numpy nor
+OpenCV is installed.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.base import BaseTracker
-from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
-from vehicle_pf_tracker.trackers.papers.adaptive import AdaptiveParameters, AdaptiveTracker
-from vehicle_pf_tracker.trackers.papers.apf import ApfTracker
-from vehicle_pf_tracker.trackers.papers.apf_parameters import ApfParameters
-from vehicle_pf_tracker.trackers.papers.conventional import (
-    ConventionalParameters,
-    ConventionalTracker,
-)
-from vehicle_pf_tracker.trackers.papers.hpfms import HpfmsParameters, HpfmsTracker
-from vehicle_pf_tracker.trackers.papers.mfpf import MfpfTracker
-from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
-    MfpfParameters,
-    SfpfColorParameters,
-    SfpfEdgeParameters,
-    SfpfTextureParameters,
-)
-from vehicle_pf_tracker.trackers.papers.ms import MsParameters, MsTracker
-from vehicle_pf_tracker.trackers.papers.pf import PfParameters, PfTracker
-from vehicle_pf_tracker.trackers.papers.pfcl import PfclParameters, PfclTracker
-from vehicle_pf_tracker.trackers.papers.sapf import SapfParameters, SapfTracker
-from vehicle_pf_tracker.trackers.papers.sfpf import (
-    SfpfColorTracker,
-    SfpfEdgeTracker,
-    SfpfTextureTracker,
-)
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.trackers.base import BaseTracker
+
+_PACKAGE = __name__.rpartition(".")[0]
 
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """A tracker class with its parameter dataclass, and what it is in one line."""
+    """A registered tracker.
+
+    Attributes
+    ----------
+    name : str
+        Name that users type.
+    classes : str
+        ``module:Prefix``: the module below `trackers` that holds ``PrefixTracker`` and
+        ``PrefixParameters``.
+    summary : str
+        Method and source, in one line.
+    suits : str
+        Situation to choose it in, in one line.
+    """
 
     name: str
-    tracker: type[BaseTracker[Any]]
-    parameters: type[Any]
+    classes: str
     summary: str
+    suits: str
+
+    @property
+    def executable(self) -> str:
+        """Name of its node and of the program that runs it."""
+        return f"{self.name}_tracker"
+
+    @property
+    def tracker(self) -> type[BaseTracker[Any]]:
+        """Tracker class, imported now."""
+        return cast("type[BaseTracker[Any]]", self._load("Tracker"))
+
+    @property
+    def parameters(self) -> type[Any]:
+        """Parameter dataclass, all of whose fields have defaults; imported now."""
+        return cast("type[Any]", self._load("Parameters"))
+
+    def _load(self, role: str) -> object:
+        module, _, prefix = self.classes.partition(":")
+        return getattr(import_module(f"{_PACKAGE}.{module}"), prefix + role)
 
 
-VARIANTS: Mapping[str, Variant] = MappingProxyType(
-    {
-        variant.name: variant
-        for variant in (
-            Variant(
-                "apf",
-                ApfTracker,
-                ApfParameters,
-                "adaptive particle filter, two regimes (Scharcanski et al. 2011)",
-            ),
-            Variant(
-                "pf",
-                PfTracker,
-                PfParameters,
-                "colour particle filter (Perez et al. 2002)",
-            ),
-            Variant(
-                "sapf",
-                SapfTracker,
-                SapfParameters,
-                "annealed particle filter (Deutscher et al. 2000)",
-            ),
-            Variant(
-                "hpfms",
-                HpfmsTracker,
-                HpfmsParameters,
-                "few particles refined by mean shift (Maggio and Cavallaro 2005)",
-            ),
-            Variant(
-                "pfcl",
-                PfclTracker,
-                PfclParameters,
-                "colour and straight lines (Xiong and Debrunner 2004)",
-            ),
-            Variant(
-                "ms",
-                MsTracker,
-                MsParameters,
-                "mean shift, without particles (Comaniciu et al. 2003)",
-            ),
-            Variant(
-                "mfpf",
-                MfpfTracker,
-                MfpfParameters,
-                "colour, edges and texture with adaptive weights (Abdulla et al. 2022)",
-            ),
-            Variant(
-                "sfpf_color",
-                SfpfColorTracker,
-                SfpfColorParameters,
-                "colour alone (Abdulla et al. 2022)",
-            ),
-            Variant(
-                "sfpf_edge",
-                SfpfEdgeTracker,
-                SfpfEdgeParameters,
-                "edge directions alone (Abdulla et al. 2022)",
-            ),
-            Variant(
-                "sfpf_texture",
-                SfpfTextureTracker,
-                SfpfTextureParameters,
-                "texture alone (Abdulla et al. 2022)",
-            ),
-            Variant(
-                "conventional",
-                ConventionalTracker,
-                ConventionalParameters,
-                "colour, all particles resampled until enough count (Khong et al.)",
-            ),
-            Variant(
-                "adaptive",
-                AdaptiveTracker,
-                AdaptiveParameters,
-                "colour, only low weights resampled until enough count (Khong et al.)",
-            ),
-            Variant(
-                "fusion",
-                FusionTracker,
-                FusionParameters,
-                "fused cues, scale, camera motion, return from total occlusions (this package)",
-            ),
-        )
-    }
+_ENTRIES = (
+    Variant(
+        "apf",
+        "papers.apf:Apf",
+        "adaptive particle filter, two regimes (Scharcanski et al. 2011)",
+        "short occlusions on a straight road, where the vehicle's colours are distinctive",
+    ),
+    Variant(
+        "pf",
+        "papers.pf:Pf",
+        "colour particle filter (Perez et al. 2002)",
+        "a vehicle in plain view whose colours differ from the road's",
+    ),
+    Variant(
+        "sapf",
+        "papers.sapf:Sapf",
+        "annealed particle filter (Deutscher et al. 2000)",
+        "as `pf`, where the vehicle moves far between two frames",
+    ),
+    Variant(
+        "hpfms",
+        "papers.hpfms:Hpfms",
+        "few particles refined by mean shift (Maggio and Cavallaro 2005)",
+        "as `pf`, where there is little time per frame",
+    ),
+    Variant(
+        "pfcl",
+        "papers.pfcl:Pfcl",
+        "colour and straight lines (Xiong and Debrunner 2004)",
+        "a vehicle with straight edges among others of its colours",
+    ),
+    Variant(
+        "ms",
+        "papers.ms:Ms",
+        "mean shift, without particles (Comaniciu et al. 2003)",
+        "a fixed camera, no occlusions, and the least time per frame",
+    ),
+    Variant(
+        "mfpf",
+        "papers.mfpf:Mfpf",
+        "colour, edges and texture with adaptive weights (Abdulla et al. 2022)",
+        "a vehicle whose edges or texture are more distinctive than its colours",
+    ),
+    Variant(
+        "sfpf_color",
+        "papers.sfpf:SfpfColor",
+        "colour alone (Abdulla et al. 2022)",
+        "comparison with `mfpf`",
+    ),
+    Variant(
+        "sfpf_edge",
+        "papers.sfpf:SfpfEdge",
+        "edge directions alone (Abdulla et al. 2022)",
+        "comparison with `mfpf`; grey video",
+    ),
+    Variant(
+        "sfpf_texture",
+        "papers.sfpf:SfpfTexture",
+        "texture alone (Abdulla et al. 2022)",
+        "comparison with `mfpf`, which it comes closest to; grey video",
+    ),
+    Variant(
+        "conventional",
+        "papers.conventional:Conventional",
+        "colour, all particles resampled until enough count (Khong et al.)",
+        "comparison with `adaptive`, or of resampling schemes",
+    ),
+    Variant(
+        "adaptive",
+        "papers.adaptive:Adaptive",
+        "colour, only low weights resampled until enough count (Khong et al.)",
+        "as `conventional`, with fewer measurements per frame",
+    ),
+    Variant(
+        "fusion",
+        "fusion:Fusion",
+        "fused cues, scale, camera motion, return from total occlusions (this package)",
+        "real video: changing size, a moving camera, total occlusions",
+    ),
 )
+
+VARIANTS: Mapping[str, Variant] = MappingProxyType({entry.name: entry for entry in _ENTRIES})
+"""Every variant by name."""
 
 
 def find_variant(name: str) -> Variant:

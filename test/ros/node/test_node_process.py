@@ -19,7 +19,6 @@ from tracker_rig import header, road
 
 from vehicle_pf_tracker.ros import executables
 from vehicle_pf_tracker.ros.messages import image_message
-from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 pytestmark = pytest.mark.ros
 
@@ -46,7 +45,7 @@ def test_the_log_names_the_kernels_when_it_is_ready(start_node):
 def test_a_second_ctrl_c_does_not_reach_the_clean_up(start_process):
     code = (
         "import os, signal, sys\n"
-        "from vehicle_pf_tracker.ros.executables import apf_tracker\n"
+        "from vehicle_pf_tracker.ros.executables import main\n"
         "from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode\n"
         "destroy = TrackerNode.destroy_node\n"
         "def interrupted(node):\n"
@@ -54,7 +53,7 @@ def test_a_second_ctrl_c_does_not_reach_the_clean_up(start_process):
         "    destroy(node)\n"
         "    print('cleaned up')\n"
         "TrackerNode.destroy_node = interrupted\n"
-        "sys.exit(apf_tracker())"
+        "sys.exit(main('apf'))"
     )
     process = start_process("-c", code)
     process.wait_for_output("ready")
@@ -73,8 +72,8 @@ def test_a_signal_while_libraries_load_leaves_no_traceback(start_process):
         "        if name == 'vehicle_pf_tracker.ros.node.process':\n"
         "            os.kill(os.getpid(), signal.SIGINT)\n"
         "sys.meta_path.insert(0, Interrupting())\n"
-        "from vehicle_pf_tracker.ros.executables import apf_tracker\n"
-        "sys.exit(apf_tracker())"
+        "from vehicle_pf_tracker.ros.executables import main\n"
+        "sys.exit(main('apf'))"
     )
     process = start_process("-c", code)
     assert process.wait() == 0
@@ -109,19 +108,17 @@ def test_other_arguments_are_a_usage_error(start_process):
 
 
 def test_help_is_no_error(start_process):
-    code = (
-        "from vehicle_pf_tracker.ros.executables import pf_tracker; raise SystemExit(pf_tracker())"
-    )
+    code = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('pf'))"
     process = start_process("-c", code, "--help")
     assert process.wait() == 0
     assert "vehicle-pf-tracker params pf" in process.output
 
 
-def test_every_variant_has_its_executable():
-    for name in VARIANTS:
-        assert getattr(executables, f"{name}_tracker").args == (name,)
-    with pytest.raises(AttributeError, match="nonsense"):
-        executables.nonsense  # noqa: B018
+@pytest.mark.parametrize("name", ["pf_tracker", "pf_tracker.exe"])
+def test_an_executable_runs_the_variant_it_is_named_after(monkeypatch, capfd, name):
+    monkeypatch.setattr("sys.argv", [f"/opt/ws/lib/vehicle_pf_tracker/{name}", "--help"])
+    assert executables.main() == 0
+    assert "usage: pf_tracker" in capfd.readouterr().out
 
 
 def test_an_unknown_variant_is_one_sentence(capfd):
