@@ -16,7 +16,7 @@ from reproduction.numbers import counted, median_and_range, share
 from reproduction.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.evaluation.interpolation import interpolate_occlusions
+from vehicle_pf_tracker.evaluation.estimates import interpolate_occlusions
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.plots import OUTLINE
 from vehicle_pf_tracker.evaluation.scores import Scores

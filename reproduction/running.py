@@ -7,8 +7,7 @@ from typing import TypeAlias
 
 from reproduction.cells import Cell, Result
 from reproduction.identity import key
-from vehicle_pf_tracker.evaluation.processes import run_in_processes
-from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
+from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress, run_in_processes
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
 _LARGEST_BATCH = 48

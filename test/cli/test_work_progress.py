@@ -1,7 +1,7 @@
 import io
 
 from vehicle_pf_tracker.cli.work_progress import telling
-from vehicle_pf_tracker.evaluation.progress import Progress
+from vehicle_pf_tracker.evaluation.processes import Progress
 
 
 def told(*progresses):

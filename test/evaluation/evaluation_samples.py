@@ -5,14 +5,12 @@ import json
 from drive import HEIGHT, WIDTH, box_of, frame_of, stamp_of
 
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import cell_folder
+from vehicle_pf_tracker.evaluation.evaluation_folder import cell_folder, write_truth
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
-from vehicle_pf_tracker.evaluation.results import ResultFolder
-from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run, versions
+from vehicle_pf_tracker.evaluation.results import ResultFolder, RunInfo, describe_run, versions
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.evaluation.truth_file import write_truth
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.registry import find_variant

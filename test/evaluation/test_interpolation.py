@@ -4,10 +4,11 @@ from vehicle_pf_tracker.evaluation.estimates import (
     REJECTED,
     WAITING,
     EstimateRow,
+    interpolate_occlusions,
+    interpolated_columns,
     read_estimates,
     write_estimates,
 )
-from vehicle_pf_tracker.evaluation.interpolation import interpolate_occlusions, interpolated_columns
 
 
 def rows(*entries):

@@ -6,7 +6,7 @@ from scoring_samples import NONE, TOTAL, row, run_of
 
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.evaluation.tables import Line, Table, comparison
+from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
 
 RUNS = {
     "good": measure(run_of((10, 1, NONE), (5, 1 / 3, TOTAL), (30, 2, NONE))),
@@ -56,7 +56,7 @@ def test_csv_keeps_every_digit():
 
 
 def test_on_a_terminal_brackets_are_no_styles():
-    table = Table(("[bold]",), (Line("[red]label", "px", (1.26,)),))
+    table = Comparison(("[bold]",), (MetricRow("[red]label", "px", (1.26,)),))
     console = Console(file=io.StringIO(), width=60)
     console.print(table.to_rich())
     text = console.file.getvalue()

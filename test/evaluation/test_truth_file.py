@@ -3,7 +3,7 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.truth_file import read_truth, write_truth
+from vehicle_pf_tracker.evaluation.evaluation_folder import read_truth, write_truth
 
 
 def test_truth_comes_back_with_every_digit(tmp_path):

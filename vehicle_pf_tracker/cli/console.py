@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.table import Table as RichTable
 
-    from vehicle_pf_tracker.evaluation.tables import Table
+    from vehicle_pf_tracker.evaluation.tables import Comparison
 
 PROGRAM = "vehicle-pf-tracker"
 _WIDE = 200
@@ -31,7 +31,7 @@ def tell_notices(sentences: Iterable[str]) -> None:
         print(f"{PROGRAM}: note: {sentence}", file=sys.stderr, flush=True)
 
 
-def show(table: Table) -> None:
+def show(table: Comparison) -> None:
     """Print a table on stdout."""
     print_table(table.to_rich())
 

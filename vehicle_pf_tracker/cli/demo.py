@@ -18,10 +18,9 @@ from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_text
 from vehicle_pf_tracker.evaluation.plots import overview_figure, save
-from vehicle_pf_tracker.evaluation.results import ResultFolder
-from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run
+from vehicle_pf_tracker.evaluation.results import ResultFolder, RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-from vehicle_pf_tracker.evaluation.tables import Line, Table, comparison
+from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
 from vehicle_pf_tracker.parameters.table import Value, from_mapping
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import make_scene
@@ -169,7 +168,7 @@ def _table(
     answers: Mapping[str, Sequence[EstimateRow]],
     same: Mapping[str, bool],
     others: Mapping[str, Sequence[Metrics]],
-) -> Table:
+) -> Comparison:
     """Compare the runs through ROS, and count over the other seeds."""
     table = comparison(metrics)
     answered = tuple(sum(row.mode != "DROPPED" for row in rows) for rows in answers.values())
@@ -177,8 +176,8 @@ def _table(
         f"{sum(all(m.recovered) for m in runs)} of {len(runs)}" for runs in others.values()
     )
     extra = (
-        Line("estimates in", "", answered),
-        Line("same numbers offline", "", tuple(same.values())),
-        Line("other seeds that recovered every time", "", recovered),
+        MetricRow("estimates in", "", answered),
+        MetricRow("same numbers offline", "", tuple(same.values())),
+        MetricRow("other seeds that recovered every time", "", recovered),
     )
-    return Table(table.columns, (*table.lines, *extra))
+    return Comparison(table.columns, (*table.lines, *extra))

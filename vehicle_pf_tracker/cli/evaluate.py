@@ -11,12 +11,11 @@ from vehicle_pf_tracker.cli.console import print_table, tell_error, tell_notices
 from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers
 from vehicle_pf_tracker.cli.whole_numbers import natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
-from vehicle_pf_tracker.evaluation.grid.locations import find_recordings
 from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
 from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
-from vehicle_pf_tracker.evaluation.grid.sources import describe
-from vehicle_pf_tracker.evaluation.grid.summary import SystemSummary, summarise, table
+from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.grid.timing import time_systems
+from vehicle_pf_tracker.evaluation.tables import SystemSummary, grid_table, summarise_grid
 
 SEEDS = 5
 TIMING_FRAMES = 200
@@ -96,7 +95,7 @@ def run(args: argparse.Namespace) -> int:
     if args.timing:
         with telling("timing") as on_progress:
             time_systems(plan, args.output, args.timing_frames, on_progress)
-    summaries = summarise(plan, args.output)
+    summaries = summarise_grid(plan, args.output)
     _show(summaries)
     report.write(args.output, args)
     return _judge(summaries, args.max_rmse)
@@ -125,7 +124,7 @@ def _runner(args: argparse.Namespace) -> Runner:
 
 
 def _show(summaries: Sequence[SystemSummary]) -> None:
-    print_table(table(summaries))
+    print_table(grid_table(summaries))
     for summary in summaries:
         for reason in dict.fromkeys(summary.reasons):
             tell_notices([f"{summary.label} did not run everywhere: {reason}"])

@@ -12,11 +12,10 @@ from vehicle_pf_tracker.cli.progress import OnProgress, counting
 from vehicle_pf_tracker.cli.shared_options import add_max_diff
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.interpolation import interpolated_columns
+from vehicle_pf_tracker.evaluation.estimates import interpolated_columns
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
-from vehicle_pf_tracker.evaluation.results import ResultFolder
-from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run
+from vehicle_pf_tracker.evaluation.results import ResultFolder, RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.tables import comparison
 from vehicle_pf_tracker.recordings.reader import Recording

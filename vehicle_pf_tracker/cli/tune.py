@@ -15,21 +15,24 @@ from vehicle_pf_tracker.cli.whole_numbers import natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.grid.locations import find_recordings
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
-from vehicle_pf_tracker.evaluation.grid.sources import describe
+from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
-from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json, write_text
-from vehicle_pf_tracker.evaluation.output_lock import alone_in
+from vehicle_pf_tracker.evaluation.output_files import alone_in, make_folder, write_json, write_text
 from vehicle_pf_tracker.evaluation.report import write_report
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.evaluation.tuning import comparison
-from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES
 from vehicle_pf_tracker.evaluation.tuning.search_space import SEARCHED, search_space
-from vehicle_pf_tracker.evaluation.tuning.searching import Search, Trial, best_of, search
-from vehicle_pf_tracker.evaluation.tuning.trial_table import to_csv
+from vehicle_pf_tracker.evaluation.tuning.searching import (
+    OBJECTIVES,
+    Search,
+    Trial,
+    best_of,
+    search,
+    to_csv,
+)
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.table import parse_assignments
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
 from rich.progress import Progress as Bar
 
-from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
+from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress
 
 _LINE_SECONDS = 5.0
 _SHOWN = 4

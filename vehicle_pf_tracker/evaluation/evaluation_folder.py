@@ -1,29 +1,123 @@
-"""The folder of an evaluation: the plan, the truth, and what every cell of the grid left there.
-
-::
-
-    evaluation.json                                      the plan
-    recordings/<recording>/truth.csv
-    cells/<recording>/<system>/seed-<n>/estimates.csv    and metrics.json, run.json; or
-    cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
-    timings.json                                         of a serial pass, where it was asked for
-    robustness/<kind>/<recording>/<system>/seed-<n>/     where it was asked for
-"""
+"""A recording as the plan of an evaluation names it."""
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow, read_estimates
+from vehicle_pf_tracker.evaluation.output_files import write_text
 from vehicle_pf_tracker.evaluation.results import ESTIMATES, RUN
-from vehicle_pf_tracker.evaluation.source import Source
-from vehicle_pf_tracker.evaluation.truth_file import read_truth
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A recording of the plan.
+
+    Attributes
+    ----------
+    name : str
+        Its name in all tables, and of its folders.
+    path : str
+        Path or URL.
+    topic : str
+        The image topic.
+    frames, width, height : int
+        How many images it has, and their size in px.
+    digest : str
+        SHA-256 of its content.
+    """
+
+    name: str
+    path: str
+    topic: str
+    frames: int
+    width: int
+    height: int
+    digest: str
+
+    @classmethod
+    def from_json(cls, entry: Mapping[str, Any]) -> Source:
+        """Read what `to_json` gave.
+
+        Raises
+        ------
+        KeyError, TypeError, ValueError
+            If it is something else.
+        """
+        return cls(
+            name=str(entry["name"]),
+            path=str(entry["path"]),
+            topic=str(entry["topic"]),
+            frames=int(entry["frames"]),
+            width=int(entry["width"]),
+            height=int(entry["height"]),
+            digest=str(entry["digest"]),
+        )
+
+    def to_json(self) -> dict[str, Any]:
+        """Everything as plain values."""
+        return asdict(self)
+
+
+COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
+
+
+def write_truth(path: Path, truths: Mapping[int, Truth]) -> None:
+    """Write truths by the number of their frame (top-left corner and size in px, every digit).
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for frame, truth in sorted(truths.items()):
+        box = map(repr, (truth.box.x, truth.box.y, truth.box.width, truth.box.height))
+        writer.writerow([frame, truth.stamp_ns, *box, truth.occlusion.name.lower()])
+    write_text(path, text.getvalue())
+
+
+def read_truth(path: Path) -> dict[int, Truth]:
+    """Read truths by the number of their frame.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or a line of it is not as `write_truth` writes it.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8") as stream:
+            reader = csv.DictReader(stream)
+            return dict(_row(path, reader.line_num, line) for line in _checked(path, reader))
+    except OSError as error:
+        raise InputError(f"cannot read the truth {path}: {error.strerror}") from error
+
+
+def _checked(path: Path, reader: csv.DictReader[str]) -> csv.DictReader[str]:
+    if tuple(reader.fieldnames or ()) != COLUMNS:
+        raise InputError(f"the truth {path} must begin with the line {','.join(COLUMNS)}")
+    return reader
+
+
+def _row(path: Path, number: int, line: Mapping[str, str]) -> tuple[int, Truth]:
+    try:
+        box = Box(*(float(line[name]) for name in ("x", "y", "width", "height")))
+        occlusion = Occlusion[line["occlusion"].upper()]
+        return int(line["frame"]), Truth(int(line["stamp_ns"]), box, occlusion)
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"line {number} of the truth {path} is broken: {error}") from error
+
 
 PLAN, FAILED = "evaluation.json", "failed.json"
 TIMINGS = "timings.json"

@@ -1,7 +1,8 @@
-"""Result files that appear whole or not at all."""
+"""Result files that appear whole or not at all, in a folder that one command at a time may use."""
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 from collections.abc import Iterator
@@ -72,3 +73,27 @@ def write_json(path: Path, document: Any) -> None:
 def _partial(path: Path) -> Path:
     # The suffix stays, since those who draw pictures choose the format by it.
     return path.with_name(f".{path.stem}.{os.getpid()}.partial{path.suffix}")
+
+
+_NAME = ".lock"
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Keep other commands out of `folder`; a process that dies lets them in again.
+
+    Raises
+    ------
+    InputError
+        If another one is at work there, or the folder cannot be written.
+    """
+    with output_errors(folder):
+        file = (folder / _NAME).open("w")
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise InputError(
+                f"another command is at work in {folder}; wait for it, or name another folder"
+            ) from None
+        yield

@@ -1,4 +1,4 @@
-"""Work in several processes of this machine."""
+"""Work in several processes of this machine: running tasks, reporting progress, ending children."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import itertools
 import multiprocessing
 import os
 import signal
+import subprocess
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, TypeAlias, TypeVar
 
 import cv2
 
@@ -87,3 +88,27 @@ def _end_with_parent() -> None:
     assert parent is not None
     parent.join()
     os._exit(1)
+
+
+_PATIENCE = 10.0
+
+
+def wait_or_kill(process: subprocess.Popen[bytes] | subprocess.Popen[str]) -> int:
+    """Wait for a process that was asked to end, and kill it after 10 s; returns its status."""
+    try:
+        return process.wait(_PATIENCE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        return process.wait()
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """Runs done in this call, runs that were to be done, and what is running now."""
+
+    done: int
+    total: int
+    running: tuple[str, ...]
+
+
+OnProgress: TypeAlias = Callable[[Progress], None]

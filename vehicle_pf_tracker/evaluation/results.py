@@ -1,15 +1,91 @@
-"""The folder with the results of one run."""
+"""The folder with the results of one run: `estimates.csv`, `metrics.json` and `run.json`."""
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from importlib import metadata
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow, write_estimates
 from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, write_json
+from vehicle_pf_tracker.parameters.table import to_mapping
+from vehicle_pf_tracker.trackers.session import Session
+
+
+@dataclass(frozen=True, slots=True)
+class RunInfo:
+    """How a run was made.
+
+    Attributes
+    ----------
+    command : sequence of str
+        The command line; empty where there was none.
+    recording, image_topic : str
+        What was read; the topic is empty where frames came from memory.
+    start_frame : int or None
+        Number of the frame that the target was first set in.
+    notices : sequence of str
+        What was not as it should be, a sentence each.
+    """
+
+    command: Sequence[str]
+    recording: str
+    image_topic: str
+    start_frame: int | None
+    notices: Sequence[str]
+
+
+def describe_run(info: RunInfo, session: Session) -> dict[str, Any]:
+    """Make the content of `run.json`.
+
+    `seed` is the one in use: the drawn one where the parameter `seed` is -1; `kernels` likewise
+    those that `auto` chose.
+    """
+    box = session.settings.target.box
+    return {
+        "command": list(info.command),
+        "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "recording": info.recording,
+        "image_topic": info.image_topic,
+        "variant": session.variant.name,
+        "seed": session.tracker.seed,
+        "kernels": session.tracker.kernels.name,
+        "target": None if box is None else [box.x, box.y, box.width, box.height],
+        "start_frame": info.start_frame,
+        "parameters": {**to_mapping(session.tracker.parameters), **to_mapping(session.settings)},
+        "versions": versions(),
+        "notices": list(info.notices),
+    }
+
+
+def versions() -> dict[str, str | None]:
+    """Return the versions of what decides about the numbers; None for what is not installed."""
+    return {
+        "vehicle_pf_tracker": __version__,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "opencv": cv2.__version__,
+        "numba": _installed("numba"),
+        "platform": platform.platform(),
+    }
+
+
+def _installed(name: str) -> str | None:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return None
+
 
 ESTIMATES, METRICS, RUN = "estimates.csv", "metrics.json", "run.json"
 

@@ -4,22 +4,28 @@ from __future__ import annotations
 
 import csv
 import io
+import statistics
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from pathlib import Path
+from typing import Any, TypeAlias
 
 from rich.table import Table as RichTable
 from rich.text import Text
 
+from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell
+from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
+from vehicle_pf_tracker.evaluation.results import METRICS
 
 Cell: TypeAlias = float | int | bool | str | None
 NOTHING = "-"
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class MetricRow:
     """A row: what it shows, its unit, its cells, and decimals for the eye."""
 
     label: str
@@ -29,11 +35,11 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class Comparison:
     """One line per metric, one column per run."""
 
     columns: tuple[str, ...]
-    lines: tuple[Line, ...]
+    lines: tuple[MetricRow, ...]
 
     def to_rich(self) -> RichTable:
         """For a terminal."""
@@ -68,15 +74,17 @@ def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "".join(f"| {' | '.join(row)} |\n" for row in ruled)
 
 
-def comparison(runs: Mapping[str, Metrics]) -> Table:
+def comparison(runs: Mapping[str, Metrics]) -> Comparison:
     """Put runs on the same recording side by side, each under its name.
 
     Metrics that no run has are left out.
     """
     metrics = list(runs.values())
 
-    def line(label: str, unit: str, value: Callable[[Metrics], Cell], decimals: int = 1) -> Line:
-        return Line(label, unit, tuple(map(value, metrics)), decimals)
+    def line(
+        label: str, unit: str, value: Callable[[Metrics], Cell], decimals: int = 1
+    ) -> MetricRow:
+        return MetricRow(label, unit, tuple(map(value, metrics)), decimals)
 
     lines = [
         line("error, RMSE", "px", lambda m: m.rmse_px),
@@ -95,10 +103,10 @@ def comparison(runs: Mapping[str, Metrics]) -> Table:
     ]
     has_values = [any(cell is not None for cell in line.cells) for line in lines]
     kept = tuple(line for line, filled in zip(lines, has_values, strict=True) if filled)
-    return Table(tuple(runs), kept)
+    return Comparison(tuple(runs), kept)
 
 
-def _occlusion_lines(metrics: list[Metrics]) -> list[Line]:
+def _occlusion_lines(metrics: list[Metrics]) -> list[MetricRow]:
     # Runs that were started at different frames may not have seen the same occlusions.
     by_frames = [{(o.first_frame, o.last_frame): o for o in m.occlusions} for m in metrics]
     lines = []
@@ -108,9 +116,9 @@ def _occlusion_lines(metrics: list[Metrics]) -> list[Line]:
         inside = tuple(o.error_inside_px if o else None for o in found)
         after = tuple(o.error_after_px if o else None for o in found)
         lines += [
-            Line(f"{name}: mean error inside", "px", inside),
-            Line(f"{name}: mean error after", "px", after),
-            Line(f"{name}: recovered", "", tuple(map(_verdict, found))),
+            MetricRow(f"{name}: mean error inside", "px", inside),
+            MetricRow(f"{name}: mean error after", "px", after),
+            MetricRow(f"{name}: recovered", "", tuple(map(_verdict, found))),
         ]
     return lines
 
@@ -121,7 +129,7 @@ def _verdict(occlusion: OcclusionScore | None) -> Cell:
     return "not judged" if occlusion.recovered is None else occlusion.recovered
 
 
-def _label(line: Line) -> str:
+def _label(line: MetricRow) -> str:
     return f"{line.label}, {line.unit}" if line.unit not in {"", "share"} else line.label
 
 
@@ -131,3 +139,89 @@ def _text(cell: Cell, decimals: int) -> str:
     if isinstance(cell, bool):
         return "yes" if cell else "no"
     return f"{cell:.{decimals}f}" if isinstance(cell, float) else str(cell)
+
+
+Document = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class SystemSummary:
+    """One system over all its cells.
+
+    Attributes
+    ----------
+    label : str
+        Of the system.
+    metrics : mapping of str to list of mapping
+        `metrics.json` of every cell that ran, by recording.
+    reasons : tuple of str
+        Why others did not.
+    """
+
+    label: str
+    metrics: Mapping[str, Sequence[Document]]
+    reasons: tuple[str, ...]
+
+    def mean(self, name: str) -> float | None:
+        """Mean over the recordings of the mean over their runs; None where there is none."""
+        means = []
+        for runs in self.metrics.values():
+            known = [run[name] for run in runs if run[name] is not None]
+            if known:
+                means.append(statistics.fmean(known))
+        return statistics.fmean(means) if means else None
+
+    @property
+    def runs(self) -> list[Document]:
+        """All that ran."""
+        return [run for runs in self.metrics.values() for run in runs]
+
+    def recovered(self) -> tuple[int, int]:
+        """Total occlusions recovered from, and judged."""
+        judged = [r for run in self.runs for r in run["recovered"] if r is not None]
+        return sum(judged), len(judged)
+
+
+def summarise_grid(plan: Plan, folder: Path) -> list[SystemSummary]:
+    """Read the cells of the grid, and put them together by system."""
+    cells = [cell for cell in plan.cells() if not cell.start.kind]
+    return [
+        _summary(system.label, [cell for cell in cells if cell.system == system], folder)
+        for system in plan.systems
+    ]
+
+
+def _summary(label: str, cells: Sequence[GridCell], folder: Path) -> SystemSummary:
+    metrics: dict[str, list[Document]] = {}
+    reasons = []
+    for cell in cells:
+        path = cell.folder(folder)
+        if (path / METRICS).is_file():
+            metrics.setdefault(cell.source.name, []).append(read_document(path / METRICS))
+        elif (path / FAILED).is_file():
+            reasons.append(str(read_document(path / FAILED).get("reason")))
+    return SystemSummary(label, metrics, tuple(reasons))
+
+
+def grid_table(summaries: Sequence[SystemSummary]) -> RichTable:
+    """For a terminal: means over seeds and then recordings, the best success AUC first."""
+    columns: dict[str, Callable[[SystemSummary], str]] = {
+        "RMSE, px": lambda s: _number(s.mean("rmse_px"), 1),
+        "median error, px": lambda s: _number(s.mean("median_px"), 1),
+        "on target while visible": lambda s: _number(s.mean("on_target"), 3),
+        "success AUC": lambda s: _number(s.mean("success_auc"), 3),
+        "recovered": lambda s: "{} of {}".format(*s.recovered()),
+        "failures": lambda s: _number(s.mean("failures"), 1),
+        "runs": lambda s: str(len(s.runs)) + (f" ({len(s.reasons)} failed)" * bool(s.reasons)),
+    }
+    made = RichTable("")
+    for name in columns:
+        made.add_column(Text(name), justify="right")
+    order = sorted(summaries, key=lambda s: -(s.mean("success_auc") or 0.0))
+    for summary in order:
+        made.add_row(Text(summary.label), *(Text(cell(summary)) for cell in columns.values()))
+    return made
+
+
+def _number(value: float | None, decimals: int) -> str:
+    return "-" if value is None else f"{value:.{decimals}f}"

@@ -11,9 +11,15 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.baselines import client, worker
-from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Peer, PeerAnswer
-from vehicle_pf_tracker.evaluation.baselines.environment import DEFAULT, VARIABLE, peer_python
-from vehicle_pf_tracker.evaluation.baselines.rows import peer_rows
+from vehicle_pf_tracker.evaluation.baselines.client import (
+    DEFAULT,
+    MODELS,
+    VARIABLE,
+    Peer,
+    PeerAnswer,
+    peer_python,
+    peer_rows,
+)
 
 PYTHON = Path(sys.executable)
 TARGET = Box(30, 40, 24, 20)

@@ -2,8 +2,8 @@ import pytest
 from grid_samples import here, make_plan, results, silent, system, write_recordings
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.grid.locations import at_hand, find_recordings
 from vehicle_pf_tracker.evaluation.grid.running import complete
+from vehicle_pf_tracker.evaluation.grid.sources import at_hand, find_recordings
 
 fsspec = pytest.importorskip("fsspec")
 

@@ -7,10 +7,10 @@ from grid_samples import HIDDEN, here, make_plan, silent, system, write_recordin
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import WAITING, EstimateRow, read_estimates
+from vehicle_pf_tracker.evaluation.failures import follow_restarted
+from vehicle_pf_tracker.evaluation.grid.cells import Start, shifted_starts, start_frames
 from vehicle_pf_tracker.evaluation.grid.plan import Robustness
-from vehicle_pf_tracker.evaluation.grid.restarts import follow_restarted
 from vehicle_pf_tracker.evaluation.grid.running import complete
-from vehicle_pf_tracker.evaluation.grid.starts import Start, shifted_starts, start_frames
 from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem
 from vehicle_pf_tracker.evaluation.grid.timing import WARM_UP, time_systems
 

@@ -12,7 +12,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.report.figures import stretches
+from vehicle_pf_tracker.evaluation.report.figures import LEAST_ERROR, error_panel, stretches
 from vehicle_pf_tracker.evaluation.report.filmstrip import (
     Shot,
     longest_occlusions,
@@ -20,7 +20,6 @@ from vehicle_pf_tracker.evaluation.report.filmstrip import (
     take_stills,
 )
 from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, colour_of, draw_overlay
-from vehicle_pf_tracker.evaluation.report.panels import LEAST_ERROR, error_panel
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker, ink
 

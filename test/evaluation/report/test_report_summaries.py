@@ -11,7 +11,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     cell_folder,
     read_document,
 )
-from vehicle_pf_tracker.evaluation.report import summary_files
+from vehicle_pf_tracker.evaluation.report import writing
 from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
 from vehicle_pf_tracker.evaluation.report.columns import COLUMNS
 from vehicle_pf_tracker.evaluation.report.page_tables import overall_table
@@ -75,19 +75,19 @@ def test_recoveries_are_counted_over_all_runs(aggregates, evaluation):
 
 
 def test_csv_has_a_line_for_each_mean(evaluation, aggregates):
-    rows = list(csv.DictReader(io.StringIO(summary_files.summary_csv(evaluation, aggregates))))
+    rows = list(csv.DictReader(io.StringIO(writing.summary_csv(evaluation, aggregates))))
     (one,) = [r for r in rows if (r["recording"], r["system"], r["metric"]) ==
               ("free", "pf", "rmse_px")]  # fmt: skip
     found = aggregates.by_recording["free", "pf"]["rmse_px"]
     assert float(one["mean"]) == found.mean
     assert (one["unit"], one["count"]) == ("px", str(len(SEEDS)))
-    overall = [r for r in rows if r["recording"] == summary_files.ALL_RECORDINGS]
+    overall = [r for r in rows if r["recording"] == writing.ALL_RECORDINGS]
     assert {r["system"] for r in overall} == set(VARIANTS)
     assert {r["metric"] for r in overall} <= {column.key for column in COLUMNS}
 
 
 def test_json_is_json_and_has_everything(evaluation, aggregates):
-    document = summary_files.summary_json(evaluation, aggregates)
+    document = writing.summary_json(evaluation, aggregates)
     document = json.loads(json.dumps(document, allow_nan=False))
     assert document["overall"]["pf"]["rmse_px"]["count"] == len(HIDDEN)
     assert set(document["recordings"]) == set(HIDDEN)
@@ -97,7 +97,7 @@ def test_json_is_json_and_has_everything(evaluation, aggregates):
 
 
 def test_markdown_has_a_table_for_each_recording_and_every_failed_cell(evaluation, aggregates):
-    text = summary_files.summary_markdown(evaluation, aggregates)
+    text = writing.summary_markdown(evaluation, aggregates)
     assert [line[3:] for line in text.splitlines() if line.startswith("## ")] == [
         "Means over recordings", "Ranks", *HIDDEN, "Failed cells",
     ]  # fmt: skip
@@ -107,7 +107,7 @@ def test_markdown_has_a_table_for_each_recording_and_every_failed_cell(evaluatio
 
 
 def test_latex_escapes_what_it_must(aggregates):
-    text = summary_files.summary_tex(aggregates)
+    text = writing.summary_tex(aggregates)
     assert text.count(r"\\") == 1 + len(VARIANTS)
     assert r"\begin{tabular}{lrrrrrr}" in text
     assert "_" not in text.replace(r"\_", "") and "–" not in text

@@ -4,14 +4,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.evaluation.statistics.paired import (
+    RunKey,
     compare_pairs,
     holm,
-    smallest_adjusted_p,
-)
-from vehicle_pf_tracker.evaluation.statistics.runs import (
-    RunKey,
     paired_differences,
     recording_means,
+    smallest_adjusted_p,
 )
 
 

@@ -7,7 +7,7 @@ from vehicle_pf_tracker.evaluation.tuning.comparison import (
     to_markdown,
     verdict,
 )
-from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES
+from vehicle_pf_tracker.evaluation.tuning.searching import OBJECTIVES
 
 UP, DOWN = OBJECTIVES["success_auc"], OBJECTIVES["rmse_px"]
 

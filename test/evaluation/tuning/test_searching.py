@@ -3,15 +3,21 @@ import pytest
 pytest.importorskip("optuna", reason="the extra [tune] is not installed")
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.tracking import Outcome
 from vehicle_pf_tracker.evaluation.processes import Turn
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.evaluation.source import Source
-from vehicle_pf_tracker.evaluation.tuning.objective import OBJECTIVES, mean_of_means
 from vehicle_pf_tracker.evaluation.tuning.search_space import search_space
-from vehicle_pf_tracker.evaluation.tuning.searching import Search, Trial, best_of, search
-from vehicle_pf_tracker.evaluation.tuning.trial_table import to_csv
+from vehicle_pf_tracker.evaluation.tuning.searching import (
+    OBJECTIVES,
+    Search,
+    Trial,
+    best_of,
+    mean_of_means,
+    search,
+    to_csv,
+)
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 

@@ -1,12 +1,13 @@
-"""OpenCV's trackers on our frames, in a process of their own (`worker`)."""
+"""OpenCV's trackers on our frames, in a process and an environment of their own (`worker`)."""
 
 from __future__ import annotations
 
 import contextlib
 import json
+import os
 import subprocess
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -16,8 +17,39 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.evaluation.baselines.environment import peer_python
-from vehicle_pf_tracker.evaluation.child_process import wait_or_kill
+from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
+from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.evaluation.processes import wait_or_kill
+
+VARIABLE = "VEHICLE_PF_TRACKER_PEERS"
+"""Environment variable that names the interpreter."""
+
+DEFAULT = Path(".venv-peers/bin/python")
+"""What `make peers` builds, below the working directory."""
+
+
+def peer_python(chosen: Path | None = None) -> Path:
+    """Find the interpreter that has OpenCV's contrib trackers.
+
+    Parameters
+    ----------
+    chosen : Path or None
+        The user's choice; None takes what `VARIABLE` names, else `DEFAULT`.
+
+    Raises
+    ------
+    InputError
+        If there is no such file.
+    """
+    python = chosen or Path(os.environ.get(VARIABLE) or DEFAULT)
+    if not python.is_file():
+        raise InputError(
+            f"there is no interpreter {python} to run OpenCV's trackers with; build {DEFAULT} with "
+            f"`make peers`, or name another one in the environment variable {VARIABLE}"
+        )
+    return python.absolute()  # not resolved: a link is what makes it the environment's
+
 
 MODELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -194,3 +226,52 @@ def _checked_models(name: str, models: Mapping[str, Path]) -> dict[str, Path]:
         if not Path(path).is_file():
             raise InputError(f"there is no file {path} for the model {key} of the peer {name}")
     return {key: Path(path).absolute() for key, path in models.items()}
+
+
+def peer_rows(
+    peer: Peer, frames: Iterable[tuple[int, Frame | None]], first_truth: Truth
+) -> Iterator[EstimateRow]:
+    """Track through (stamp in ns, frame) pairs, and give one row for each.
+
+    The peer starts on the first truth's box, in the first image that belongs to it by its stamp.
+    Where it gives up, the row is ``LOST`` at its last box. ``step_ms`` is CPU time, which a peer
+    that works in one thread alone needs at least.
+
+    Raises
+    ------
+    InputError
+        If no image belongs to the first truth, or the peer cannot go on.
+    """
+    limit = max_diff_ns(MAX_DIFF)
+    started = False
+    for number, (stamp, frame) in enumerate(frames, start=1):
+        if frame is None:
+            yield EstimateRow.without(number, stamp, REJECTED)
+        elif started:
+            yield _row(number, stamp, peer.step(frame))
+        elif abs(stamp - first_truth.stamp_ns) <= limit:
+            started = True
+            yield _row(number, stamp, peer.start(frame, first_truth.box))
+        else:
+            yield EstimateRow.without(number, stamp, WAITING)
+    if not started:
+        raise InputError(
+            f"no image is within {MAX_DIFF:g} s of the first truth, "
+            f"at {first_truth.stamp_ns / 1e9:.3f} s; the peer {peer.name} cannot start"
+        )
+
+
+def _row(number: int, stamp_ns: int, answer: PeerAnswer) -> EstimateRow:
+    box = answer.box
+    return EstimateRow(
+        frame=number,
+        stamp_ns=stamp_ns,
+        x=box.centre[0],
+        y=box.centre[1],
+        width=box.width,
+        height=box.height,
+        mode="TRACKING" if answer.found else "LOST",
+        confidence=None,
+        n_eff=None,
+        step_ms=answer.seconds * 1e3,
+    )

@@ -10,20 +10,24 @@ from typing import Any
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
-from vehicle_pf_tracker.evaluation.evaluation_folder import PLAN, TRUTH, safe_name
-from vehicle_pf_tracker.evaluation.grid.cells import GridCell
-from vehicle_pf_tracker.evaluation.grid.starts import (
+from vehicle_pf_tracker.evaluation.evaluation_folder import (
+    PLAN,
+    TRUTH,
+    Source,
+    safe_name,
+    write_truth,
+)
+from vehicle_pf_tracker.evaluation.grid.cells import (
     RESTARTS,
     USUAL,
+    GridCell,
     Start,
     shifted_starts,
     start_frames,
 )
 from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
-from vehicle_pf_tracker.evaluation.run_info import versions
-from vehicle_pf_tracker.evaluation.source import Source
-from vehicle_pf_tracker.evaluation.truth_file import write_truth
+from vehicle_pf_tracker.evaluation.results import versions
 
 FORMAT = 1
 

@@ -24,15 +24,14 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.association import max_diff_ns
 from vehicle_pf_tracker.evaluation.baselines.client import Peer
-from vehicle_pf_tracker.evaluation.evaluation_folder import TIMINGS
+from vehicle_pf_tracker.evaluation.evaluation_folder import TIMINGS, Source
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
 from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem
 from vehicle_pf_tracker.evaluation.offline import with_target
 from vehicle_pf_tracker.evaluation.output_files import write_json
-from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
-from vehicle_pf_tracker.evaluation.run_info import versions
-from vehicle_pf_tracker.evaluation.source import Source
+from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress
+from vehicle_pf_tracker.evaluation.results import versions
 from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session
 

@@ -13,17 +13,15 @@ import cv2
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.baselines.client import Peer
-from vehicle_pf_tracker.evaluation.baselines.rows import peer_rows
+from vehicle_pf_tracker.evaluation.baselines.client import Peer, peer_rows
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
-from vehicle_pf_tracker.evaluation.grid.cells import GridCell
-from vehicle_pf_tracker.evaluation.grid.restarts import follow_restarted
+from vehicle_pf_tracker.evaluation.failures import follow_restarted
+from vehicle_pf_tracker.evaluation.grid.cells import RESTARTS, GridCell
 from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
-from vehicle_pf_tracker.evaluation.grid.starts import RESTARTS
 from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem, VariantSystem
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
-from vehicle_pf_tracker.evaluation.run_info import RunInfo, describe_run, versions
+from vehicle_pf_tracker.evaluation.results import RunInfo, describe_run, versions
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.trackers.registry import find_variant
 

@@ -8,9 +8,13 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.evaluation.report.columns import COLUMNS, RANKED, Column
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.statistics.intervals import Summary, summarise
-from vehicle_pf_tracker.evaluation.statistics.paired import PairedTest, compare_pairs
+from vehicle_pf_tracker.evaluation.statistics.paired import (
+    PairedTest,
+    RunKey,
+    compare_pairs,
+    recording_means,
+)
 from vehicle_pf_tracker.evaluation.statistics.ranks import Ranking, rank_systems
-from vehicle_pf_tracker.evaluation.statistics.runs import RunKey, recording_means
 
 Summaries = Mapping[str, Summary | None]
 """By the key of a column."""

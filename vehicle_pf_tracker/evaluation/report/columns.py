@@ -1,11 +1,12 @@
-"""Which metrics a report shows, and how."""
+"""The metrics that a report shows, and how their numbers are printed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
+from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,3 +135,49 @@ COLUMNS = (
 
 RANKED = (SUCCESS, PRECISION, RMSE)
 """Metrics that systems are ranked by; the first one orders the tables."""
+
+
+NO_VALUE = "–"
+
+
+def number_text(value: float | None, decimals: int) -> str:
+    """Return a number with so many decimals, a dash for None."""
+    return NO_VALUE if value is None else f"{value:.{decimals}f}"
+
+
+def mean_text(summary: Summary | None, column: Column) -> str:
+    """Return the mean alone."""
+    return number_text(summary.mean if summary else None, column.decimals)
+
+
+def mean_and_spread_text(summary: Summary | None, column: Column) -> str:
+    """Return the mean, and the standard deviation where there is one that shows."""
+    text = mean_text(summary, column)
+    if summary is None or not summary.spread:
+        return text
+    return f"{text} ± {number_text(summary.spread, column.decimals)}"
+
+
+def interval_text(summary: Summary | None, column: Column) -> str:
+    """Return the interval as ``low to high``; empty where there is none."""
+    if summary is None or summary.low is None or summary.high is None:
+        return ""
+    low, high = (number_text(end, column.decimals) for end in (summary.low, summary.high))
+    return f"{low} to {high}"
+
+
+def p_value_text(value: float | None) -> str:
+    """Return a p value as it is usually printed."""
+    if value is None:
+        return NO_VALUE
+    return "< 0.001" if value < 0.001 else f"{value:.3f}"
+
+
+def listing(names: Sequence[str]) -> str:
+    """Return ``a``, ``a and b``, or ``a, b and c``."""
+    return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
+
+
+def counted(count: int, noun: str) -> str:
+    """Return ``1 frame``, ``2 frames``."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

@@ -14,11 +14,11 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.grid.locations import at_hand
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source
+from vehicle_pf_tracker.evaluation.grid.sources import at_hand
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
-from vehicle_pf_tracker.evaluation.source import Source
 from vehicle_pf_tracker.recordings.reader import Recording
 
 MOST_OCCLUSIONS = 4

@@ -10,8 +10,11 @@ from vehicle_pf_tracker.evaluation.report.columns import (
     RMSE,
     STEP,
     Column,
+    counted,
+    interval_text,
+    listing,
+    mean_text,
 )
-from vehicle_pf_tracker.evaluation.report.numbers import counted, interval, listing, mean
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
 from vehicle_pf_tracker.evaluation.statistics.paired import FEWEST_RECORDINGS, smallest_adjusted_p
 
@@ -55,10 +58,10 @@ def _leader(aggregates: Aggregates) -> list[str]:
         return ["There is no truth to rank the systems by."]
     leader = ranking.ranks[0]
     summary = aggregates.overall[leader.system].get(column.key)
-    within = interval(summary, column)
+    within = interval_text(summary, column)
     text = (
         f"{leader.system} has the best mean rank by {column.label}: "
-        f"{mean(summary, column)} on average"
+        f"{mean_text(summary, column)} on average"
     )
     sentences = [f"{text} (95 % interval {within})." if within else f"{text}."]
     if ranking.critical_difference is None and len(ranking.ranks) > 1:

@@ -12,10 +12,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source, SystemEntry
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report import filmstrip, page_tables
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
-from vehicle_pf_tracker.evaluation.report.columns import RANKED
+from vehicle_pf_tracker.evaluation.report.columns import RANKED, counted, p_value_text
 from vehicle_pf_tracker.evaluation.report.figures import (
     Panel,
     curve_panels,
@@ -24,8 +25,7 @@ from vehicle_pf_tracker.evaluation.report.figures import (
 )
 from vehicle_pf_tracker.evaluation.report.filmstrip import Still
 from vehicle_pf_tracker.evaluation.report.findings import findings, power
-from vehicle_pf_tracker.evaluation.report.numbers import counted, p_value
-from vehicle_pf_tracker.evaluation.report.parameters_section import system_sections
+from vehicle_pf_tracker.evaluation.report.page_tables import speed_note, speed_table
 from vehicle_pf_tracker.evaluation.report.robustness import robustness_sections
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     FailedCell,
@@ -33,9 +33,7 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredRun,
     typical,
 )
-from vehicle_pf_tracker.evaluation.report.speed import speed_note, speed_table
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker
-from vehicle_pf_tracker.evaluation.source import Source
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +132,7 @@ def _rank_notes(aggregates: Aggregates) -> Iterator[str]:
             continue
         parts = [f"{column.label}: {counted(ranking.recordings, 'recording')}"]
         if ranking.friedman_p is not None:
-            parts.append(f"Friedman p {p_value(ranking.friedman_p)}")
+            parts.append(f"Friedman p {p_value_text(ranking.friedman_p)}")
         if ranking.critical_difference is not None:
             parts.append(f"critical difference of mean ranks {ranking.critical_difference:.2f}")
         yield ", ".join(parts)
@@ -212,3 +210,53 @@ def _word(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     return "–" if value is None else str(value)
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterRow:
+    """One parameter, and whether it was set rather than left at its default."""
+
+    name: str
+    value: str
+    was_set: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SystemSection:
+    """What a system was."""
+
+    label: str
+    kind: str
+    parameter_set: str
+    rows: tuple[ParameterRow, ...]
+
+
+def system_sections(systems: tuple[SystemEntry, ...]) -> list[SystemSection]:
+    """Describe all systems."""
+    sections = []
+    for system in systems:
+        values = flat(system.parameters)
+        were_set = flat(system.overrides)
+        rows = [ParameterRow(name, _text(values.get(name, value)), was_set=True)
+                for name, value in were_set.items()]  # fmt: skip
+        rows += [ParameterRow(name, _text(value), was_set=False)
+                 for name, value in values.items() if name not in were_set]  # fmt: skip
+        section = SystemSection(system.label, system.kind, system.parameter_set, tuple(rows))
+        sections.append(section)
+    return sections
+
+
+def _text(value: Any) -> str:
+    """Return a value as it stands in a parameter file."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def flat(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Return nested values by their dotted names."""
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        if isinstance(value, Mapping):
+            found |= flat(value, f"{prefix}{name}.")
+        else:
+            found[prefix + name] = value
+    return found

@@ -3,13 +3,27 @@
 from __future__ import annotations
 
 import itertools
+import statistics
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from vehicle_pf_tracker.evaluation.report import numbers
+from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, Summaries
-from vehicle_pf_tracker.evaluation.report.columns import COLUMNS, RANKED, RECOVERED, Column
-from vehicle_pf_tracker.evaluation.report.occlusion_table import occlusion_cell, occlusions_of
+from vehicle_pf_tracker.evaluation.report.columns import (
+    COLUMNS,
+    NO_VALUE,
+    RANKED,
+    RECOVERED,
+    Column,
+    counted,
+    interval_text,
+    listing,
+    mean_and_spread_text,
+    mean_text,
+    number_text,
+    p_value_text,
+)
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
 from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
 from vehicle_pf_tracker.evaluation.statistics.paired import ALPHA
@@ -74,7 +88,7 @@ def overall_table(aggregates: Aggregates, slots: Slots) -> PageTable:
     """Show all metrics, as means over the recordings; recoveries with their number too."""
 
     def text(label: str, summary: Summary | None, column: Column) -> str:
-        mean = numbers.mean(summary, column)
+        mean = mean_text(summary, column)
         recovered, judged = aggregates.recoveries[label]
         return f"{mean} ({recovered}/{judged})" if column is RECOVERED and judged else mean
 
@@ -90,7 +104,7 @@ def recording_table(aggregates: Aggregates, recording: str, slots: Slots) -> Pag
     }
     columns = [column for column in COLUMNS if column.by_recording]
     return _metrics_table(
-        table, columns, slots, lambda _, summary, column: numbers.mean_and_spread(summary, column)
+        table, columns, slots, lambda _, summary, column: mean_and_spread_text(summary, column)
     )
 
 
@@ -103,10 +117,10 @@ def ranks_table(aggregates: Aggregates, slots: Slots) -> PageTable:
         differ = any(rank.place > 1 for rank in ranks.values())
         for label, row in cells.items():
             if label not in ranks:
-                row += [TableCell(numbers.NOTHING), TableCell(numbers.NOTHING)]
+                row += [TableCell(NO_VALUE), TableCell(NO_VALUE)]
                 continue
             rank = ranks[label]
-            note = f"tied with {numbers.listing(rank.tied)}" if rank.tied else ""
+            note = f"tied with {listing(rank.tied)}" if rank.tied else ""
             place = f"{rank.place}{' =' if rank.tied else ''}"
             row.append(TableCell(place, rank.place, differ and rank.place == 1, note))
             row.append(TableCell(f"{rank.mean_rank:.2f}", rank.mean_rank))
@@ -126,13 +140,13 @@ def pairs_table(aggregates: Aggregates, slots: Slots) -> PageTable:
     for test in aggregates.pairs:
         for pair, sign in (((test.first, test.second), 1), ((test.second, test.first), -1)):
             if test.difference is None:
-                found[pair] = TableCell(numbers.NOTHING)
+                found[pair] = TableCell(NO_VALUE)
                 continue
             value = sign * test.difference.mean
             alone = test.p_value is not None and test.p_value < ALPHA
             mark = "**" if test.significant else "*" if alone else ""
-            p_values = f"p {numbers.p_value(test.p_value)}"
-            p_values += f", adjusted {numbers.p_value(test.adjusted_p)}"
+            p_values = f"p {p_value_text(test.p_value)}"
+            p_values += f", adjusted {p_value_text(test.adjusted_p)}"
             text = f"{value:+.{column.decimals}f}{mark}"
             found[pair] = TableCell(text, value, test.significant, p_values, value / largest)
     itself = TableCell("")
@@ -156,9 +170,9 @@ def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]], slots: Slots) -> P
             share = cell.recovered / cell.judged if cell.judged else None
             text = f"{cell.recovered} of {cell.judged}" if cell.judged else "not judged"
             cells.append(TableCell(text, share, share == 1))
-            cells.append(TableCell(numbers.number(cell.exit_px, 1), cell.exit_px))
-            note = f"in {numbers.counted(cell.back, 'seed')}"
-            cells.append(TableCell(numbers.number(cell.frames, 0), cell.frames, note=note))
+            cells.append(TableCell(number_text(cell.exit_px, 1), cell.exit_px))
+            note = f"in {counted(cell.back, 'seed')}"
+            cells.append(TableCell(number_text(cell.frames, 0), cell.frames, note=note))
         rows.append(Row(label, slots.get(label), tuple(cells)))
     three = (
         Header("recovered", "seeds", "Seeds after which the track was on the vehicle again."),
@@ -184,7 +198,7 @@ def _metrics_table(
             summary = summaries.get(column.key)
             value = summary.mean if summary else None
             is_best = value is not None and round(value, column.decimals) == best[column.key]
-            within = numbers.interval(summary, column)
+            within = interval_text(summary, column)
             note = f"95 % interval of the mean: {within}" if within else ""
             cells.append(TableCell(text(label, summary, column), value, is_best, note))
         rows.append(Row(label, slots.get(label), tuple(cells)))
@@ -202,3 +216,106 @@ def _best(table: Mapping[str, Summaries], column: Column) -> float | None:
     if column.higher_is_better is None or len(values) < 2:
         return None
     return max(values) if column.higher_is_better else min(values)
+
+
+@dataclass(frozen=True, slots=True)
+class OcclusionCell:
+    """One system in one total occlusion, over its seeds.
+
+    Attributes
+    ----------
+    recovered, judged : int
+        Seeds after which it recovered, and seeds that are judged.
+    exit_px : float or None
+        Mean error at the exit.
+    back : int
+        Seeds in which the track came to stay on the vehicle.
+    frames : float or None
+        Their median number of frames until then.
+    """
+
+    recovered: int
+    judged: int
+    exit_px: float | None
+    back: int
+    frames: float | None
+
+
+def occlusions_of(runs: Sequence[ScoredRun]) -> list[tuple[int, int]]:
+    """Return the first and last hidden frames of all total occlusions that the runs saw."""
+    return sorted({_key(o) for run in runs for o in run.metrics.occlusions})
+
+
+def occlusion_cell(runs: Sequence[ScoredRun], occlusion: tuple[int, int]) -> OcclusionCell:
+    """Draw the seeds of one system together."""
+    found = [o for run in runs for o in run.metrics.occlusions if _key(o) == occlusion]
+    verdicts = [o.recovered for o in found if o.recovered is not None]
+    exits = [o.error_at_exit_px for o in found if o.error_at_exit_px is not None]
+    frames = [o.frames_to_recover for o in found if o.frames_to_recover is not None]
+    return OcclusionCell(
+        recovered=sum(verdicts),
+        judged=len(verdicts),
+        exit_px=statistics.fmean(exits) if exits else None,
+        back=len(frames),
+        frames=statistics.median(frames) if frames else None,
+    )
+
+
+def _key(occlusion: OcclusionScore) -> tuple[int, int]:
+    return occlusion.first_frame, occlusion.last_frame
+
+
+def speed_table(
+    timings: Mapping[str, Any] | None, order: Sequence[str], slots: Mapping[str, int]
+) -> PageTable | None:
+    """Make a table of step times; None where they were not measured.
+
+    Parameters
+    ----------
+    timings : mapping or None
+        ``{"clock", "cells": [{"recording", "system", "step_ms_p50", "step_ms_p95"}, ...]}``.
+    order : sequence of str
+        The systems.
+    slots : mapping of str to int
+        Numbers of their styles.
+    """
+    cells = list((timings or {}).get("cells", []))
+    rows = []
+    for label in order:
+        own = [cell for cell in cells if cell["system"] == label]
+        medians = [cell["step_ms_p50"] for cell in own if cell.get("step_ms_p50") is not None]
+        slow = [cell["step_ms_p95"] for cell in own if cell.get("step_ms_p95") is not None]
+        if not medians:
+            continue
+        middle = statistics.fmean(medians)
+        late = statistics.fmean(slow) if slow else None
+        shown = (
+            _cell(middle, 2),
+            _cell(late, 2),
+            _cell(max(medians), 2),
+            _cell(1000.0 / middle if middle > 0 else None, 0),
+        )
+        rows.append(Row(label, slots.get(label), shown))
+    headers = (
+        Header("step, median", "ms", "Mean over the recordings of the median step."),
+        Header(
+            "step, 95 %", "ms", "Mean over the recordings of the time 95 % of steps stay below."
+        ),
+        Header("slowest recording", "ms", "The largest median of any recording."),
+        Header("rate", "frames/s", "One second over the mean median step."),
+    )
+    return PageTable((), headers, tuple(rows)) if rows else None
+
+
+def speed_note(timings: Mapping[str, Any] | None) -> str:
+    """Say what was measured, and on what."""
+    clock = (timings or {}).get("clock", "time of a step")
+    processor = " with ".join(map(str, (timings or {}).get("processor", []) or ["unknown"]))
+    return (
+        f"Measured in a serial pass of its own: {clock}. Processor: {processor} cores. "
+        "Compare systems by their ratios; other machines have other times."
+    )
+
+
+def _cell(value: float | None, decimals: int) -> TableCell:
+    return TableCell(number_text(value, decimals), value)

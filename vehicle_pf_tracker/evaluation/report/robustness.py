@@ -16,8 +16,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     read_document,
     safe_name,
 )
-from vehicle_pf_tracker.evaluation.report import numbers
-from vehicle_pf_tracker.evaluation.report.columns import SUCCESS
+from vehicle_pf_tracker.evaluation.report.columns import SUCCESS, number_text
 from vehicle_pf_tracker.evaluation.report.page_tables import Header, PageTable, Row, TableCell
 from vehicle_pf_tracker.evaluation.results import METRICS
 
@@ -189,9 +188,7 @@ def _mean_of_means(found: Documents, value: Callable[[Document], float | None]) 
 
 
 def _cell(value: float | None, decimals: int, sign: str = "") -> TableCell:
-    text = (
-        numbers.number(value, decimals) if not sign or value is None else f"{value:+.{decimals}f}"
-    )
+    text = number_text(value, decimals) if not sign or value is None else f"{value:+.{decimals}f}"
     return TableCell(text, value)
 
 

@@ -22,12 +22,12 @@ from vehicle_pf_tracker.evaluation.curves import (
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     Cell,
     EvaluationFolder,
+    Source,
     SystemEntry,
 )
 from vehicle_pf_tracker.evaluation.failures import first_failure
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
-from vehicle_pf_tracker.evaluation.source import Source
 
 
 @dataclass(frozen=True, slots=True)

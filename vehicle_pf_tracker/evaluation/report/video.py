@@ -11,11 +11,11 @@ import numpy as np
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.output_files import make_folder, replacing
 from vehicle_pf_tracker.evaluation.report.filmstrip import numbered_frames
 from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, colour_of, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun, typical
-from vehicle_pf_tracker.evaluation.source import Source
 
 FOLDER = "videos"
 WIDTH = 640

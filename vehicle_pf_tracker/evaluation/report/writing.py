@@ -1,20 +1,190 @@
-"""The report of an evaluation: everything that is made from its folder alone."""
+"""The tables of a report as files: for documents, for spreadsheets, for papers and for programs."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import csv
+import io
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.output_files import write_json, write_text
-from vehicle_pf_tracker.evaluation.report import summary_files
-from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregate
-from vehicle_pf_tracker.evaluation.report.estimate_recordings import write_estimate_recordings
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, Summaries, aggregate
+from vehicle_pf_tracker.evaluation.report.columns import (
+    COLUMNS,
+    NO_VALUE,
+    PRECISION,
+    RANKED,
+    RECOVERED,
+    RMSE,
+    STEP,
+    SUCCESS,
+    interval_text,
+    mean_and_spread_text,
+    mean_text,
+)
+from vehicle_pf_tracker.evaluation.report.exports import (
+    write_estimate_recordings,
+    write_trajectories,
+)
+from vehicle_pf_tracker.evaluation.report.findings import findings, power
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
-from vehicle_pf_tracker.evaluation.report.trajectories import write_trajectories
 from vehicle_pf_tracker.evaluation.report.video import write_videos
+from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
+from vehicle_pf_tracker.evaluation.tables import markdown
+
+ALL_RECORDINGS = "(all)"
+"""Stands for the name of a recording where values are means over all of them."""
+_PAPER = (SUCCESS, PRECISION, RMSE, RECOVERED, STEP)
+_LATEX = str.maketrans(
+    {c: f"\\{c}" for c in "&%$#_{}"} | {"~": r"\textasciitilde{}", "\\": r"\textbackslash{}"}
+)
+
+
+def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
+    """Return the findings, the means, the ranks and each recording as Markdown."""
+    parts = [f"# Evaluation {evaluation.folder.path.resolve().name}\n"]
+    parts.append("".join(f"- {line}\n" for line in findings(evaluation, aggregates)))
+    parts.append("## Means over recordings\n\n" + _metrics(aggregates.overall, spread=False))
+    parts.append("## Ranks\n\n" + _ranks(aggregates))
+    if power(aggregates):
+        parts.append(power(aggregates) + "\n")
+    for recording in evaluation.recordings:
+        table = {
+            label: found
+            for label in aggregates.order
+            if (found := aggregates.by_recording.get((recording.name, label))) is not None
+        }
+        parts.append(f"## {recording.name}\n\n" + _metrics(table, spread=True))
+    if evaluation.failed:
+        cells = [[_cell_text(c.system), c.recording, str(c.seed), _cell_text(c.reason)]
+                 for c in evaluation.failed]  # fmt: skip
+        header = ["system", "recording", "seed", "reason"]
+        parts.append("## Failed cells\n\n" + markdown(header, cells))
+    return "\n".join(parts)
+
+
+def summary_csv(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
+    """Return every mean with its spread and interval, a line each, with every digit."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    header = ("recording", "system", "metric", "unit", "count", "mean", "spread", "low", "high")
+    writer.writerow(header)
+    for recording, system, summaries in _all(evaluation, aggregates):
+        for column in COLUMNS:
+            found = summaries.get(column.key)
+            if found is not None:
+                values = (found.count, found.mean, found.spread, found.low, found.high)
+                writer.writerow([recording, system, column.key, column.unit, *values])
+    return text.getvalue()
+
+
+def summary_tex(aggregates: Aggregates) -> str:
+    """Return the main means with their spreads as a LaTeX table, for the package booktabs."""
+    lines = [
+        "% Means over recordings, with the 95 % interval of the first metric.",
+        rf"\begin{{tabular}}{{l{'r' * (len(_PAPER) + 1)}}}",
+        r"\toprule",
+        " & ".join(["system", SUCCESS.title, "interval",
+                    *(column.title.translate(_LATEX) for column in _PAPER[1:])]) + r" \\",
+        r"\midrule",
+    ]  # fmt: skip
+    for label, summaries in aggregates.overall.items():
+        main = summaries.get(SUCCESS.key)
+        within = interval_text(main, SUCCESS).replace(" to ", "--") or "--"
+        cells = [label.translate(_LATEX), mean_text(main, SUCCESS), within]
+        cells += [mean_text(summaries.get(column.key), column) for column in _PAPER[1:]]
+        lines.append(" & ".join(cells).replace(NO_VALUE, "--") + r" \\")
+    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}"]) + "\n"
+
+
+def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Any]:
+    """Return everything as plain values."""
+    return {
+        "format": 1,
+        "metrics": {
+            column.key: {
+                "label": column.label,
+                "unit": column.unit,
+                "higher_is_better": column.higher_is_better,
+                "about": column.help,
+            }
+            for column in COLUMNS
+        },
+        "order": list(aggregates.order),
+        "overall": {label: _plain(found) for label, found in aggregates.overall.items()},
+        "recordings": {
+            entry.name: {
+                label: _plain(found)
+                for (name, label), found in aggregates.by_recording.items()
+                if name == entry.name
+            }
+            for entry in evaluation.recordings
+        },
+        "rankings": {key: asdict(ranking) for key, ranking in aggregates.rankings.items()},
+        "pairs": {
+            RANKED[0].key: [
+                {**asdict(test), "significant": test.significant} for test in aggregates.pairs
+            ]
+        },
+        "findings": findings(evaluation, aggregates),
+        "recoveries": {label: list(found) for label, found in aggregates.recoveries.items()},
+        "failed": [asdict(cell) for cell in evaluation.failed],
+    }
+
+
+def _all(
+    evaluation: ScoredEvaluation, aggregates: Aggregates
+) -> Iterator[tuple[str, str, Summaries]]:
+    for label, summaries in aggregates.overall.items():
+        yield ALL_RECORDINGS, label, summaries
+    for entry in evaluation.recordings:
+        for (name, label), summaries in aggregates.by_recording.items():
+            if name == entry.name:
+                yield name, label, summaries
+
+
+def _metrics(table: Mapping[str, Summaries], *, spread: bool) -> str:
+    kept = [column for column in COLUMNS if any(row.get(column.key) for row in table.values())]
+    show = mean_and_spread_text if spread else mean_text
+    rows = (
+        [_cell_text(label), *(show(summaries.get(column.key), column) for column in kept)]
+        for label, summaries in table.items()
+    )
+    return markdown(["system", *(column.title for column in kept)], rows)
+
+
+def _ranks(aggregates: Aggregates) -> str:
+    ranked = [column for column in RANKED if column.key in aggregates.rankings]
+    places = {
+        column.key: {rank.system: rank for rank in aggregates.rankings[column.key].ranks}
+        for column in ranked
+    }
+    rows = []
+    for label in aggregates.order:
+        row = [_cell_text(label)]
+        for column in ranked:
+            rank = places[column.key].get(label)
+            tie = " =" if rank and rank.tied else ""
+            row.append(f"{rank.place}{tie} ({rank.mean_rank:.2f})" if rank else NO_VALUE)
+        rows.append(row)
+    header = ["system", *(f"{column.label}: place (mean rank)" for column in ranked)]
+    return markdown(header, rows)
+
+
+def _plain(summaries: Summaries) -> dict[str, dict[str, Any] | None]:
+    return {key: _numbers(found) for key, found in summaries.items()}
+
+
+def _numbers(found: Summary | None) -> dict[str, Any] | None:
+    return None if found is None else asdict(found)
+
+
+def _cell_text(text: str) -> str:
+    return text.replace("|", "\\|")
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,11 +251,11 @@ def _write_summaries(
     folder: Path, evaluation: ScoredEvaluation, aggregates: Aggregates
 ) -> list[Path]:
     texts = {
-        "summary.md": summary_files.summary_markdown(evaluation, aggregates),
-        "summary.csv": summary_files.summary_csv(evaluation, aggregates),
-        "summary.tex": summary_files.summary_tex(aggregates),
+        "summary.md": summary_markdown(evaluation, aggregates),
+        "summary.csv": summary_csv(evaluation, aggregates),
+        "summary.tex": summary_tex(aggregates),
     }
     for name, text in texts.items():
         write_text(folder / name, text)
-    write_json(folder / "summary.json", summary_files.summary_json(evaluation, aggregates))
+    write_json(folder / "summary.json", summary_json(evaluation, aggregates))
     return [folder / name for name in (*texts, "summary.json")]

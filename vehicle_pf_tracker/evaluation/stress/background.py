@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.evaluation.source import Source
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.stress.footage import StressFootage, open_footage
 
 Matrix = npt.NDArray[np.float64]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.grid.starts import USUAL, Start
+from vehicle_pf_tracker.evaluation.grid.cells import USUAL, Start
 from vehicle_pf_tracker.evaluation.stress.changes import Change
 from vehicle_pf_tracker.evaluation.stress.footage import StressSource, open_footage
 from vehicle_pf_tracker.recordings.footage import stamp_of

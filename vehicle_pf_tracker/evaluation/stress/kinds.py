@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any
 
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts, start_frames
+from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts, start_frames
 from vehicle_pf_tracker.evaluation.stress import changes
 from vehicle_pf_tracker.evaluation.stress.cases import Case
 from vehicle_pf_tracker.evaluation.stress.changes import Change

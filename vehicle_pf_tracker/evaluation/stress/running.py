@@ -15,8 +15,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 from vehicle_pf_tracker.evaluation.identity import result_key, variant_modules
-from vehicle_pf_tracker.evaluation.processes import run_in_processes
-from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
+from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress, run_in_processes
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.stress.cases import Case
 from vehicle_pf_tracker.evaluation.stress.scoring import Score, score_case

@@ -1,29 +1,66 @@
-"""The search: trials that Optuna proposes, run in batches on all recordings and seeds.
-
-The sampler is seeded and every run is kept under the key of all that decides it, so that the same
-search goes through the same trials again. What was interrupted goes on without a database: trials
-that were run before are told at once. More trials than before continue where the last one ended.
-Results do not depend on the number of workers, since a batch has the same size for any.
-"""
+"""What a search makes as good as it can."""
 
 from __future__ import annotations
 
+import csv
+import io
+import statistics
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.running import Runner
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.identity import scoring_digest
-from vehicle_pf_tracker.evaluation.progress import OnProgress, Progress
+from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.evaluation.source import Source
-from vehicle_pf_tracker.evaluation.tuning.objective import Objective, mean_of_means
 from vehicle_pf_tracker.evaluation.tuning.search_space import Dimension
 from vehicle_pf_tracker.parameters.table import Value
+
+
+@dataclass(frozen=True, slots=True)
+class Objective:
+    """A metric of `evaluation.metrics`, and which way is up."""
+
+    metric: str
+    told: str
+    maximise: bool = True
+
+    def better(self, one: float, other: float) -> bool:
+        """Whether `one` is better than `other`."""
+        return one > other if self.maximise else one < other
+
+
+OBJECTIVES: Mapping[str, Objective] = MappingProxyType(
+    {
+        objective.metric: objective
+        for objective in (
+            Objective("success_auc", "area under the success curve"),
+            Objective("precision_auc", "area under the precision curve"),
+            Objective("on_target", "share of visible frames with an error below half the diagonal"),
+            Objective("p_error_lt_15px", "share of frames with an error below 15 px"),
+            Objective("rmse_px", "RMSE in px", maximise=False),
+        )
+    }
+)
+"""By the name of the metric."""
+
+
+def mean_of_means(runs: Mapping[str, Sequence[float | None]]) -> float | None:
+    """Return the mean over recordings of the mean over their runs; None if a run has no value."""
+    means = []
+    for values in runs.values():
+        known = [value for value in values if value is not None]
+        if len(known) < len(values) or not known:
+            return None
+        means.append(statistics.fmean(known))
+    return statistics.fmean(means) if means else None
+
 
 if TYPE_CHECKING:
     import optuna
@@ -239,3 +276,15 @@ def _optuna() -> Any:
         ) from None
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     return optuna
+
+
+def to_csv(trials: Sequence[Trial], objective: Objective) -> str:
+    """Write a line for each trial, in order; the first is what the search began with."""
+    text = io.StringIO()
+    names = list(trials[0].values) if trials else []
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["trial", objective.metric, *names])
+    for trial in trials:
+        score = "" if trial.score is None else repr(trial.score)
+        writer.writerow([trial.number, score, *(trial.values[name] for name in names)])
+    return text.getvalue()

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.child_process import wait_or_kill
+from vehicle_pf_tracker.evaluation.processes import wait_or_kill
 from vehicle_pf_tracker.parameters.table import Value
 
 _SCRIPT = "import sys; from vehicle_pf_tracker.ros.executables import main; sys.exit(main({!r}))"

@@ -2,8 +2,8 @@ import signal
 import subprocess
 import sys
 
-from vehicle_pf_tracker.evaluation import child_process
-from vehicle_pf_tracker.evaluation.child_process import wait_or_kill
+from vehicle_pf_tracker.evaluation import processes
+from vehicle_pf_tracker.evaluation.processes import wait_or_kill
 
 
 def test_one_that_ends_gives_its_status():
@@ -12,7 +12,7 @@ def test_one_that_ends_gives_its_status():
 
 
 def test_one_that_will_not_end_is_killed(monkeypatch):
-    monkeypatch.setattr(child_process, "_PATIENCE", 0.1)
+    monkeypatch.setattr(processes, "_PATIENCE", 0.1)
     deaf = (
         "import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN);"
         "print('deaf', flush=True); signal.pause()"

@@ -1,7 +1,7 @@
 import pytest
 
-from vehicle_pf_tracker.evaluation import source_digest as module
-from vehicle_pf_tracker.evaluation.source_digest import source_digest
+from vehicle_pf_tracker.evaluation import identity
+from vehicle_pf_tracker.evaluation.identity import source_digest
 
 FILES = {
     "start.py": "from made.middle import thing\nimport numpy\n",
@@ -22,7 +22,7 @@ def root(tmp_path):
 
 
 def digest(root, *modules):
-    module._imported.cache_clear()
+    identity._imported.cache_clear()
     return source_digest(modules, root, "made")
 
 
@@ -57,7 +57,7 @@ def test_what_is_not_imported_does_not_count(root):
 
 
 def test_a_table_and_what_it_lists_do_not_count(root, monkeypatch):
-    monkeypatch.setattr(module, "_TABLES", frozenset({"made.table"}))
+    monkeypatch.setattr(identity, "_TABLES", frozenset({"made.table"}))
     (root / "made" / "sub" / "late.py").write_text("import made.table\n")
     before = digest(root, "made.start")
     for name in ("other.py", "table.py"):
@@ -70,6 +70,6 @@ def test_one_variant_does_not_decide_another():
         f"vehicle_pf_tracker.trackers.{name}" for name in ("papers.apf", "papers.ms", "session")
     ]
     assert len({source_digest([name]) for name in names}) == 3
-    ours = frozenset({module._PACKAGE})
-    found = module._imported("vehicle_pf_tracker.trackers.session", module._ROOT, ours)
+    ours = frozenset({identity._PACKAGE})
+    found = identity._imported("vehicle_pf_tracker.trackers.session", identity._ROOT, ours)
     assert "vehicle_pf_tracker.trackers.registry" in found

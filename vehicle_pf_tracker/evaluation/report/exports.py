@@ -1,0 +1,107 @@
+"""The evaluation's runs for other tools: TUM trajectories for evo, recordings for Foxglove."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation.estimates import EstimateRow
+from vehicle_pf_tracker.evaluation.estimates_recording import write_with_estimates
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, safe_name
+from vehicle_pf_tracker.evaluation.grid.sources import at_hand
+from vehicle_pf_tracker.evaluation.output_files import make_folder, write_text
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
+from vehicle_pf_tracker.recordings.reader import Recording
+
+TRAJECTORIES = "trajectories"
+
+
+def write_trajectories(evaluation: ScoredEvaluation) -> list[Path]:
+    """Write the truth of each recording and each run's scored estimates where there is truth.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    written = []
+    for entry in evaluation.recordings:
+        truths = evaluation.truths[entry.name]
+        if not truths:
+            continue
+        folder = make_folder(_folder(evaluation.folder, entry.name))
+        written.append(_write(folder / "truth.tum", _true_points(truths)))
+        for run in evaluation.of(entry.name):
+            name = f"{safe_name(run.system)}_seed-{run.seed}.tum"
+            written.append(_write(folder / name, _points(run, truths)))
+    return written
+
+
+def _folder(evaluation: EvaluationFolder, recording: str) -> Path:
+    return evaluation.path / TRAJECTORIES / recording
+
+
+Point = tuple[int, float, float]
+"""Stamp in ns, x and y in px."""
+
+
+def _true_points(truths: Mapping[int, Truth]) -> list[Point]:
+    return [(truth.stamp_ns, *truth.box.centre) for truth in truths.values()]
+
+
+def _points(run: ScoredRun, truths: Mapping[int, Truth]) -> list[Point]:
+    return [
+        (truths[number].stamp_ns, *box.centre)
+        for number, box in enumerate(run.boxes, start=1)
+        if box is not None and number in truths
+    ]
+
+
+def _write(path: Path, points: Iterable[Point]) -> Path:
+    lines = (
+        f"{stamp // 10**9}.{stamp % 10**9:09d} {x!r} {y!r} 0 0 0 0 1\n" for stamp, x, y in points
+    )
+    write_text(path, "".join(lines))
+    return path
+
+
+ESTIMATE_RECORDINGS = "estimates"
+
+
+def write_estimate_recordings(
+    evaluation: ScoredEvaluation, tell: Callable[[str], object]
+) -> list[Path]:
+    """Write a recording for each of the evaluation's, and return their folders.
+
+    The estimates are on ``/<system>/seed_<n>/position``, ``box`` and ``mode``. `tell` takes a
+    sentence for each recording that could not be made.
+    """
+    written = []
+    for entry in evaluation.recordings:
+        path = evaluation.folder.path / ESTIMATE_RECORDINGS / entry.name
+        try:
+            recording = Recording(at_hand(entry.path), entry.topic)
+            runs = _rows(evaluation, entry.name)
+            write_with_estimates(path, recording, runs, overwrite=True)
+            written.append(path)
+        except InputError as error:
+            tell(f"there is no recording of {entry.name} with estimates: {error}")
+    return written
+
+
+def topic_name(system: str, seed: int) -> str:
+    """Return the namespace of a run: letters, digits and underscores, no digit first."""
+    name = "".join(c if c.isascii() and c.isalnum() else "_" for c in system)
+    name = f"_{name}" if name[:1].isdigit() else name
+    return f"{name}/seed_{seed}"
+
+
+def _rows(evaluation: ScoredEvaluation, recording: str) -> dict[str, tuple[EstimateRow, ...]]:
+    rows = {}
+    for run in evaluation.of(recording):
+        cell = evaluation.folder.cell(recording, run.system, run.seed)
+        if cell.rows is not None:
+            rows[topic_name(run.system, run.seed)] = cell.rows
+    return rows
