@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -45,6 +46,10 @@ MESSAGES = {
 }  # fmt: skip
 ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", *MESSAGES}
 ON_A_ROBOT = {"rclpy", *MESSAGES, "numpy", "cv2", "yaml", "numba"}
+
+
+INTERNALS = "ros.rclpy_internals"
+"""The one module that may name private parts of rclpy."""
 
 
 class Import(NamedTuple):
@@ -164,6 +169,46 @@ def missing_on_a_robot(modules: dict[str, Module]) -> list[str]:
     ]
 
 
+def private_parts_of_rclpy(modules: dict[str, Module]) -> list[str]:
+    """Private names that a module with ROS in it does not define itself, and private imports."""
+    rows = []
+    for name, module in modules.items():
+        heads = {found.name.partition(".")[0] for found in module.imports}
+        if name == INTERNALS or ROS.isdisjoint(heads):
+            continue
+        own = names_defined(module.tree)
+        rows += [
+            f"{module.at(node.lineno)} uses {node.attr}"
+            for node in ast.walk(module.tree)
+            if isinstance(node, ast.Attribute) and is_private(node.attr) and node.attr not in own
+        ]
+        rows += [
+            f"{module.at(found.line)} imports {found.name}"
+            for found in module.imports
+            if found.name.startswith(("rclpy.impl", "rclpy._"))
+        ]
+    return rows
+
+
+def names_defined(tree: ast.Module) -> set[str]:
+    """Names of the module's functions and classes, and of what its methods assign to ``self``."""
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            names.add(node.name)
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            if isinstance(node.value, ast.Name) and node.value.id == "self":
+                names.add(node.attr)
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            names |= {target.id for target in targets if isinstance(target, ast.Name)}
+    return names
+
+
+def is_private(name: str) -> bool:
+    return name.startswith("_") and not name.startswith("__")
+
+
 def too_long(modules: dict[str, Module]) -> list[str]:
     rows = []
     for module in modules.values():
@@ -205,6 +250,27 @@ def test_node_and_replay_do_not_import_each_other(modules):
 
 def test_nodes_import_only_what_a_robot_has(modules):
     assert missing_on_a_robot(modules) == []
+
+
+def test_private_parts_of_rclpy_are_named_in_one_module(modules):
+    assert private_parts_of_rclpy(modules) == []
+    assert private_parts_of_rclpy({"other": modules[INTERNALS]._replace(name="other")})
+
+
+def test_no_class_of_ours_hides_a_private_name_of_rclpys_classes(modules):
+    executors = pytest.importorskip("rclpy.executors")
+    lifecycle = pytest.importorskip("rclpy.lifecycle")
+    theirs = {
+        node.attr
+        for kind in (*lifecycle.LifecycleNode.__mro__, executors.SingleThreadedExecutor)
+        if kind.__module__.startswith("rclpy")
+        for node in ast.walk(ast.parse(Path(inspect.getfile(kind)).read_text(encoding="utf-8")))
+        if isinstance(node, ast.Attribute) and is_private(node.attr)
+    }
+    assert "_parameter_overrides" in theirs
+    heirs = ("ros.node.managed_node", "ros.node.tracker_node", "ros.node.image_executor")
+    for name in heirs:
+        assert not names_defined(modules[name].tree) & theirs, name
 
 
 def test_files_and_functions_stay_short(modules):
@@ -286,6 +352,20 @@ def test_checker_follows_the_node_to_what_it_loads(tmp_path):
         evaluation__tables="import rich",
     )
     assert missing_on_a_robot(modules) == ["plots.py:2 (trackers.plots) imports matplotlib.pyplot"]
+
+
+@pytest.mark.parametrize(
+    ("line", "count"),
+    [
+        ("from rclpy.node import Node\ndef f(node):\n    return node._parameters", 1),
+        ("from rclpy.impl.implementation_singleton import rclpy_implementation", 1),
+        ("import rclpy\nclass N(rclpy.node.Node):\n def f(self):\n  self._state_machine.x()", 1),
+        ("import rclpy\nclass N:\n def f(self):\n  self._own = 1\n  self._own += self.f()", 0),
+        ("from .own import thing\ndef f():\n    return thing._kept", 0),
+    ],
+)
+def test_checker_sees_private_parts_of_rclpy(tmp_path, line, count):
+    assert len(private_parts_of_rclpy(made_up(tmp_path, ros__node=line))) == count
 
 
 def test_checker_measures_files_and_functions(tmp_path):

@@ -26,7 +26,6 @@ from pathlib import Path
 import numpy as np
 import rclpy
 from faulty_messages import FIRST_NS, PERIOD_NS, TARGET, Drive
-from rclpy.impl.implementation_singleton import rclpy_implementation
 
 from vehicle_pf_tracker.cli.main import main as command
 from vehicle_pf_tracker.cli.params import default_yaml
@@ -35,6 +34,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
+from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 VARIANT = find_variant("pf")
@@ -122,7 +122,7 @@ def _in_node(path: Path) -> str:
         wrong = {n: o.value for n, o in asked.items() if n in given and given[n] != o.value}
         if wrong:
             raise WrongError(f"the node has other values than {wrong}")
-    except (InputError, rclpy_implementation.RCLError, rclpy_implementation.UnknownROSArgsError):
+    except (InputError, RCLError, UnknownROSArgsError):
         return "refused"
     else:
         return "taken"

@@ -32,7 +32,9 @@ def test_segment_holds_four_images_if_there_is_room(image_mb, free_mb, size_mb):
 def test_profile_is_named_while_it_lasts_and_then_gone():
     environment = {}
     with image_transport(6 * MB, FAST_DDS, environment) as notices:
+        assert environment.keys() == set(transport.PROFILE_VARIABLES)
         path = Path(environment["FASTRTPS_DEFAULT_PROFILES_FILE"])
+        assert environment["FASTDDS_DEFAULT_PROFILES_FILE"] == str(path)
         root = ElementTree.parse(path).getroot()
     assert notices == []
     assert environment == {}

@@ -14,12 +14,10 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import contextmanager
 from pathlib import Path
 
-PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
-USER_VARIABLES = (
-    PROFILE_VARIABLE,
-    "FASTDDS_DEFAULT_PROFILES_FILE",
-    "FASTDDS_BUILTIN_TRANSPORTS",
-)
+PROFILE_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
+"""Where Fast DDS 2 (Jazzy) and Fast DDS 3 (Kilted) look for a profile."""
+
+USER_VARIABLES = (*PROFILE_VARIABLES, "FASTDDS_BUILTIN_TRANSPORTS")
 """Where a user chooses transports; nothing is changed if one of them is set."""
 
 SHARED_MEMORY = Path("/dev/shm")  # noqa: S108 (the system's place for it)
@@ -114,8 +112,9 @@ def image_transport(
     with tempfile.TemporaryDirectory(prefix="vehicle_pf_tracker_") as folder:
         path = Path(folder, "transport.xml")
         path.write_text(profile(size), encoding="utf-8")
-        environment[PROFILE_VARIABLE] = str(path)
+        environment.update(dict.fromkeys(PROFILE_VARIABLES, str(path)))
         try:
             yield []
         finally:
-            environment.pop(PROFILE_VARIABLE, None)
+            for name in PROFILE_VARIABLES:
+                environment.pop(name, None)

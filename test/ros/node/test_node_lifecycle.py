@@ -16,6 +16,7 @@ from sensor_msgs.msg import Image
 from tracker_rig import Rig, TrackerNode, header, on_target, overrides, road, values_of
 
 from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.ros.rclpy_internals import state_label
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 pytestmark = pytest.mark.ros
@@ -160,7 +161,7 @@ def test_hundreds_of_transitions_at_any_moment(bench, images):
             "active": ["deactivate"],
             "inactive": ["activate", "cleanup"],
             "unconfigured": ["configure"],
-        }[rig.node._state_machine.current_state[1]]
+        }[state_label(rig.node)]
         request.transition.label = draw.choice([*possible, "nonsense"])
         future = client.call_async(request)
         if images:
@@ -169,8 +170,8 @@ def test_hundreds_of_transitions_at_any_moment(bench, images):
         assert future.result().success == (request.transition.label in possible)
         done += future.result().success
     assert done > 300
-    while rig.node._state_machine.current_state[1] != "active":
-        state = rig.node._state_machine.current_state[1]
+    while state_label(rig.node) != "active":
+        state = state_label(rig.node)
         (rig.node.trigger_configure if state == "unconfigured" else rig.node.trigger_activate)()
     bench.wait_until_matched(rig.camera)
     bench.wait_for(lambda: rig.node._outputs._mode.get_subscription_count() == 1)

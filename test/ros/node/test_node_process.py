@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
@@ -171,7 +172,7 @@ def test_the_node_loads_neither_recordings_nor_evaluation():
 def segments(process) -> list[int]:
     """Sizes in bytes of the shared-memory segments of Fast DDS that a process has mapped."""
     maps = Path("/proc", str(process.popen.pid), "maps").read_text().splitlines()
-    spans = [line.split()[0].split("-") for line in maps if "/fastrtps_" in line]
+    spans = [line.split()[0].split("-") for line in maps if re.search("/fast(rtps|dds)_", line)]
     return [int(end, 16) - int(begin, 16) for begin, end in spans]
 
 

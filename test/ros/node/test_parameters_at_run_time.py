@@ -136,7 +136,7 @@ def dump(bench, name: str) -> str:
 
 
 def values(node: TrackerNode) -> dict[str, object]:
-    return {name: one.value for name, one in node._parameters.items()}
+    return {name: one.value for name, one in node.get_parameters_by_prefix("").items()}
 
 
 @pytest.mark.parametrize("variant", VARIANTS)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.qos import (
     QoSCompatibility,
@@ -20,6 +19,7 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.node.serialized_image import read_serialized
+from vehicle_pf_tracker.ros.rclpy_internals import RCLError
 
 ImageCallback = Callable[[Any, Mapping[str, Any]], None]
 
@@ -66,7 +66,7 @@ class ImageInput:
                 qos_overriding_options=QoSOverridingOptions.with_default_policies(),
                 raw=self._kind is Image,
             )
-        except rclpy_implementation.RCLError as error:
+        except RCLError as error:
             raise InputError(f"cannot subscribe to {self.topic}: {error}") from None
         except (
             InvalidParameterTypeException,

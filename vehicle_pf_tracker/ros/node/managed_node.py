@@ -13,10 +13,15 @@ from functools import partial
 from typing import Any
 
 from lifecycle_msgs.srv import ChangeState
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.ros.rclpy_internals import (
+    RCLError,
+    change_state_service,
+    destroy_state_machine,
+    state_label,
+)
 
 
 class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
@@ -29,8 +34,9 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
     def __init__(self, name: str, **options: Any) -> None:
         super().__init__(name, **options)
         self._failure = ""
-        self._change_state = self._service_change_state.callback
-        self._service_change_state.callback = self._answer_change_state
+        service = change_state_service(self)
+        if service is not None:
+            service.callback = partial(self._answer_change_state, service.callback)
 
     @abstractmethod
     def configure(self) -> None:
@@ -63,7 +69,7 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
     def destroy_node(self) -> None:
         """Destroy the node and its state machine, without which it would stay in the graph."""
         super().destroy_node()
-        self._state_machine.destroy_when_not_in_use()
+        destroy_state_machine(self)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """See `configure`."""
@@ -103,14 +109,17 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
         return TransitionCallbackReturn.SUCCESS
 
     def _answer_change_state(
-        self, request: ChangeState.Request, response: ChangeState.Response
+        self,
+        answer: Callable[[ChangeState.Request, ChangeState.Response], ChangeState.Response],
+        request: ChangeState.Request,
+        response: ChangeState.Response,
     ) -> ChangeState.Response:
-        label, state_id = self._state_machine.current_state[1], request.transition.id
+        label, state_id = state_label(self), request.transition.id
         wanted = request.transition.label or str(state_id)
         self._failure = "there is no such transition"
         try:
-            response = self._change_state(request, response)
-        except rclpy_implementation.RCLError:
+            response = answer(request, response)
+        except RCLError:
             response.success = False
         if not response.success:
             self.get_logger().error(f"transition {wanted} from {label} failed: {self._failure}")

@@ -22,6 +22,7 @@ from rclpy.parameter import Parameter
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec, unknown_name
+from vehicle_pf_tracker.ros.rclpy_internals import parameter_overrides
 
 QOS_PREFIX = "qos_overrides."
 _INT64 = 2**63
@@ -75,7 +76,7 @@ class ParameterTable:
     ) -> None:
         self._specs = defaults.specs()
         self._changed = changed
-        overrides = {name: override.value for name, override in node._parameter_overrides.items()}
+        overrides = parameter_overrides(node, tuple(self._specs))
         self.configuration = defaults.updated(overrides)
         for name, value in self.configuration.to_mapping().items():
             # The override is in the value already, converted; rclpy refuses 6 where 6.0 is meant.
@@ -121,9 +122,9 @@ def unknown_overrides(node: Node, *, qos: bool) -> list[str]:
         Whether to look at the names of QoS overrides, which are declared with their subscription,
         or at all others.
     """
-    known = list(node._parameters)
+    known = list(node.get_parameters_by_prefix(""))
     return [
         unknown_name(name, known)
-        for name in node._parameter_overrides
+        for name in parameter_overrides(node, ())
         if name not in known and name.startswith(QOS_PREFIX) is qos
     ]

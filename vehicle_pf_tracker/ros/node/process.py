@@ -9,15 +9,15 @@ from collections.abc import Sequence
 from types import FrameType
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
-from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.node.allocator import keep_image_memory
-from vehicle_pf_tracker.ros.node.image_executor import ImageExecutor
+from vehicle_pf_tracker.ros.node.image_executor import node_executor
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
+from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
 from vehicle_pf_tracker.ros.transport import image_transport
 from vehicle_pf_tracker.trackers.registry import Variant
 
@@ -67,14 +67,14 @@ def run_node(variant: Variant, arguments: Sequence[str]) -> int:
         return _usage(name, others) if others else _serve(variant)
     except InputError as error:
         return _fail(name, str(error))
-    except (rclpy_implementation.RCLError, rclpy_implementation.UnknownROSArgsError) as error:
+    except (RCLError, UnknownROSArgsError) as error:
         return _fail(name, _first_sentence(error))
     finally:
         rclpy.try_shutdown()
 
 
 def _serve(variant: Variant) -> int:
-    executor = ImageExecutor()
+    executor = node_executor()
     node = None
     try:
         # For ~/overlay; whether the frames come through is decided by the camera's segment.
@@ -92,12 +92,12 @@ def _serve(variant: Variant) -> int:
     return 0
 
 
-def _spin(executor: ImageExecutor, node: Node) -> None:
+def _spin(executor: Executor, node: Node) -> None:
     while rclpy.ok():
         _spin_once(executor, node)
 
 
-def _spin_once(executor: ImageExecutor, node: Node) -> None:
+def _spin_once(executor: Executor, node: Node) -> None:
     try:
         executor.spin_once()
     except ExternalShutdownException:
@@ -126,7 +126,7 @@ def _fail(name: str, sentence: str) -> int:
 
 
 def _first_sentence(error: Exception) -> str:
-    if isinstance(error, rclpy_implementation.UnknownROSArgsError):
+    if isinstance(error, UnknownROSArgsError):
         return f"unknown ROS arguments: {error}"
     text = str(error).replace("failed to initialize rcl: ", "")
     return text.partition(", at /")[0]

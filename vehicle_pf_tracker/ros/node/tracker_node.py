@@ -21,6 +21,7 @@ from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, unknown_overrides
 from vehicle_pf_tracker.ros.node.stream import Stream
 from vehicle_pf_tracker.ros.node.target_messages import box_of_point, box_of_polygon, box_of_region
+from vehicle_pf_tracker.ros.rclpy_internals import missing
 from vehicle_pf_tracker.trackers.registry import Variant
 
 
@@ -50,6 +51,7 @@ class TrackerNode(ManagedNode):
             defaults = Configuration.of(variant)
             self._table = ParameterTable(self, defaults, self._reconfigure)
             self._diagnostics = Diagnostics(self)
+            self._warn_of_release()
             self._warn_of(unknown_overrides(self, qos=False))
             if self._table.configuration.node.autostart:
                 self.start()
@@ -130,6 +132,10 @@ class TrackerNode(ManagedNode):
         if self._stream is not None:
             self._stream.reconfigure(configuration)
             self._diagnostics.facts.update(self._stream.facts)
+
+    def _warn_of_release(self) -> None:
+        for loss in missing(self):
+            self.get_logger().warning(f"this release of rclpy is not one of those tried: {loss}")
 
     def _warn_of(self, sentences: list[str]) -> None:
         for sentence in sentences:
