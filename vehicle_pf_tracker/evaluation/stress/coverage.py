@@ -33,7 +33,7 @@ def visible_share(corners: Floats, box: Box, size: tuple[int, int]) -> float:
     weight = down[:, np.newaxis] * across
     painted = coverage(corners, (left, top, right - left, bottom - top))
     total = float(weight.sum())
-    return 1.0 - float((weight * painted).sum()) / total if total > 0 else 1.0
+    return float((weight * (1.0 - painted)).sum()) / total if total > 0 else 1.0
 
 
 def coverage(corners: Floats, region: tuple[int, int, int, int]) -> Floats:
