@@ -162,30 +162,36 @@ def run_battery(
     InputError
         If the store cannot be written, or a process is ended from outside.
     """
+    tasks = _tasks(cases, systems, seeds)
+    kept = ResultStore(store) if store is not None else None
+    scores = {key: kept[key] for _, key in tasks if kept is not None and key in kept}
+    # Sequence by sequence, so that a recording is decoded once.
+    missing = sorted(
+        (pair for pair in tasks if pair[1] not in scores), key=lambda pair: pair[0].case.sequence
+    )
+    for ended, running in _run(missing, workers):
+        if ended is not None:
+            (task, key), scores[key] = ended
+            if kept is not None:
+                kept.add(key, task.label, scores[key])
+        if on_progress is not None:
+            on_progress(Progress(len(scores), len(tasks), running))
+    return [
+        Result(task.case, task.system.label, task.seed, Score.from_json(scores[key]))
+        for task, key in tasks
+    ]
+
+
+def _tasks(
+    cases: Sequence[Case], systems: Sequence[StressSystem], seeds: Sequence[int]
+) -> list[_Keyed]:
     tasks = [
         _Task(case, system, seed)
         for system in systems
         for case in cases
         for seed in (seeds[:1] if system.is_deterministic else seeds)
     ]
-    keys = [task.key() for task in tasks]
-    kept = ResultStore(store) if store is not None else None
-    scores = {key: kept[key] for key in keys if kept is not None and key in kept}
-    # Sequence by sequence, so that a recording is decoded once.
-    missing = [(task, key) for task, key in zip(tasks, keys, strict=True) if key not in scores]
-    missing.sort(key=lambda pair: pair[0].case.origin.name)
-    for ended, running in _run(missing, workers):
-        if ended is not None:
-            (task, key), score = ended
-            scores[key] = score
-            if kept is not None:
-                kept.add(key, task.label, score)
-        if on_progress is not None:
-            on_progress(Progress(len(scores), len(tasks), running))
-    return [
-        Result(task.case, task.system.label, task.seed, Score.from_json(scores[key]))
-        for task, key in zip(tasks, keys, strict=True)
-    ]
+    return [(task, task.key()) for task in tasks]
 
 
 _Keyed = tuple[_Task, str]

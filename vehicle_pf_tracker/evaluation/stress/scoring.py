@@ -57,8 +57,7 @@ class Score:
     estimates : str
         Digest of all estimates but for their times: equal for bit-identical runs.
     fault : str
-        Why the tracker did not come to the end; then every visible frame without an estimate is a
-        miss. Empty if it did.
+        Why the tracker did not come to the end; then no frame is on target. Empty if it did.
     """
 
     frames: int
@@ -126,31 +125,47 @@ def score_estimates(
     counted = score_frames(rows, [truth for truth in truths if truth is not None], 0.0).counted
     visible = [frame for frame in counted if not frame.hidden]
     hidden = [frame for frame in counted if frame.hidden]
-    clear = [frame for frame in visible if _occlusion(frame) is Occlusion.NONE]
-    judged = score_occlusions(counted)
-    on_target = None if fault else _share([is_on_target(frame) for frame in visible])
-    if fault and visible:
-        on_target = 0.0
     return Score(
         frames=len(counted),
         visible=len(visible),
         hidden=len(hidden),
-        on_target=on_target,
-        mean_iou=statistics.fmean(f.overlap or 0.0 for f in visible) if visible else None,
-        rmse_visible_px=_rms([f.error for f in visible if f.error is not None]),
-        lost=None if on_target is None else on_target < LOST_BELOW,
-        recovered=sum(each.recovered is True for each in judged),
-        judged=sum(each.recovered is not None for each in judged),
-        occlusions=tuple((each.hidden_frames, each.recovered) for each in judged),
-        doubted=_share([frame.row.mode != Mode.TRACKING for frame in visible]),
-        doubted_in_full_view=_share([frame.row.mode != Mode.TRACKING for frame in clear]),
-        claimed_hidden=_share([frame.row.mode == Mode.TRACKING for frame in hidden]),
+        **_accuracy(visible, fault),
+        **_recoveries(counted),
+        **_modes(visible, hidden),
         longest_false_tracking=_longest(map(_is_false_tracking, counted)),
         reliability_visible=Reliability.of(_pairs(counted[1:], hidden=False)),
         reliability_hidden=Reliability.of(_pairs(counted[1:], hidden=True)),
         estimates=_digest(rows),
         fault=fault,
     )
+
+
+def _accuracy(visible: Sequence[FrameScore], fault: str) -> dict[str, Any]:
+    on_target = _share([is_on_target(frame) and not fault for frame in visible])
+    return {
+        "on_target": on_target,
+        "mean_iou": statistics.fmean(f.overlap or 0.0 for f in visible) if visible else None,
+        "rmse_visible_px": _rms([f.error for f in visible if f.error is not None]),
+        "lost": None if on_target is None else on_target < LOST_BELOW,
+    }
+
+
+def _recoveries(counted: Sequence[FrameScore]) -> dict[str, Any]:
+    judged = score_occlusions(counted)
+    return {
+        "recovered": sum(each.recovered is True for each in judged),
+        "judged": sum(each.recovered is not None for each in judged),
+        "occlusions": tuple((each.hidden_frames, each.recovered) for each in judged),
+    }
+
+
+def _modes(visible: Sequence[FrameScore], hidden: Sequence[FrameScore]) -> dict[str, Any]:
+    clear = [frame for frame in visible if _occlusion(frame) is Occlusion.NONE]
+    return {
+        "doubted": _share([frame.row.mode != Mode.TRACKING for frame in visible]),
+        "doubted_in_full_view": _share([frame.row.mode != Mode.TRACKING for frame in clear]),
+        "claimed_hidden": _share([frame.row.mode == Mode.TRACKING for frame in hidden]),
+    }
 
 
 def _row(number: int, stamp_ns: int, estimate: Estimate | EstimateRow) -> EstimateRow:
