@@ -10,19 +10,23 @@ import math
 
 from reproduction.scenes.fixed_scenes import FixedScene, chosen, past
 from vehicle_pf_tracker.core.truth import TOTAL_BELOW
-from vehicle_pf_tracker.scenes.courses import Pace
 from vehicle_pf_tracker.scenes.drive import LANE, RADIUS, Drive, DriveParameters
-from vehicle_pf_tracker.scenes.heavy_vehicles import coach
 from vehicle_pf_tracker.scenes.light import tree_shadows
 from vehicle_pf_tracker.scenes.manoeuvres import turning
 from vehicle_pf_tracker.scenes.models import Model
-from vehicle_pf_tracker.scenes.moving_obstacles import coach_at, van_at
 from vehicle_pf_tracker.scenes.obstacles import tree
+from vehicle_pf_tracker.scenes.occluded_drives import (
+    coach_at,
+    pillar_at,
+    posts_at,
+    trees_at,
+    van_at,
+)
+from vehicle_pf_tracker.scenes.paths import Pace
 from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
-from vehicle_pf_tracker.scenes.standing_obstacles import pillar_at, posts_at, trees_at
-from vehicle_pf_tracker.scenes.vehicles import van
+from vehicle_pf_tracker.scenes.vehicles import coach, van
 
 SHADE_DEPTH = 0.55
 """Share of the light that trees take away."""

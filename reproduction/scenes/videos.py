@@ -10,21 +10,19 @@ from __future__ import annotations
 from reproduction.scenes.fixed_scenes import FixedScene, chosen, past
 from vehicle_pf_tracker.scenes.drive import DriveParameters
 from vehicle_pf_tracker.scenes.manoeuvres import clear, turning
-from vehicle_pf_tracker.scenes.moving_obstacles import (
+from vehicle_pf_tracker.scenes.occluded_drives import (
+    bridge_at,
     coach_at,
     cross,
     dense,
     near_traffic,
-    van_at,
-)
-from vehicle_pf_tracker.scenes.scene import Scene
-from vehicle_pf_tracker.scenes.standing_obstacles import (
-    bridge_at,
     pillar_at,
     posts_at,
     sign_at,
     trees_at,
+    van_at,
 )
+from vehicle_pf_tracker.scenes.scene import Scene
 
 
 def _turn_past_trees(parameters: DriveParameters, seed: int) -> Scene:

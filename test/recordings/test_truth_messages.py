@@ -11,8 +11,12 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings import messages, topics
+from vehicle_pf_tracker.recordings.messages import (
+    TRUTH_TYPES,
+    truth_from_messages,
+    truth_to_messages,
+)
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.truth_messages import TYPES, from_messages, to_messages
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 px = st.floats(-5000, 5000)
@@ -28,7 +32,7 @@ size = st.floats(0.5, 5000)
 )
 def test_truth_survives_its_messages(stamp, corner, extent, occlusion, visible):
     truth = Truth(stamp, Box(*corner, *extent), occlusion, visible)
-    (found,) = from_messages(to_messages(truth).items())
+    (found,) = truth_from_messages(truth_to_messages(truth).items())
     assert (found.stamp_ns, found.occlusion) == (stamp, occlusion)
     assert found.visible_fraction == visible
     assert found.box.centre == pytest.approx(truth.box.centre, abs=1e-9)
@@ -38,24 +42,26 @@ def test_truth_survives_its_messages(stamp, corner, extent, occlusion, visible):
 
 def test_the_box_alone_is_truth_without_occlusion():
     box = messages.polygon_stamped(5, Box(1, 2, 3, 4).corners)
-    (found,) = from_messages([(topics.TRUTH_BOX_TOPIC, box)])
+    (found,) = truth_from_messages([(topics.TRUTH_BOX_TOPIC, box)])
     assert found == Truth(5, Box(1, 2, 3, 4), Occlusion.NONE, None)
 
 
 def test_level_warns_only_while_totally_occluded():
     levels = [
-        to_messages(Truth(0, Box(0, 0, 1, 1), occlusion))[topics.TRUTH_MODE_TOPIC].status[0].level
+        truth_to_messages(Truth(0, Box(0, 0, 1, 1), occlusion))[topics.TRUTH_MODE_TOPIC]
+        .status[0]
+        .level
         for occlusion in Occlusion
     ]
     assert levels == [messages.OK, messages.OK, messages.WARN]
 
 
 def replaced(topic, message):
-    return {**to_messages(truth_of(1)), topic: message}
+    return {**truth_to_messages(truth_of(1)), topic: message}
 
 
 def without_box():
-    found = to_messages(truth_of(1))
+    found = truth_to_messages(truth_of(1))
     del found[topics.TRUTH_BOX_TOPIC]
     return found
 
@@ -94,7 +100,7 @@ def test_broken_truth_is_named(tmp_path, broken, said):
         writer.write_image(stamp_of(0), frame_of(0))
         writer.write_truth(truth_of(0))
         for topic, message in broken.items():
-            writer.write(topic, TYPES[topic], STAMP, message)
+            writer.write(topic, TRUTH_TYPES[topic], STAMP, message)
     with pytest.raises(InputError, match=f"truth of .* is broken: .*{said}"):
         Recording(tmp_path / "bag").truth()
 
@@ -102,10 +108,12 @@ def test_broken_truth_is_named(tmp_path, broken, said):
 def test_the_first_truth_waits_for_topics_that_are_recorded_later(bare_mcap):
     bag = bare_mcap()
     bag.image(bag.channel(topics.IMAGE_TOPIC, topics.IMAGE), 0)
-    channels = {topic: bag.channel(topic, kind) for topic, kind in TYPES.items()}
+    channels = {topic: bag.channel(topic, kind) for topic, kind in TRUTH_TYPES.items()}
     for index in range(20):
-        for delay, (topic, message) in enumerate(to_messages(truth_of(index)).items()):
-            bag.add(channels[topic], stamp_of(index) + delay * 60_000_000, message, TYPES[topic])
+        for delay, (topic, message) in enumerate(truth_to_messages(truth_of(index)).items()):
+            bag.add(
+                channels[topic], stamp_of(index) + delay * 60_000_000, message, TRUTH_TYPES[topic]
+            )
     recording = Recording(bag.close())
     assert recording.first_truth() == recording.truth()[0]
 

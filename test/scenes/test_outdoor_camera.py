@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.scenes.cameras import MARGIN, Disturbance, OutdoorCamera
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.scenes.light import Cloud
-from vehicle_pf_tracker.scenes.outdoor_camera import MARGIN, Disturbance, OutdoorCamera
 
 CALM = Disturbance(0.0, 0.0, 0.0)
 SHAKY = Disturbance(0.0, 3.0, 0.0)

@@ -7,10 +7,9 @@ import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import PixelWindow
-from vehicle_pf_tracker.scenes.heavy_vehicles import coach, lorry, truck
 from vehicle_pf_tracker.scenes.solids import ELEVATION, draw, extent, mirrored, shadow, side_panel
 from vehicle_pf_tracker.scenes.solids import strips as sweep
-from vehicle_pf_tracker.scenes.vehicles import car, saloon, suv, van
+from vehicle_pf_tracker.scenes.vehicles import car, coach, lorry, saloon, suv, truck, van
 
 GREY = (100.0, 100.0, 100.0)
 VEHICLES = {

@@ -10,8 +10,7 @@ from pathlib import Path
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
-from vehicle_pf_tracker.recordings.footage import Picture, stamp_of
-from vehicle_pf_tracker.recordings.truth_table import TruthRow, read_truth_table
+from vehicle_pf_tracker.recordings.footage import Picture, TruthRow, read_truth_table, stamp_of
 
 FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
 """The image files that are read, and what a CompressedImage calls them."""

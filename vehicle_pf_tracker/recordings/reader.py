@@ -13,13 +13,12 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.image.encodings import to_rgb
-from vehicle_pf_tracker.recordings import messages, truth_messages
+from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings import topics as names
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.cdr import deserialize, header_stamp_ns
 from vehicle_pf_tracker.recordings.mcap_blocks import Message
-from vehicle_pf_tracker.recordings.mcap_index import McapIndex, read_index
-from vehicle_pf_tracker.recordings.mcap_stream import merged_messages
+from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
 from vehicle_pf_tracker.recordings.read_notices import ReadNotices
 from vehicle_pf_tracker.recordings.topic_table import TopicInfo, choose_image_topic, list_topics
 
@@ -235,7 +234,7 @@ class Recording:
         """Tell whether there is truth; raise if its topics are there but cannot hold any."""
         found = [info for info in self.topics if info.name in names.TRUTH_TOPICS]
         for info in found:
-            expected = truth_messages.TYPES[info.name]
+            expected = messages.TRUTH_TYPES[info.name]
             if not info.is_cdr or info.type_name != expected:
                 kind = info.type_name or "an unknown type"
                 raise InputError(f"the truth topic {info.name} carries {kind}, not {expected}")
@@ -247,10 +246,10 @@ class Recording:
         def received() -> Iterator[tuple[str, Any]]:
             for index, message in found:
                 topic = index.channels[message.channel_id].topic
-                yield topic, deserialize(message.data, truth_messages.TYPES[topic])
+                yield topic, deserialize(message.data, messages.TRUTH_TYPES[topic])
 
         try:
-            return truth_messages.from_messages(received(), self._files[-1].is_truncated)
+            return messages.truth_from_messages(received(), self._files[-1].is_truncated)
         except InputError as error:
             raise InputError(f"the truth of {self.path} is broken: {error}") from error
 

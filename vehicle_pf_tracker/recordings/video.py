@@ -14,8 +14,7 @@ import cv2
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.recordings.footage import Picture, stamp_of
-from vehicle_pf_tracker.recordings.truth_table import read_truth_table
+from vehicle_pf_tracker.recordings.footage import Picture, read_truth_table, stamp_of
 
 # The decoder's own complaints would go to the terminal beside our sentence.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")

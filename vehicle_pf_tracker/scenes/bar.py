@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.camera import Camera
+from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import Image, Sprite
 from vehicle_pf_tracker.scenes.paths import Still, Straight
 from vehicle_pf_tracker.scenes.randomness import stream

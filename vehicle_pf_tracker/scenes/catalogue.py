@@ -20,23 +20,27 @@ from vehicle_pf_tracker.scenes.light import (
 from vehicle_pf_tracker.scenes.manoeuvres import (
     AccelerationParameters,
     BrakingParameters,
+    ScaleParameters,
     acceleration,
     braking,
     clear,
+    scale,
     turn,
     turn_occluded,
 )
-from vehicle_pf_tracker.scenes.moving_obstacles import bus, cross, dense, twin
-from vehicle_pf_tracker.scenes.randomness import check_seed
-from vehicle_pf_tracker.scenes.scale import ScaleParameters, scale
-from vehicle_pf_tracker.scenes.scene import Scene
-from vehicle_pf_tracker.scenes.standing_obstacles import (
+from vehicle_pf_tracker.scenes.occluded_drives import (
     HidingParameters,
     bars,
     bridge,
+    bus,
+    cross,
+    dense,
     signs,
     trees,
+    twin,
 )
+from vehicle_pf_tracker.scenes.randomness import check_seed
+from vehicle_pf_tracker.scenes.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,24 +9,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.compositing import Colour, Image
-from vehicle_pf_tracker.scenes.courses import Bend, Course, Pace, Pose, Swaying
-from vehicle_pf_tracker.scenes.heavy_vehicles import truck
-from vehicle_pf_tracker.scenes.landscapes import Carriageway, countryside, side_road, town
-from vehicle_pf_tracker.scenes.models import Model
-from vehicle_pf_tracker.scenes.outdoor_camera import (
+from vehicle_pf_tracker.scenes.cameras import (
     DISTURBANCES,
     MARGIN,
     Light,
     OutdoorCamera,
     daylight,
 )
-from vehicle_pf_tracker.scenes.paths import Wave
+from vehicle_pf_tracker.scenes.compositing import Colour, Image
+from vehicle_pf_tracker.scenes.models import Model
+from vehicle_pf_tracker.scenes.paths import Bend, Course, Pace, Pose, Swaying, Wave
 from vehicle_pf_tracker.scenes.randomness import stream
+from vehicle_pf_tracker.scenes.roads import Carriageway, countryside, side_road, town
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
 from vehicle_pf_tracker.scenes.traffic import convoy
-from vehicle_pf_tracker.scenes.vehicles import car, suv
+from vehicle_pf_tracker.scenes.vehicles import car, suv, truck
 
 SIZES = {"640x480": (640, 480), "768x576": (768, 576)}
 FREE = 10

@@ -12,15 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.bridges import bridge
-from vehicle_pf_tracker.scenes.camera import Camera
-from vehicle_pf_tracker.scenes.heavy_vehicles import lorry
+from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes.obstacles import bridge
 from vehicle_pf_tracker.scenes.paths import Driven, Straight, Wave
 from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.roads import FAR_LANES, NEAR_LANES, dual_carriageway
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.traffic import Vehicle, any_car, convoy
-from vehicle_pf_tracker.scenes.vehicles import car, saloon
+from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon
 
 WIDTH, HEIGHT, FRAME_COUNT = 640, 480, 200
 START = 33
