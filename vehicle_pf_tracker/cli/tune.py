@@ -24,7 +24,7 @@ from vehicle_pf_tracker.evaluation.output_files import alone_in, make_folder, wr
 from vehicle_pf_tracker.evaluation.report import write_report
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.tuning import comparison
-from vehicle_pf_tracker.evaluation.tuning.search_space import SEARCHED, search_space
+from vehicle_pf_tracker.evaluation.tuning.search_space import default_search, search_space
 from vehicle_pf_tracker.evaluation.tuning.searching import (
     OBJECTIVES,
     Search,
@@ -61,8 +61,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     add(
         "--search", action="append", default=[], metavar="NAME[=LOW:HIGH],…",
-        help="what to search (default: what matters most for the variant, "
-        f"{', '.join(SEARCHED['apf'])} for apf)",
+        help="what to search (default: the parameters marked as tuned, "
+        f"{', '.join(default_search(find_variant('apf')))} for apf)",
     )  # fmt: skip
     add(
         "--trials", type=positive, default=TRIALS, metavar="N",

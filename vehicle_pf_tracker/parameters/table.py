@@ -3,7 +3,7 @@
 A field made with `parameter` carries its default, bounds, unit, a line on what turning it does, and
 its source. A field whose type is another such dataclass (made with `group`) nests, and its fields
 get dotted names (`reference.alpha`). ROS descriptors, YAML files, ``--set key=value`` and the
-tables in the docs are all made from `specs`.
+tables in the docs are all made from `specs`, and `tune` searches the fields marked as tuned.
 """
 
 from __future__ import annotations
@@ -56,6 +56,9 @@ class ParameterSpec:
         What a change while tracking does (`EFFECTS`).
     read_only : bool
         True where it can be set at start-up only.
+    tuned : bool or (float, float)
+        True where `tune` searches it by default; least and largest value to try, where those
+        derived from default and bounds would be of no use.
     """
 
     name: str
@@ -69,6 +72,7 @@ class ParameterSpec:
     choices: tuple[str, ...] = ()
     effect: Effect = "keeps"
     read_only: bool = False
+    tuned: bool | tuple[float, float] = False
 
     def check(self, value: object) -> Value:
         """Return `value` in this parameter's type; whole numbers do for real ones.
@@ -143,11 +147,12 @@ def parameter(  # noqa: PLR0913 - one keyword per column of the table
     choices: Iterable[str] = (),
     effect: Effect = "keeps",
     read_only: bool = False,
+    tuned: bool | tuple[float, float] = False,
 ) -> Any:
     """Make the dataclass field of one parameter; see `ParameterSpec` for the meaning of each."""
     spec = ParameterSpec(
         "", type(default), default, doc, minimum, maximum, unit, source, tuple(choices), effect,
-        read_only,
+        read_only, tuned,
     )  # fmt: skip
     return dataclasses.field(default=default, metadata={_KEY: spec})
 

@@ -1,8 +1,15 @@
+from dataclasses import dataclass
+from types import SimpleNamespace
+
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.tuning.search_space import SEARCHED, Dimension, search_space
-from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
+from vehicle_pf_tracker.evaluation.tuning.search_space import (
+    Dimension,
+    default_search,
+    search_space,
+)
+from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 
@@ -25,8 +32,28 @@ def test_every_variant_has_a_space_that_holds_its_defaults_and_keeps_to_the_boun
                 spec.check(int(end) if spec.kind is int else end)
 
 
-def test_what_is_named_for_a_variant_is_there():
-    assert set(SEARCHED) == set(VARIANTS)
+def test_the_default_search_is_marked_in_the_table():
+    assert default_search(find_variant("apf")) == [
+        "motion.sigma_w",
+        "likelihood.sigma_v",
+        "occlusion.level.enter",
+        "occlusion.level.certain",
+        "velocity.window",
+    ]
+
+
+def test_a_mark_may_carry_the_range():
+    @dataclass(frozen=True)
+    class Parameters:
+        wide: float = parameter(1.0, "Wider.", minimum=0.0, tuned=True)
+        narrow: float = parameter(1.0, "Narrower.", minimum=0.0, tuned=(0.5, 1.5))
+        still: float = parameter(1.0, "Not searched.")
+
+    variant = SimpleNamespace(name="made", parameters=Parameters)
+    assert search_space(variant, to_mapping(Parameters()), []) == [
+        Dimension("wide", float, 0.25, 4.0, logarithmic=True),
+        Dimension("narrow", float, 0.5, 1.5),
+    ]
 
 
 @pytest.mark.parametrize("name", VARIANTS)

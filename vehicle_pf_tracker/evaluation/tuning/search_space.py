@@ -14,35 +14,8 @@ FACTOR = 4.0
 """A positive parameter is searched from its default over this to its default times this."""
 _DIGITS = 4
 
-_COLOUR = ("sigma", "likelihood.sigma_v", "histogram_bits")
-_FEATURES = (
-    "dispersion.radius",
-    "likelihood.sigma_v",
-    "reference_weight",
-    "confidence.threshold",
-    "velocity_window",
-)
-_KHONG = ("sigma", "likelihood.sigma_v", "jitter", "criterion")
-SEARCHED: Mapping[str, tuple[str, ...]] = MappingProxyType(
+_UNMARKED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "apf": (
-            "motion.sigma_w",
-            "likelihood.sigma_v",
-            "occlusion.level.enter",
-            "occlusion.level.certain",
-            "velocity.window",
-        ),
-        "pf": _COLOUR,
-        "sapf": (*_COLOUR, "annealing.layers", "annealing.decay"),
-        "hpfms": (*_COLOUR, "iterations", "transition.speed_share"),
-        "pfcl": (*_COLOUR, "lines.sigma_v", "lines.edge_threshold"),
-        "ms": ("histogram_bits", "iterations", "shortest_step"),
-        "mfpf": _FEATURES,
-        "sfpf_color": _FEATURES,
-        "sfpf_edge": (*_FEATURES, "edges.threshold"),
-        "sfpf_texture": _FEATURES,
-        "conventional": _KHONG,
-        "adaptive": (*_KHONG, "low_weight", "occlusion.n_eff"),
         "fusion": (
             "sharpness",
             "motion.sigma",
@@ -55,10 +28,7 @@ SEARCHED: Mapping[str, tuple[str, ...]] = MappingProxyType(
         ),
     }
 )
-"""What matters most for each variant.
-
-Words as `search_space` takes them: with a range where the one that would be derived is of no use.
-"""
+"""Default search of variants none of whose parameters is marked as tuned yet."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +88,7 @@ def search_space(
     values : mapping of str to Value
         Where the search begins; ranges are derived from these.
     words : sequence of str
-        Each ``name`` or ``name=low:high``; none takes what matters most for the variant.
+        Each ``name`` or ``name=low:high``; none takes the parameters marked as tuned.
 
     Raises
     ------
@@ -126,13 +96,26 @@ def search_space(
         If there is no such parameter, or a range is none or not within the parameter's bounds.
     """
     table = {name: spec for name, spec in specs(variant.parameters).items() if name != "seed"}
-    wanted = words or SEARCHED[variant.name]
-    space = [_dimension(table, values, word) for word in wanted]
+    chosen = words or default_search(variant)
+    space = [_dimension(table, values, word) for word in chosen]
     names = [dimension.name for dimension in space]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise InputError(f"--search names {twice} twice")
     return space
+
+
+def default_search(variant: Variant) -> list[str]:
+    """Return the parameters of `variant` marked as tuned, as `search_space` takes them."""
+    marked = [_word(spec) for spec in specs(variant.parameters).values() if spec.tuned]
+    return marked or list(_UNMARKED.get(variant.name, ()))
+
+
+def _word(spec: ParameterSpec) -> str:
+    if isinstance(spec.tuned, tuple):
+        low, high = spec.tuned
+        return f"{spec.name}={low:g}:{high:g}"
+    return spec.name
 
 
 def _dimension(

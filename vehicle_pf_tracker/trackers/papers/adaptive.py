@@ -43,6 +43,7 @@ class OcclusionTestParameters:
         maximum=1.0,
         unit="share of the particles",
         source="P3 T_thres, READINGS 22",
+        tuned=True,
     )
     similarity: float = parameter(
         0.7,
@@ -73,6 +74,7 @@ class AdaptiveParameters(RepeatedResamplingParameters):
         maximum=100.0,
         unit="of the mean weight 1/N",
         source="P3 Table II step 19, READINGS 23",
+        tuned=True,
     )
     occlusion: OcclusionTestParameters = group(OcclusionTestParameters)
 

@@ -26,6 +26,7 @@ class ApfMotionParameters:
         maximum=1000.0,
         unit="px/frame",
         source="P1 eq. 7, READINGS 11",
+        tuned=True,
     )
     sigma_n: float = parameter(
         0.0,
@@ -122,6 +123,7 @@ class ApfVelocityParameters:
         maximum=10_000,
         unit="frames",
         source="P1 section III-B, READINGS 5",
+        tuned=True,
     )
     delay: int = parameter(
         12,

@@ -30,6 +30,7 @@ class ClearLevelParameters:
         minimum=0.0,
         maximum=100.0,
         unit="mean deviations below the level",
+        tuned=True,
     )
     leave: float = parameter(
         4.0,
@@ -44,6 +45,7 @@ class ClearLevelParameters:
         minimum=0.0,
         maximum=1.0,
         unit="of the level",
+        tuned=True,
     )
     rate: float = parameter(
         0.05,

@@ -44,8 +44,9 @@ class ColourParameters(ParticleParameters):
         maximum=1000.0,
         unit="px/frame",
         source="P1 eq. 7",
+        tuned=True,
     )
-    histogram_bits: int = histogram_bits_parameter()
+    histogram_bits: int = histogram_bits_parameter(tuned=True)
     resampling: str = resampling_parameter("P1 Algorithm 2")
     # 0.158 is Perez's lambda of 20.
     likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.158)

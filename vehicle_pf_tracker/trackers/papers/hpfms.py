@@ -34,6 +34,7 @@ class TransitionParameters:
         maximum=10.0,
         unit="of the speed",
         source="Maggio 2005 section 3",
+        tuned=True,
     )
     widest: float = parameter(
         2.0,
@@ -62,6 +63,7 @@ class HpfmsParameters(ColourParameters):
         minimum=0,
         maximum=100,
         source="Maggio 2005 section 2",
+        tuned=True,
     )
     transition: TransitionParameters = group(TransitionParameters)
 

@@ -22,6 +22,7 @@ class LikelihoodParameters:
         minimum=1e-3,
         maximum=100.0,
         source="P1 eq. 25, READINGS 1 (printed: 1.5)",
+        tuned=True,
     )
     squared_distance: bool = parameter(
         True,

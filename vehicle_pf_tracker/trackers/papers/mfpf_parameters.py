@@ -47,6 +47,7 @@ class DispersionParameters:
         maximum=1000.0,
         unit="px/frame",
         source="P2 section IV, DR",
+        tuned=True,
     )
     uncertain_factor: float = parameter(
         2.0,
@@ -94,6 +95,7 @@ class ConfidenceParameters:
         maximum=1.0,
         unit="share of the initial average similarity",
         source="P2 Table II, READINGS 19",
+        tuned=True,
     )
 
 
@@ -109,6 +111,7 @@ class EdgeParameters:
         unit="share of the window's strongest gradient",
         source="P2 section III-C, READINGS 14",
         effect="relearns",
+        tuned=True,
     )
     floor: float = parameter(
         40.0,
@@ -145,6 +148,7 @@ class FeatureFilterParameters(ParticleParameters):
         minimum=0.0,
         maximum=1.0,
         source="P2 eq. 9, READINGS 15 (no value printed)",
+        tuned=True,
     )
     velocity_window: int = parameter(
         5,
@@ -153,6 +157,7 @@ class FeatureFilterParameters(ParticleParameters):
         maximum=10_000,
         unit="frames",
         source="P2 eq. 5, READINGS 12",
+        tuned=True,
     )
     estimate: str = parameter(
         "mean",

@@ -29,13 +29,14 @@ from vehicle_pf_tracker.trackers.papers.shared_parameters import histogram_bits_
 class MsParameters(CommonParameters):
     """Parameters of `ms`."""
 
-    histogram_bits: int = histogram_bits_parameter()
+    histogram_bits: int = histogram_bits_parameter(tuned=True)
     iterations: int = parameter(
         15,
         "More: vehicles that moved further are still reached, where steps stay long.",
         minimum=1,
         maximum=100,
         source="Comaniciu 2003 section 4.2 (at most 20)",
+        tuned=True,
     )
     shortest_step: float = parameter(
         1.0,
@@ -44,6 +45,7 @@ class MsParameters(CommonParameters):
         maximum=100.0,
         unit="px",
         source="Comaniciu 2003 section 4.2 (epsilon)",
+        tuned=True,
     )
 
 

@@ -33,6 +33,7 @@ class LineParameters:
         minimum=1e-3,
         maximum=100.0,
         source="READINGS 3",
+        tuned=True,
     )
     bins: int = parameter(
         8,
@@ -49,6 +50,7 @@ class LineParameters:
         maximum=2000.0,
         unit="levels of 255",
         effect="relearns",
+        tuned=True,
     )
     shortest: int = parameter(
         6,

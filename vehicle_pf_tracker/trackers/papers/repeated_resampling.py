@@ -35,6 +35,7 @@ class RepeatedResamplingParameters(ColourParameters):
         maximum=1000.0,
         unit="px/frame",
         source="P3 Table I step 5, READINGS 23",
+        tuned=True,
     )
     jitter: float = parameter(
         0.5,
@@ -43,6 +44,7 @@ class RepeatedResamplingParameters(ColourParameters):
         maximum=10.0,
         unit="share of sigma",
         source="P3 Table I step 16, READINGS 23",
+        tuned=True,
     )
     criterion: float = parameter(
         0.7,
@@ -52,6 +54,7 @@ class RepeatedResamplingParameters(ColourParameters):
         maximum=1.0,
         unit="share of the particles",
         source="P3 Table I step 13, READINGS 21",
+        tuned=True,
     )
     most_passes: int = parameter(
         20,

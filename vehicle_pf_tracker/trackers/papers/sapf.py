@@ -28,6 +28,7 @@ class AnnealingParameters:
         minimum=1,
         maximum=50,
         source="Deutscher 2000 section 3",
+        tuned=True,
     )
     survival: float = parameter(
         0.5,
@@ -44,6 +45,7 @@ class AnnealingParameters:
         maximum=1.0,
         unit="of the layer before",
         source="Deutscher 2000 section 3 (alpha_M ... alpha_m scales the diffusion)",
+        tuned=True,
     )
     largest_rate: float = parameter(
         1.0,

@@ -17,7 +17,7 @@ def as_printed_switch(source: str) -> Any:
     )
 
 
-def histogram_bits_parameter() -> Any:
+def histogram_bits_parameter(*, tuned: bool = False) -> Any:
     """Make the resolution of joint colour histograms."""
     return parameter(
         3,
@@ -27,6 +27,7 @@ def histogram_bits_parameter() -> Any:
         unit="bits/channel",
         source="P1 section III-C",
         effect="relearns",
+        tuned=tuned,
     )
 
 
