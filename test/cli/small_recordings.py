@@ -56,11 +56,11 @@ def record_without_images(folder):
     return folder
 
 
-def frame_folder(folder):
+def frame_folder(folder, *, count=COUNT):
     """Write the vehicle as a folder of JPEG files with truth."""
     (folder / "img").mkdir(parents=True)
     lines = ["frame,x,y,w,h,visible,occ"]
-    for index in range(COUNT):
+    for index in range(count):
         bgr = np.ascontiguousarray(frame_of(index)[:, :, ::-1])
         cv2.imwrite(str(folder / "img" / f"{index + 1:06d}.jpg"), bgr)
         box = box_of(index)

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle_pf_tracker.cli import report, system_options
+from vehicle_pf_tracker.cli import report, stress, system_options
 from vehicle_pf_tracker.cli.console import print_table, tell_error, tell_notices
 from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers
 from vehicle_pf_tracker.cli.whole_numbers import natural, positive
@@ -34,8 +34,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     system_options.add_arguments(parser)
     add(
-        "--seeds", type=positive, default=SEEDS, metavar="N",
-        help="runs of each system that has randomness (default: %(default)s)",
+        "--seeds", type=positive, metavar="N",
+        help=f"runs of each system that has randomness (default: {SEEDS}, with --stress "
+        f"{stress.SEEDS})",
     )  # fmt: skip
     add("--first-seed", type=natural, default=0, metavar="S", help="the first of the seeds")
     add_workers(parser)
@@ -53,6 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     _add_timing(parser)
     report.add_report_options(parser)
     _add_robustness(parser)
+    stress.add_arguments(parser)
 
 
 def _add_timing(parser: argparse.ArgumentParser) -> None:
@@ -85,13 +87,18 @@ def _add_robustness(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run what is missing, write the report, and print the table."""
-    plan = _plan(args)
+    stress.check(args)
     try:
-        with telling("evaluate") as on_progress:
-            complete(plan, args.output, _runner(args), on_progress)
+        return stress.run(args) if args.stress else _run_grid(args)
     except KeyboardInterrupt:
         tell_notices(["interrupted; the same command goes on where this one stopped"])
         raise
+
+
+def _run_grid(args: argparse.Namespace) -> int:
+    plan = _plan(args)
+    with telling("evaluate") as on_progress:
+        complete(plan, args.output, _runner(args), on_progress)
     if args.timing:
         with telling("timing") as on_progress:
             time_systems(plan, args.output, args.timing_frames, on_progress)
@@ -108,7 +115,7 @@ def _plan(args: argparse.Namespace) -> Plan:
     return Plan(
         dict(recordings),
         systems,
-        range(args.first_seed, args.first_seed + args.seeds),
+        range(args.first_seed, args.first_seed + (args.seeds or SEEDS)),
         args.command,
         args.max_diff,
         Robustness(args.shifted_starts, args.start_frames, args.restarts),

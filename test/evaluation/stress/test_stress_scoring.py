@@ -146,7 +146,8 @@ def test_means_are_over_seeds_then_cases_then_cameras(tmp_path):
     assert everything.summary("on_target").count == 2
     assert by_name["camera", "A"].summary("on_target").mean == pytest.approx(0.875)
     assert by_name["camera", "A"].summary("on_target").count == 2
-    text = write_report(results, tmp_path)
+    write_report(results, tmp_path)
+    text = (tmp_path / "stress.md").read_text()
     assert "| A | `mine` | 2 | 0.875 (0.750–1.000) |" in text
     lines = (tmp_path / "stress.csv").read_text().splitlines()
     assert lines[0] == "by,name,system,measure,unit,count,mean,spread,low,high"

@@ -36,8 +36,8 @@ mode TRACKING and an error above the true box's diagonal. ECE is pooled over all
 
 def write_report(
     results: Sequence[Result], folder: Path, options: dict[str, Any] | None = None
-) -> str:
-    """Write the three files, and return the text of `MARKDOWN`.
+) -> list[Group]:
+    """Write the three files, and return the groups of results that their tables show.
 
     Parameters
     ----------
@@ -55,11 +55,10 @@ def write_report(
     """
     make_folder(folder)
     found = groups(results)
-    text = _markdown(found, list(faults(results)))
-    write_text(folder / MARKDOWN, text)
+    write_text(folder / MARKDOWN, _markdown(found, list(faults(results))))
     write_text(folder / CSV, _csv(found))
     write_json(folder / JSON, _json(results, found, options or {}))
-    return text
+    return found
 
 
 def _markdown(found: Sequence[Group], broken: Sequence[str]) -> str:
@@ -67,13 +66,14 @@ def _markdown(found: Sequence[Group], broken: Sequence[str]) -> str:
     for by, title in _TITLES.items():
         own = [group for group in found if group.by == by]
         if own:
-            parts += [f"## {title}\n", _table(own)]
+            parts += [f"## {title}\n", markdown(*table_rows(own))]
     if broken:
         parts += ["## Runs that did not come to their end\n", "".join(f"- {b}\n" for b in broken)]
     return "\n".join(parts)
 
 
-def _table(found: Sequence[Group]) -> str:
+def table_rows(found: Sequence[Group]) -> tuple[list[str], list[list[str]]]:
+    """Return the headings and the rows of a table of groups, a line for each."""
     is_named = found[0].by != ALL
     names = [name for name in MEASURES if any(group.summary(name) for group in found)]
     titles = [MEASURES[name].title for name in names]
@@ -84,7 +84,7 @@ def _table(found: Sequence[Group]) -> str:
         error = group.reliability().calibration_error
         start = [group.name] if is_named else []
         rows.append([*start, f"`{group.system}`", f"{group.cases}", *cells, _number(error)])
-    return markdown(header, rows)
+    return header, rows
 
 
 def _cell(group: Group, measure: str) -> str:

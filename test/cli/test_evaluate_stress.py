@@ -1,0 +1,68 @@
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from small_recordings import frame_folder, record
+
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.evaluation.grid.systems import PEER
+from vehicle_pf_tracker.evaluation.stress import KINDS
+
+PAGE = Path(__file__).parents[2] / "docs" / "evaluation.md"
+BASE = ["--variants", "ms", "--workers", "1"]
+
+
+def evaluate(out, *words):
+    return main(["evaluate", *map(str, words), *BASE, "-o", str(out)])
+
+
+@pytest.fixture
+def footage(tmp_path):
+    """A recording and a frame folder, of thirty frames each."""
+    record(tmp_path / "footage" / "recorded", count=30, truths=range(30))
+    frame_folder(tmp_path / "footage" / "folder", count=30)
+    return tmp_path / "footage"
+
+
+def test_a_battery_is_run_and_resumed(footage, tmp_path, capsys):
+    out = tmp_path / "out"
+    words = [footage, "--stress", "quick", "--kinds", "plain,mirrored,jpeg"]
+    assert evaluate(out, *words) == 0
+    told = capsys.readouterr()
+    assert "8 cases of 2 sequences" in told.err
+    assert f"the report is {out / 'stress.md'}" in told.out
+    scores = (out / "scores.jsonl").read_text()
+    assert len(scores.splitlines()) == 8
+    document = json.loads((out / "stress.json").read_text())
+    assert {entry["sequence"] for entry in document["results"]} == {"recorded", "folder"}
+    assert {entry["kind"] for entry in document["results"]} == {"plain", "mirrored", "jpeg"}
+    with (out / "stress.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    (plain,) = [r for r in rows if (r["name"], r["measure"]) == ("plain", "on_target")]
+    assert plain["count"] == "2"
+    assert "## Cameras" in (out / "stress.md").read_text()
+    before = (out / "stress.md").read_bytes()
+    assert evaluate(out, *words) == 0
+    assert (out / "scores.jsonl").read_text() == scores
+    assert (out / "stress.md").read_bytes() == before
+
+
+def test_options_that_do_not_go_together_are_refused(footage, tmp_path, capsys):
+    assert evaluate(tmp_path / "out", footage, "--kinds", "plain") == 2
+    assert "--kinds does not go without --stress" in capsys.readouterr().err
+    assert evaluate(tmp_path / "out", footage, "--stress", "quick", "--restarts") == 2
+    assert "--restarts does not go with --stress" in capsys.readouterr().err
+    words = ["--stress", "quick", "--variants", f"{PEER}csrt"]
+    assert main(["evaluate", str(footage), *words, "-o", str(tmp_path / "out")]) == 2
+
+
+def test_an_unknown_kind_is_named(footage, tmp_path, capsys):
+    assert evaluate(tmp_path / "out", footage, "--stress", "full", "--kinds", "rain") == 1
+    assert "there is no kind 'rain'" in capsys.readouterr().err
+
+
+def test_the_page_lists_every_kind():
+    text = PAGE.read_text()
+    for kind in KINDS.values():
+        assert f"| `{kind.name}` | {kind.group} | {kind.summary} |" in text

@@ -1,0 +1,133 @@
+"""The stress battery of `evaluate`: its options, and what is done with them."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vehicle_pf_tracker.cli.console import UsageError, print_table, tell_notices
+from vehicle_pf_tracker.cli.system_options import chosen
+from vehicle_pf_tracker.cli.whole_numbers import positive
+from vehicle_pf_tracker.cli.work_progress import telling
+from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.evaluation.stress import Case, Result, StressSystem
+    from vehicle_pf_tracker.evaluation.stress.summary import Group
+
+SEEDS = 1
+"""Runs of each case: a battery has variation enough, and many seeds of one case are no more."""
+STORE = "scores.jsonl"
+_OTHERS = ("scheduler", "timing", "shifted_starts", "start_frames", "restarts", "max_rmse")
+"""Options of the grid that the battery has no use for."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the battery."""
+    add = parser.add_argument_group("stress battery, instead of the grid").add_argument
+    add(
+        "--stress", choices=("quick", "full"),
+        help="run variants over cases made of the recordings or frame folders REC: quick, 8 short "
+        "ones of each; full, about 55; see docs/evaluation.md",
+    )  # fmt: skip
+    add("--kinds", metavar="NAME,…", help="only cases of these kinds")
+    add(
+        "--per-sequence", type=positive, metavar="N",
+        help="at most N cases of each sequence, of all groups in turns",
+    )  # fmt: skip
+    add("--limit", type=positive, metavar="N", help="at most N cases, evenly spread")
+    add("--max-frames", type=positive, metavar="N", help="at most N frames of each case")
+    add(
+        "--cameras", type=Path, metavar="FILE",
+        help="table sequence,camera (default: cameras.csv in a folder REC; else each its own)",
+    )  # fmt: skip
+
+
+def check(args: argparse.Namespace) -> None:
+    """Refuse options that go with the grid only, or with the battery only.
+
+    Raises
+    ------
+    UsageError
+        If there is one.
+    """
+    own = ("kinds", "per_sequence", "limit", "max_frames", "cameras")
+    wrong = _OTHERS if args.stress else own
+    for name in wrong:
+        if getattr(args, name) not in {None, False}:
+            option = "--" + name.replace("_", "-")
+            raise UsageError(
+                f"{option} does not go {'with' if args.stress else 'without'} --stress"
+            )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run what is missing of the battery, write its report, and print its tables."""
+    from vehicle_pf_tracker.evaluation.stress import run_battery
+    from vehicle_pf_tracker.evaluation.stress.report import MARKDOWN, write_report
+
+    systems, cases = _systems(args), _cases(args)
+    count = args.seeds or SEEDS
+    seeds = range(args.first_seed, args.first_seed + count)
+    tell_notices([f"{len(cases)} cases of {len({case.sequence for case in cases})} sequences"])
+    with telling("stress") as on_progress:
+        results = run_battery(
+            cases, systems, seeds=seeds, workers=args.workers, store=args.output / STORE,
+            on_progress=on_progress,
+        )  # fmt: skip
+    found = write_report(results, args.output, _options(args, results))
+    for by in ("(all)", "kind"):
+        _show([group for group in found if group.by == by])
+    print(f"the report is {args.output / MARKDOWN}")
+    return 0
+
+
+def _systems(args: argparse.Namespace) -> list[StressSystem]:
+    from vehicle_pf_tracker.evaluation.stress import StressSystem
+
+    systems, notes = chosen(args)
+    tell_notices(notes)
+    others = [system.label for system in systems if not isinstance(system, VariantSystem)]
+    if others:
+        raise UsageError(f"--stress runs variants of this package only, not {others[0]}")
+    return [StressSystem.of(each) for each in systems if isinstance(each, VariantSystem)]
+
+
+def _cases(args: argparse.Namespace) -> list[Case]:
+    from vehicle_pf_tracker.evaluation.stress import find_sequences, list_cases
+    from vehicle_pf_tracker.evaluation.stress.battery import QUICK_FRAMES, QUICK_PER_SEQUENCE
+
+    is_quick = args.stress == "quick"
+    return list_cases(
+        find_sequences([Path(source) for source in args.sources], args.cameras),
+        kinds=args.kinds.split(",") if args.kinds else None,
+        per_sequence=args.per_sequence or (QUICK_PER_SEQUENCE if is_quick else None),
+        limit=args.limit,
+        max_frames=args.max_frames or (QUICK_FRAMES if is_quick else None),
+    )
+
+
+def _options(args: argparse.Namespace, results: Sequence[Result]) -> dict[str, object]:
+    return {
+        "command": args.command,
+        "stress": args.stress,
+        "runs": len(results),
+        "seeds": sorted({result.seed for result in results}),
+    }
+
+
+def _show(found: Sequence[Group]) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    from vehicle_pf_tracker.evaluation.stress.report import table_rows
+
+    headings, rows = table_rows(found)
+    table = Table()
+    for heading in headings:
+        table.add_column(Text(heading), justify="right")
+    for row in rows:
+        table.add_row(*map(Text, row))
+    print_table(table)
