@@ -55,14 +55,9 @@ format: .venv/installed
 types: .venv/installed
 	$(BIN)/mypy
 
+# Everything that follows from the registry of variants and their parameters.
 config: .venv/installed
-	set -e; for variant in $$($(BIN)/python -c \
-	    'from vehicle_pf_tracker.trackers.registry import VARIANTS as v; print(*v)'); do \
-	    $(BIN)/vehicle-pf-tracker params $$variant > config/$$variant.new; \
-	    mv config/$$variant.new config/$$variant.yaml; \
-	done
-	$(BIN)/vehicle-pf-tracker params all --markdown > docs/parameters.new
-	mv docs/parameters.new docs/parameters.md
+	$(BIN)/python -m tools.generate
 
 clean:
 	rm -rf .venv .venv-noble .venv-peers build install log results *.egg-info

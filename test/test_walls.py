@@ -38,7 +38,7 @@ MAY_IMPORT = {
     },
 }  # fmt: skip
 """The rooms below each room, from the ground up."""
-BESIDE = {"reproduction", "benchmarks"}
+BESIDE = {"reproduction", "benchmarks", "tools"}
 """Packages of the repository that are not installed, so that nothing may import them."""
 MESSAGES = {
     "builtin_interfaces", "diagnostic_msgs", "geometry_msgs", "lifecycle_msgs", "rcl_interfaces",

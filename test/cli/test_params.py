@@ -3,30 +3,9 @@ from pathlib import Path
 import pytest
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.cli.params import default_yaml
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.trackers.registry import VARIANTS
-
-CONFIG = Path(__file__).resolve().parents[2] / "config"
-
-
-@pytest.mark.parametrize("name", VARIANTS)
-def test_config_holds_what_params_prints(name):
-    # `make config` writes them anew.
-    assert (CONFIG / f"{name}.yaml").read_text(encoding="utf-8") == default_yaml(VARIANTS[name])
-
-
-def test_config_has_no_file_too_many():
-    expected = {f"{name}.yaml" for name in VARIANTS} | {"sros2_policy.xml"}
-    assert {path.name for path in CONFIG.iterdir()} == expected
-
-
-def test_the_document_of_all_parameters_is_what_is_printed(capsys):
-    # `make config` writes it anew.
-    assert main(["params", "all", "--markdown"]) == 0
-    document = CONFIG.parent / "docs" / "parameters.md"
-    assert document.read_text(encoding="utf-8") == capsys.readouterr().out
 
 
 def test_the_document_names_every_parameter_of_every_variant(capsys):

@@ -1,0 +1,79 @@
+"""The SROS 2 access-control policy: one enclave per variant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from vehicle_pf_tracker.trackers.registry import Variant
+
+PERMISSIONS: Mapping[str, tuple[str, ...]] = {
+    'topics publish="ALLOW"': (
+        "~/box",
+        "~/mode",
+        "~/overlay",
+        "~/particles",
+        "~/position",
+        "~/transition_event",
+        "~/velocity",
+        "/diagnostics",
+        "/parameter_events",
+        "/rosout",
+    ),
+    'topics subscribe="ALLOW"': (
+        "~/clicked_point",
+        "~/set_box",
+        "~/set_target",
+        "/clock",
+        "image",
+        "image/compressed",
+    ),
+    'services reply="ALLOW"': (
+        "~/change_state",
+        "~/describe_parameters",
+        "~/get_available_states",
+        "~/get_available_transitions",
+        "~/get_parameter_types",
+        "~/get_parameters",
+        "~/get_state",
+        "~/get_transition_graph",
+        "~/get_type_description",
+        "~/list_parameters",
+        "~/reset",
+        "~/set_parameters",
+        "~/set_parameters_atomically",
+    ),
+}
+"""Everything that a tracker node has; a test compares it with the ROS graph of running nodes."""
+
+_POLICY = """<?xml version="1.0" encoding="UTF-8"?>
+<!-- Permissions that each node needs under SROS 2, and no more; docs/ros_interface.md explains its
+     use. Give remapped topics by their new names. `make config` writes this file. -->
+<policy version="0.2.0">
+  <enclaves>
+{enclaves}  </enclaves>
+</policy>
+"""
+_ENCLAVE = """    <enclave path="/vehicle_pf_tracker/{name}">
+      <profiles>
+        <profile ns="/" node="{node}">
+{groups}        </profile>
+      </profiles>
+    </enclave>
+"""
+
+
+def policy(variants: Iterable[Variant]) -> str:
+    """Write the policy of the nodes of `variants`."""
+    groups = "".join(map(_group, PERMISSIONS))
+    enclaves = (
+        _ENCLAVE.format(name=one.name, node=one.executable, groups=groups) for one in variants
+    )
+    return _POLICY.format(enclaves="".join(enclaves))
+
+
+def _group(permission: str) -> str:
+    plural = permission.partition(" ")[0]
+    entry = plural.removesuffix("s")
+    names = PERMISSIONS[permission]
+    lines = "".join(f"            <{entry}>{name}</{entry}>\n" for name in names)
+    return f"          <{permission}>\n{lines}          </{plural}>\n"
