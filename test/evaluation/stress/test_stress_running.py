@@ -2,6 +2,7 @@
 
 import functools
 import json
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -132,6 +133,18 @@ def test_a_fault_of_a_tracker_is_told_and_costs_only_its_case(few):
     results = run_battery(few[:2], [StressSystem("broken", broken)], workers=0)
     assert [r.score.on_target for r in results] == [0.0, 0.0]
     assert "out of order" in results[0].score.fault
+
+
+def test_the_documented_example_runs(drive, tmp_path, monkeypatch, capsys):
+    text = (Path(__file__).parents[3] / "docs" / "evaluation.md").read_text()
+    (example,) = [part for part in text.split("```") if "evaluation.stress import" in part]
+    (tmp_path / "recordings").symlink_to(Path(drive.source.path).parents[1])
+    monkeypatch.chdir(tmp_path)
+    exec(example.removeprefix("python"), {})
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 2
+    assert "/lorry/" in lines[0]
+    assert " straight " in lines[0]
 
 
 def test_trackers_learn_the_frame_period(few):
