@@ -19,16 +19,15 @@ RUNTIME = [
     "zstandard>=0.19",
     "rosbags>=0.10",
     "rich>=13",
-    "matplotlib>=3.6",
     "PyYAML>=6.0",
-    "scipy>=1.11",
-    "jinja2>=3.1",
 ]
+EVALUATION = ["matplotlib>=3.6", "scipy>=1.11", "jinja2>=3.1"]
 NUMBA = ["numba>=0.60"]
 CLUSTER = ["distributed>=2024.5", "fsspec>=2024.5"]
-TUNE = ["optuna>=4.0"]
+TUNE = ["optuna>=4.0", *EVALUATION]
 TEST = ["pytest>=7", "hypothesis>=6.100"]
 LINT = ["ruff>=0.17,<0.18", "mypy>=2.4,<3", "types-PyYAML"]
+COVERAGE = ["coverage>=7.10"]
 PEERS = ["evo>=1.30"]  # reads what we write
 ROS = [
     f"{wheel}; {JAZZY_WHEELS}"
@@ -72,12 +71,13 @@ setup(
     install_requires=[] if BUILT_FOR_ROS else RUNTIME,
     extras_require={
         "ros": ROS,
+        "evaluation": EVALUATION,
         "numba": NUMBA,
         "cluster": CLUSTER,
         "tune": TUNE,
         "test": TEST,
         "lint": LINT,
-        "dev": TEST + LINT + NUMBA + CLUSTER + TUNE + PEERS,
+        "dev": TEST + LINT + COVERAGE + NUMBA + CLUSTER + TUNE + PEERS,
     },
     entry_points={
         "console_scripts": [

@@ -1,15 +1,18 @@
 """Write the lock files anew: `python requirements/lock.py python3.10 python3.11 python3.12 ...`.
 
-`--only peers` before the interpreters writes that lock alone.
+`--only peers` before the interpreters writes that lock alone; `--hashes` and no interpreters keep
+all versions and write the hashes anew.
 
 For every interpreter and every lock file, pip resolves the extras of setup.py in a throw-away
 environment. A version that all interpreters share is written once; where they differ, each line
-carries a marker. Give all supported interpreters, and run it on Linux x86_64.
+carries a marker. Each pin has the hashes of every file of that version, so that a lock made on one
+platform serves the others. Give all supported interpreters, and run it on Linux x86_64.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 import subprocess
 import sys
 import tempfile
@@ -33,7 +36,7 @@ COLCON = (
 )
 NOBLE = (  # what Ubuntu 24.04 has from apt; its Python is 3.12
     SETUPTOOLS,
-    f"{ROOT}[test]",
+    f"{ROOT}[test,evaluation]",
     "numpy==1.26.4",
     "opencv-python-headless==4.6.0.66",
     "PyYAML==6.0.1",
@@ -53,8 +56,14 @@ for found in distributions():
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", choices=["peers"])
-    parser.add_argument("interpreters", nargs="+")
+    parser.add_argument("--hashes", action="store_true")
+    parser.add_argument("interpreters", nargs="*")
     args = parser.parse_args()
+    if args.hashes:
+        for path in sorted(HERE.glob("*.txt")):
+            header, *pins = pins_of(path)
+            path.write_text(hashed(header, pins))
+        return
     locks: dict[str, dict[str, set[str]]] = {}
     for interpreter in args.interpreters:
         version = run(interpreter, "-c", "import sys; print('%d.%d' % sys.version_info[:2])")[0]
@@ -64,7 +73,8 @@ def main() -> None:
         for lock, found in pins.items():
             locks.setdefault(lock, {})[version] = found
     for lock, by_version in locks.items():
-        (HERE / f"{lock}.txt").write_text(merged(by_version))
+        header = f"# Written by requirements/lock.py for Python {', '.join(by_version)}."
+        (HERE / f"{lock}.txt").write_text(hashed(header, merged(by_version)))
 
 
 def own_pins(interpreter: str, version: str) -> dict[str, set[str]]:
@@ -92,15 +102,52 @@ def resolve(interpreter: str, wanted: tuple[str, ...]) -> set[str]:
     return {pin for pin in pins if pin.split("==")[0] not in {"pip", "vehicle_pf_tracker"}}
 
 
-def merged(by_version: dict[str, set[str]]) -> str:
-    """One requirements file for all interpreters."""
-    lines = [f"# Written by requirements/lock.py for Python {', '.join(by_version)}."]
+def merged(by_version: dict[str, set[str]]) -> list[str]:
+    """Join the pins of all interpreters, with markers where they differ."""
+    lines = []
     pins = set[str]().union(*by_version.values())
     for pin in sorted(pins, key=str.lower):
         versions = [version for version in by_version if pin in by_version[version]]
         marker = " or ".join(f"python_version == '{version}'" for version in versions)
         lines.append(pin if len(versions) == len(by_version) else f"{pin}; {marker}")
-    return "\n".join(lines) + "\n"
+    return lines
+
+
+def pins_of(path: Path) -> list[str]:
+    """Read the header and the pins of a lock, without hashes."""
+    lines = [line.removesuffix("\\").rstrip() for line in path.read_text().splitlines()]
+    return [line for line in lines if not line.startswith("    --hash")]
+
+
+def hashed(header: str, pins: list[str]) -> str:
+    """Write a lock: each pin with the hashes of every file of its version."""
+    with tempfile.TemporaryDirectory() as folder:
+        run(sys.executable, "-m", "venv", folder)
+        run(str(Path(folder, "bin", "pip")), "install", "--quiet", "uv")
+        wanted = Path(folder, "pins.in")
+        wanted.write_text("\n".join(pins) + "\n")
+        options = "--quiet --no-deps --universal --generate-hashes --no-header --no-annotate"
+        uv = (str(Path(folder, "bin", "uv")), "pip", "compile", "--python-version", "3.10")
+        found = hashes_by_pin(run(*uv, *options.split(), str(wanted)))
+    entries = (" \\\n    ".join([pin, *sorted(found[key_of(pin)])]) for pin in pins)
+    return "\n".join([header, *entries]) + "\n"
+
+
+def hashes_by_pin(lines: list[str]) -> dict[str, set[str]]:
+    """Read ``name==version`` lines followed by lines of hashes."""
+    found: dict[str, set[str]] = {}
+    key = ""
+    for line in lines:
+        if "==" in line.partition(";")[0]:
+            key = key_of(line)
+        found.setdefault(key, set()).update(re.findall(r"--hash=\S+", line))
+    return found
+
+
+def key_of(pin: str) -> str:
+    """Return ``name==version`` with the name as indexes write it."""
+    name, _, version = pin.partition(";")[0].rstrip(" \\").partition("==")
+    return f"{re.sub(r'[-_.]+', '-', name).lower()}=={version}"
 
 
 def run(*command: str) -> list[str]:

@@ -10,6 +10,7 @@ import pytest
 import setuptools
 
 import vehicle_pf_tracker
+from vehicle_pf_tracker.cli.main import EVALUATION_MODULES
 from vehicle_pf_tracker.ros import executables
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
@@ -40,7 +41,7 @@ def locked(name, *, marked=True):
     """(name, version) of each pin in a lock file, with or without those for some Pythons only."""
     lines = (ROOT / "requirements" / f"{name}.txt").read_text().splitlines()
     pins = [line for line in lines if "==" in line and (marked or ";" not in line)]
-    return {tuple(pin.partition(";")[0].strip().lower().split("==")) for pin in pins}
+    return {tuple(pin.partition(";")[0].strip(" \\").lower().split("==")) for pin in pins}
 
 
 def test_name_version_and_licence_are_the_same_everywhere(setup, package):
@@ -78,6 +79,28 @@ def test_pip_installs_the_libraries(monkeypatch, command):
         re.match(r"[\w-]+", line)[0] for line in described(monkeypatch, command)["install_requires"]
     }
     assert {"numpy", "opencv-python-headless", "mcap", "rosbags", "PyYAML"} <= names
+    assert not {"matplotlib", "scipy", "jinja2"} & names
+
+
+def test_the_extra_of_evaluations_is_what_its_verbs_ask_for(setup):
+    extra = setup["extras_require"]["evaluation"]
+    names = tuple(re.match(r"[\w-]+", line)[0] for line in extra)
+    assert names == EVALUATION_MODULES
+    assert set(extra) <= set(setup["extras_require"]["tune"])
+
+
+@pytest.mark.parametrize(
+    "path", sorted((ROOT / "requirements").glob("*.txt")), ids=lambda p: p.stem
+)
+def test_every_pin_has_hashes_and_no_lock_names_an_index(path):
+    pins = re.findall(r"^\S+==.*(?:\n    .*)*", path.read_text(), re.M)
+    assert pins
+    assert all(re.search(r"--hash=sha256:[0-9a-f]{64}\b", pin) for pin in pins)
+    assert "://" not in path.read_text()
+
+
+def test_hashes_are_checked():
+    assert "--require-hashes" in (ROOT / ".ci" / "make-venv").read_text()
 
 
 def test_the_ros_extra_is_locked_at_the_same_versions(setup):
@@ -106,3 +129,13 @@ def test_package_xml_names_the_message_packages_that_the_code_imports(package):
     stated = {depend.text for depend in package.findall("exec_depend")}
     assert messages <= stated
     assert "rclpy" in stated
+
+
+def test_package_xml_leaves_what_only_evaluations_need(package):
+    stated = {depend.text for depend in package.findall("exec_depend")}
+    assert not {f"python3-{name}" for name in EVALUATION_MODULES} & stated
+
+
+def test_package_xml_declares_aments_linters(package):
+    stated = {depend.text for depend in package.findall("test_depend")}
+    assert {"ament_copyright", "ament_flake8", "ament_pep257", "ament_xmllint"} <= stated

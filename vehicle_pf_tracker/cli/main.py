@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import importlib.util
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -28,6 +29,12 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
     }
 )
 """Module in this package and one line of help, by verb."""
+
+EVALUATING = frozenset({"demo", "evaluate", "tune", "report"})
+"""Verbs that need the extra `evaluation`: nodes, `replay`, `run` and `import` do without it."""
+
+EVALUATION_MODULES = ("matplotlib", "scipy", "jinja2")
+"""Modules that the extra `evaluation` brings."""
 
 _REPRODUCE = (
     "the papers' experiments are not part of the installed package: run `python -m reproduction "
@@ -99,10 +106,22 @@ def _parser(words: list[str]) -> argparse.ArgumentParser:
         description = f"{line[0].upper()}{line[1:]}."
         verb = verbs.add_parser(name, help=line, description=description)
         if name == asked:
+            _check_extra(name)
             module = importlib.import_module(f"vehicle_pf_tracker.cli.{module_name}")
             module.add_arguments(verb)
             verb.set_defaults(run=module.run, command=[PROGRAM, *words])
     return parser
+
+
+def _check_extra(verb: str) -> None:
+    """Raise before hours of work, not after them, if the libraries of `verb` are not installed."""
+    for name in EVALUATION_MODULES if verb in EVALUATING else ():
+        if importlib.util.find_spec(name) is None:
+            raise InputError(
+                f"{verb} needs the Python module {name}: install the extra [evaluation], "
+                "pip install 'vehicle_pf_tracker[evaluation]', or with apt python3-matplotlib "
+                "python3-scipy python3-jinja2"
+            )
 
 
 def _missing(error: ModuleNotFoundError) -> str:
