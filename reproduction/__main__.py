@@ -17,11 +17,11 @@ from reproduction.experiment import (
     QUICK_SEEDS,
     SEEDS,
     Experiment,
+    Holds,
     Size,
 )
 from reproduction.output import write_document, write_report
 from reproduction.running import complete
-from reproduction.verdict import Holds
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.main import USAGE, exit_status
 from vehicle_pf_tracker.cli.shared_options import add_workers

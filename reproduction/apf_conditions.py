@@ -12,8 +12,7 @@ from typing import TypeAlias
 
 from reproduction.apf_systems import ALL_READINGS, APF, RIVALS
 from reproduction.cells import SceneChoice
-from reproduction.data_table import DataTable, Entry
-from reproduction.verdict import Claim, Finding, Holds
+from reproduction.experiment import Claim, DataTable, Entry, Finding, Holds
 from vehicle_pf_tracker.parameters.table import Value
 
 FACTOR = 1.5

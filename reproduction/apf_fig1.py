@@ -9,16 +9,25 @@ import numpy.typing as npt
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from reproduction.apf_artificial import SETTING, artificial_video
 from reproduction.apf_systems import (
     READINGS,
     READINGS_TOLD,
+    SETTING,
+    artificial_video,
     with_sigma,
 )
 from reproduction.cells import RunCell
-from reproduction.data_table import DataTable
-from reproduction.experiment import Experiment, Report, Results, Size
-from reproduction.verdict import Claim, Finding, Holds, Verdict
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 
 _SPEEDS = tuple(range(2, 21, 2)), (4, 12)

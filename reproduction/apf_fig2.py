@@ -6,16 +6,24 @@ from itertools import islice
 
 from matplotlib.figure import Figure
 
-from reproduction.apf_artificial import (
+from reproduction.apf_systems import (
     SETTING,
     VEHICLE_WIDTH,
     artificial_video,
     covered,
 )
 from reproduction.cells import RunCell
-from reproduction.data_table import DataTable
-from reproduction.experiment import Experiment, Report, Results, Size
-from reproduction.verdict import Claim, Finding, Holds, Verdict
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 

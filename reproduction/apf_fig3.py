@@ -10,27 +10,34 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reproduction.apf_artificial import (
+from reproduction.apf_systems import (
+    READINGS,
+    READINGS_TOLD,
     SETTING,
     SPEED,
     artificial_video,
     covered,
-)
-from reproduction.apf_systems import (
-    READINGS,
-    READINGS_TOLD,
     with_sigma,
 )
 from reproduction.cells import Result, RunCell
-from reproduction.data_table import DataTable, Entry
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Entry,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.numbers import (
     counted,
     median_and_range,
     rank_correlation,
     share,
 )
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 
 _WIDTHS = tuple(range(0, 121, 2)), (0, 30, 60, 120)

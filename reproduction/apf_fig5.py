@@ -11,9 +11,17 @@ from matplotlib.figure import Figure
 from reproduction import apf_video3 as video3
 from reproduction.apf_systems import APF, READINGS
 from reproduction.cells import Result, RunCell
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.numbers import counted, median_and_range, share
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.estimates import interpolate_occlusions

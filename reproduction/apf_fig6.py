@@ -7,10 +7,18 @@ from statistics import median
 
 from reproduction import apf_video3 as video3
 from reproduction.apf_systems import READINGS, RIVALS, SIX
-from reproduction.data_table import DataTable
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.numbers import median_and_range
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.plots import error_figure
 from vehicle_pf_tracker.evaluation.scores import Scores

@@ -6,9 +6,17 @@ from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
 from reproduction.apf_systems import READINGS, RIVALS, SIX
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.numbers import counted, share
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
 from vehicle_pf_tracker.evaluation.scores import Scores
 

@@ -1,8 +1,30 @@
-"""The six trackers of the first paper, the readings of its own, and their one sigma rule."""
+"""The first paper's artificial video, its six trackers, and the interpretations of its own."""
 
 from __future__ import annotations
 
 from reproduction.cells import RunCell, SceneChoice, System
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
+
+VEHICLE_WIDTH, VEHICLE_HEIGHT = 30.0, 22.0
+SPEED = 5.0
+"""px/frame, where the paper keeps it constant."""
+SETTING = (
+    f"The artificial video (scene `bar`): a {VEHICLE_WIDTH:g} x {VEHICLE_HEIGHT:g} px vehicle on "
+    "even ground with sensor noise, 15 frames per second."
+)
+
+
+def artificial_video(width: float, speed: float = SPEED) -> SceneChoice:
+    """Choose the video with a bar of `width` px; 0 leaves it out."""
+    size = {"vehicle_width": VEHICLE_WIDTH, "vehicle_height": VEHICLE_HEIGHT}
+    return SceneChoice.of("bar", {"speed": float(speed), "width": float(width), **size})
+
+
+def covered(truths: list[Truth]) -> tuple[int, int] | None:
+    """Return the first and the last frame (from 1) in which something hides the vehicle."""
+    frames = [n for n, t in enumerate(truths, start=1) if t.occlusion is not Occlusion.NONE]
+    return (frames[0], frames[-1]) if frames else None
+
 
 APF = System.of("APF", "apf")
 RIVALS = (

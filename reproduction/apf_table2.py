@@ -9,6 +9,8 @@ from collections.abc import Mapping, Sequence
 from statistics import fmean, median
 from typing import Any, TypeAlias
 
+from matplotlib.figure import Figure
+
 from reproduction.apf_conditions import (
     CONDITIONS,
     condition_claims,
@@ -23,18 +25,27 @@ from reproduction.apf_systems import (
     ruled,
     sigma_of,
 )
-from reproduction.apf_table2_figure import table_figure
+from reproduction.case_figure import SHADES, Values, error_case_figure
 from reproduction.cells import RunCell, SceneChoice, System
-from reproduction.data_table import DataTable, Entry
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Entry,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.numbers import (
     counted,
     mean_and_spread,
     median_and_range,
     share,
 )
-from reproduction.scenes.videos import VIDEOS
-from reproduction.verdict import Claim, Finding, Holds, Verdict
+from reproduction.paper_scenes import VIDEOS
 
 _PLACE = "section IV, table II"
 _QUICK_VIDEOS = "video06", "video15", "video19"
@@ -254,3 +265,14 @@ def _everywhere(videos: Errors, reading: str) -> Finding:
 EXPERIMENT = Experiment(
     "apf-table2", "APF, table II: the error of all six trackers on twenty videos", cells, report
 )
+
+
+def table_figure(videos: Values) -> Figure:
+    """Draw medians as marks and ranges as lines, on a logarithmic scale."""
+    shown = {
+        name: {system.label: errors[system.label] for system in SIX}
+        for name, errors in videos.items()
+    }
+    shades = {name: SHADES[VIDEOS[name].occlusion] for name in videos}
+    names = [name.removeprefix("video") for name in videos]
+    return error_case_figure(shown, shades, names, "video")

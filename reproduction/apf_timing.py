@@ -9,11 +9,19 @@ from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
 from reproduction.apf_systems import APF, RIVALS, SIX, ruled
-from reproduction.data_table import DataTable
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.numbers import median_and_range
 from reproduction.timing_cell import TimingCell
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 
 _MINUTES = {"APF": 14.5, "PF": 14.7, "SAPF": 14.8, "HPFMS": 15.2, "PFCL": 14.8, "MS": 12.7}
 _PLACE = "section IV, processing times on Video3"

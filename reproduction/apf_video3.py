@@ -13,10 +13,8 @@ from reproduction.apf_systems import (
     SIX,
     ruled,
 )
-from reproduction.cells import RunCell, SceneChoice, System
-from reproduction.data_table import DataTable
-from reproduction.experiment import Results, Size
-from reproduction.traces import PATH, scores
+from reproduction.cells import PATH, RunCell, SceneChoice, System, scores
+from reproduction.experiment import DataTable, Results, Size
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores
 

@@ -6,16 +6,17 @@ depends on, so that the result can be kept and found again.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Protocol, TypeAlias
 
-from reproduction.scenes.catalogue import FIXED_SCENES, SCENES, make_scene
+from reproduction.paper_scenes import FIXED_SCENES, SCENES, make_scene
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import with_target
-from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs, to_mapping
 from vehicle_pf_tracker.scenes.scene import Scene, SceneFrame
@@ -202,3 +203,34 @@ def start_session(system: System, seed: int, first: SceneFrame) -> Session:
     """Make the session that follows the target from its true box in the frame `first`."""
     settings = with_target(SessionParameters(), first.truth.box)
     return Session(find_variant(system.variant), system.parameters(seed), settings)
+
+
+PATH = ("x", "y", "width", "height", "mode")
+"""What a cell has to record for `scores`."""
+
+
+def scores(cell: RunCell, result: Result) -> Scores:
+    """Give the scores of every frame of a run, for figures and for what `metrics` does not have.
+
+    Parameters
+    ----------
+    cell : RunCell
+        Records `PATH` at least.
+    result : Result
+        What came out of it.
+    """
+    truths = _truths(cell.scene)
+    columns = (result["trace"][name] for name in PATH)
+    rows = [
+        EstimateRow(number, truth.stamp_ns, x, y, width, height, mode, None, None, None)
+        for number, (truth, x, y, width, height, mode) in enumerate(
+            zip(truths, *columns, strict=True), start=1
+        )
+    ]
+    return score_frames(rows, truths)
+
+
+@functools.lru_cache(maxsize=512)
+def _truths(scene: SceneChoice) -> list[Truth]:
+    """Give the truth, which many trackers and figures share and which takes time to make."""
+    return scene.truths()

@@ -8,11 +8,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reproduction import mfpf_systems as mfpf
-from reproduction.data_table import DataTable, Entry
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Entry,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.mfpf_case_plots import draw_by_case
 from reproduction.mfpf_systems import FOUR, MFPF, READINGS, SINGLES
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.evaluation.plots import draw_errors
 
 _PLACE = "section V, figures 5b to 15b"

@@ -5,11 +5,19 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from reproduction import mfpf_systems as mfpf
-from reproduction.data_table import DataTable
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.mfpf_systems import FOUR, MFPF, OURS, SINGLES
 from reproduction.strips import strip_figure, telling_frames
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.core.truth import Occlusion
 
 _FRAMES = 5

@@ -11,8 +11,18 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from reproduction.cells import Probe, Result, SceneChoice
-from reproduction.data_table import DataTable, Entry
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Entry,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.mfpf_systems import (
     FEATURES,
     MFPF,
@@ -22,7 +32,6 @@ from reproduction.mfpf_systems import (
     read_label,
 )
 from reproduction.numbers import mean_and_spread
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals

@@ -14,12 +14,10 @@ from reproduction.case_figure import (
     Values,
     draw_cases,
 )
-from reproduction.data_table import DataTable, Entry
-from reproduction.experiment import Report, Size
+from reproduction.experiment import Claim, DataTable, Entry, Report, Size, Verdict
 from reproduction.mfpf_systems import OURS
 from reproduction.numbers import mean_and_spread
-from reproduction.scenes.cases import CASES
-from reproduction.verdict import Claim, Verdict
+from reproduction.paper_scenes import CASES
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,10 +7,9 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from reproduction.cells import RunCell, SceneChoice, System
+from reproduction.cells import PATH, RunCell, SceneChoice, System, scores
 from reproduction.experiment import Results, Size
-from reproduction.scenes.cases import CASES as CATALOGUE
-from reproduction.traces import PATH, scores
+from reproduction.paper_scenes import CASES as CATALOGUE
 from vehicle_pf_tracker.evaluation.scores import Scores
 from vehicle_pf_tracker.parameters.table import Value
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import MfpfParameters

@@ -13,8 +13,18 @@ from reproduction import mfpf_systems as mfpf
 from reproduction import mfpf_textures as textures
 from reproduction.case_figure import SHADES, error_case_figure
 from reproduction.cells import RunCell, System
-from reproduction.data_table import DataTable, Entry
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Entry,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.mfpf_systems import (
     DEFAULTS,
     FOUR,
@@ -24,8 +34,7 @@ from reproduction.mfpf_systems import (
     SINGLES,
 )
 from reproduction.numbers import mean_and_spread, share
-from reproduction.scenes.cases import CASES
-from reproduction.verdict import Claim, Finding, Holds, Verdict
+from reproduction.paper_scenes import CASES
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 
 _PLACE = "section V, table I"

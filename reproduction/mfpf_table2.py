@@ -7,11 +7,10 @@ from statistics import fmean
 
 from reproduction import mfpf_systems as mfpf
 from reproduction.case_figure import Values
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import Claim, Experiment, Finding, Holds, Report, Results, Size
 from reproduction.mfpf_share import ShareWords, share_report
 from reproduction.mfpf_systems import FEATURES, MFPF, READINGS
 from reproduction.numbers import median_and_range
-from reproduction.verdict import Claim, Finding, Holds
 
 _PLACE = "section V, table II"
 _PAPER = {

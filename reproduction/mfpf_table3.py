@@ -7,7 +7,7 @@ from statistics import fmean
 
 from reproduction import mfpf_systems as mfpf
 from reproduction.case_figure import Values
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import Claim, Experiment, Finding, Holds, Report, Results, Size
 from reproduction.mfpf_share import ShareWords, share_report
 from reproduction.mfpf_systems import (
     FOUR,
@@ -16,7 +16,6 @@ from reproduction.mfpf_systems import (
     SINGLES,
 )
 from reproduction.numbers import mean_and_spread
-from reproduction.verdict import Claim, Finding, Holds
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 
 _PLACE = "section V, table III"

@@ -7,11 +7,9 @@ from statistics import fmean
 
 from reproduction import mfpf_systems as mfpf
 from reproduction.cells import RunCell, System
-from reproduction.data_table import DataTable
-from reproduction.experiment import Results, Size
+from reproduction.experiment import Claim, DataTable, Finding, Holds, Results, Size
 from reproduction.mfpf_systems import MFPF, OURS, TEXTURE
 from reproduction.numbers import mean_and_spread
-from reproduction.verdict import Claim, Finding, Holds
 
 _KEPT = "glcm"
 _LEFT = {

@@ -9,12 +9,20 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from reproduction import resampling_systems as resampling
-from reproduction.data_table import DataTable
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import READINGS
 from reproduction.timing_cell import TimingCell
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 
 _SYSTEMS = tuple(dict.fromkeys(system for pair in READINGS.values() for system in pair))
 _SEEDS, _QUICK_SEEDS = 3, 1

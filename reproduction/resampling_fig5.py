@@ -9,8 +9,17 @@ from matplotlib.figure import Figure
 
 from reproduction import resampling_systems as resampling
 from reproduction.cells import System
-from reproduction.data_table import DataTable
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    DataTable,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import (
     ADAPTIVE,
@@ -19,7 +28,6 @@ from reproduction.resampling_systems import (
     PHASES,
     READINGS,
 )
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.evaluation.plots import STYLES, Style, shade_occlusions
 
 _PLACE = "section VI, figure 5"

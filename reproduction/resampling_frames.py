@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 from reproduction import resampling_systems as resampling
-from reproduction.experiment import Experiment, Report, Results, Size
+from reproduction.experiment import (
+    Claim,
+    Experiment,
+    Finding,
+    Holds,
+    Report,
+    Results,
+    Size,
+    Verdict,
+)
 from reproduction.resampling_systems import (
     ADAPTIVE,
     CONVENTIONAL,
@@ -13,7 +22,6 @@ from reproduction.resampling_systems import (
     READINGS,
 )
 from reproduction.strips import strip_figure
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.scores import Scores
 

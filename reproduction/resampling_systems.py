@@ -7,10 +7,8 @@ from statistics import fmean
 from types import MappingProxyType
 from typing import Any
 
-from reproduction.cells import RunCell, SceneChoice, System
-from reproduction.data_table import DataTable, Entry
-from reproduction.experiment import Results, Size
-from reproduction.traces import PATH, scores
+from reproduction.cells import PATH, RunCell, SceneChoice, System, scores
+from reproduction.experiment import DataTable, Entry, Results, Size
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.scores import Scores
 from vehicle_pf_tracker.filtering.resampling import SCHEMES

@@ -1,4 +1,4 @@
-"""Runs cells: together where they share a scene, in several processes, each result kept at once."""
+"""Running cells: those of one scene together, in several processes, each result kept at once."""
 
 from __future__ import annotations
 
@@ -6,9 +6,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeAlias
 
 from reproduction.cells import Cell, Result
-from reproduction.identity import key
+from vehicle_pf_tracker.evaluation.identity import result_key, variant_modules
 from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress, run_in_processes
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+
+def cell_key(cell: Cell) -> str:
+    """Digest the cell's facts, its kind, the code, and the versions of what it runs on."""
+    used = {module for name in cell.variants for module in variant_modules(find_variant(name))}
+    return result_key({"kind": type(cell).__name__, **cell.facts()}, {type(cell).__module__, *used})
+
 
 _LARGEST_BATCH = 48
 """Cells that run together: more share a rendering, fewer are lost by an interruption."""
@@ -37,7 +45,7 @@ def complete(
     InputError
         If a process is ended from outside, or a cell cannot be run.
     """
-    keys = {cell: key(cell) for cell in cells}
+    keys = {cell: cell_key(cell) for cell in cells}
     missing = [cell for cell, name in keys.items() if name not in store]
     batches = sorted(_batches(missing), key=_is_alone)
     done = 0

@@ -311,7 +311,7 @@ def made_up(folder: Path, **files: str) -> dict[str, Module]:
         ("evaluation__tables", "from vehicle_pf_tracker.ros.node.tracker_node import Node"),
         ("evaluation__tables", "from vehicle_pf_tracker.cli.main import main"),
         ("ros__node", "from vehicle_pf_tracker.cli.main import main"),
-        ("evaluation__tables", "from reproduction.verdict import Verdict"),
+        ("evaluation__tables", "from reproduction.experiment import Verdict"),
         ("cli__replay", "from vehicle_pf_tracker.ros.replay.player import play"),
         ("cli__replay", "import math\nif math.pi:\n    from vehicle_pf_tracker import ros"),
         ("cli__replay", "class Verb:\n    from vehicle_pf_tracker.ros.replay.player import play"),

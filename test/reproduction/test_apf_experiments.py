@@ -8,11 +8,10 @@ import pytest
 from reproduction import apf_conditions, apf_systems
 from reproduction.catalogue import EXPERIMENTS, find_experiments
 from reproduction.cells import SceneChoice
-from reproduction.experiment import Size
+from reproduction.experiment import Holds, Size
 from reproduction.output import write_report
+from reproduction.paper_scenes import VIDEOS
 from reproduction.running import complete
-from reproduction.scenes.videos import VIDEOS
-from reproduction.verdict import Holds
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 

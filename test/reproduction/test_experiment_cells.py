@@ -2,8 +2,7 @@ import pytest
 from experiment_samples import PF, SCENE, run_cells
 
 from reproduction.cells import RunCell, SceneChoice, System
-from reproduction.identity import key
-from reproduction.running import run_together
+from reproduction.running import cell_key, run_together
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
@@ -50,12 +49,12 @@ def test_what_the_first_frame_does_not_have_is_none():
     ],
 )
 def test_whatever_decides_the_result_is_in_the_key(other):
-    assert key(other) != key(RunCell(SCENE, PF, 0))
+    assert cell_key(other) != cell_key(RunCell(SCENE, PF, 0))
 
 
 def test_the_name_in_tables_and_spelt_out_defaults_are_not():
     renamed = System.of("mine", "pf", {**dict(PF.settings), "histogram_bits": 3})
-    assert key(RunCell(SCENE, renamed, 0)) == key(RunCell(SCENE, PF, 0))
+    assert cell_key(RunCell(SCENE, renamed, 0)) == cell_key(RunCell(SCENE, PF, 0))
 
 
 def test_speeds_come_from_settings_defaults_and_tables():

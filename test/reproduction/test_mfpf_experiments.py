@@ -4,9 +4,8 @@ import pytest
 
 from reproduction import mfpf_histograms, mfpf_systems, mfpf_table1
 from reproduction.catalogue import EXPERIMENTS
-from reproduction.experiment import Size
+from reproduction.experiment import Holds, Size
 from reproduction.strips import telling_frames
-from reproduction.verdict import Holds
 from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
 
 SIZE = Size(range(100, 102), quick=True)

@@ -7,9 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reproduction.scenes.cases import CASES
-from reproduction.scenes.catalogue import FIXED_SCENES, make_scene
-from reproduction.scenes.videos import VIDEOS
+from reproduction.paper_scenes import CASES, FIXED_SCENES, VIDEOS, make_scene
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
 

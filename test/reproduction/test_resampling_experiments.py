@@ -4,8 +4,7 @@ import pytest
 
 from reproduction import resampling_systems as resampling
 from reproduction.catalogue import EXPERIMENTS
-from reproduction.experiment import Size
-from reproduction.verdict import Holds
+from reproduction.experiment import Holds, Size
 
 SIZE = Size(range(100, 102), quick=True)
 

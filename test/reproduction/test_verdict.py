@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from reproduction.data_table import DataTable
+from reproduction.experiment import Claim, DataTable, Finding, Holds, Verdict
 from reproduction.numbers import (
     counted,
     mean_and_spread,
@@ -10,7 +10,6 @@ from reproduction.numbers import (
     rank_correlation,
     share,
 )
-from reproduction.verdict import Claim, Finding, Holds, Verdict
 
 YES, PARTLY, NO = Holds.YES, Holds.PARTLY, Holds.NO
 

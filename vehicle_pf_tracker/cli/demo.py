@@ -30,7 +30,7 @@ SCENE, SCENE_SEED = "highway", 0
 ROS_SEED = 0
 
 # Particles and features are the same for both. Each has its own best sigma, found on other scenes
-# and seeds: `python benchmarks/demo_sigma.py`.
+# and seeds: `python -m reproduction.demo_sigma`.
 CONTESTANTS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
     {
         "apf": {"num_particles": 200, "histogram_bits": 3, "motion.sigma_w": 5.0},

@@ -1,6 +1,6 @@
 """Find each variant's own best sigma for the demo, on scenes and seeds that the demo does not use.
 
-    python benchmarks/demo_sigma.py
+    python -m reproduction.demo_sigma
 
 prints, for each sigma, the mean RMSE and how many total occlusions the track recovered from. Best
 is the sigma that recovers most often, and among equals the one with the lowest RMSE.

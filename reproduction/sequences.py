@@ -4,7 +4,7 @@ for s in ../shared/sequences/*/*/; do
     vehicle-pf-tracker import $s results/sequences/$(basename $s)
 done
 vehicle-pf-tracker evaluate results/sequences --variants all,peers --seeds 5 -o results/evaluation
-python -m benchmarks.sequences results/evaluation -o docs/sequences.md
+python -m reproduction.sequences results/evaluation -o docs/sequences.md
 """
 
 from __future__ import annotations

@@ -1,1 +1,0 @@
-"""Scenes after the papers' videos and cases, beside those of the package."""
