@@ -14,7 +14,7 @@ CORE_AND_NODE := $(wildcard $(addprefix test/,core parameters filtering image tr
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: demo test test-slow test-noble lint types format config colcon peers bench reproduce clean
+.PHONY: demo test test-slow test-noble lint types format config colcon baselines peers bench reproduce clean
 
 demo: .venv/installed
 	$(BIN)/vehicle-pf-tracker demo -o results/demo
@@ -33,10 +33,13 @@ colcon: .venv/colcon
 	PATH="$(CURDIR)/$(BIN):$$PATH" .ci/colcon
 
 # OpenCV's trackers to compare with: two OpenCV packages in one environment overwrite each other.
-peers: .venv-peers/locked
+baselines: .venv-baselines/locked
+
+peers:
+	@echo "make: the target peers is now called baselines" >&2; exit 2
 
 # Writes results/bench/bench.json and docs/performance.md; wants a machine with nothing else to do.
-bench: .venv/installed .venv-peers/locked
+bench: .venv/installed .venv-baselines/locked
 	$(BIN)/python -m benchmarks.bench $(BENCH_ARGS)
 	$(BIN)/python -m benchmarks.bench.performance_page results/bench/bench.json docs
 
@@ -60,7 +63,7 @@ config: .venv/installed
 	$(BIN)/python -m tools.generate
 
 clean:
-	rm -rf .venv .venv-noble .venv-peers build install log results *.egg-info
+	rm -rf .venv .venv-noble .venv-baselines build install log results *.egg-info
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
@@ -72,8 +75,8 @@ clean:
 .venv-noble/locked: requirements/noble.txt requirements/ros-jazzy.txt
 	.ci/make-venv .venv-noble requirements/noble.txt $(or $(NOBLE_PYTHON),3.12 3.11 3.10)
 
-.venv-peers/locked: requirements/peers.txt
-	.ci/make-venv --without-ros .venv-peers requirements/peers.txt $(PYTHON)
+.venv-baselines/locked: requirements/baselines.txt
+	.ci/make-venv --without-ros .venv-baselines requirements/baselines.txt $(PYTHON)
 
 .venv/installed .venv-noble/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml
 	$*/bin/python $(INSTALL) --no-build-isolation --editable .

@@ -28,7 +28,7 @@ TUNE = ["optuna>=4.0", *EVALUATION]
 TEST = ["pytest>=7", "hypothesis>=6.100"]
 LINT = ["ruff>=0.17,<0.18", "mypy>=2.4,<3", "types-PyYAML"]
 COVERAGE = ["coverage>=7.10"]
-PEERS = ["evo>=1.30"]  # reads what we write
+READERS = ["evo>=1.30"]  # reads what we write
 ROS = [
     f"{wheel}; {JAZZY_WHEELS}"
     for wheel in (
@@ -77,7 +77,7 @@ setup(
         "tune": TUNE,
         "test": TEST,
         "lint": LINT,
-        "dev": TEST + LINT + COVERAGE + NUMBA + CLUSTER + TUNE + PEERS,
+        "dev": TEST + LINT + COVERAGE + NUMBA + CLUSTER + TUNE + READERS,
     },
     entry_points={
         "console_scripts": [

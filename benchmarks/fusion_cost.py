@@ -1,6 +1,6 @@
 """What a frame costs `fusion` and OpenCV's CSRT on real video, in turns: a table of docs/fusion.md.
 
-    python -m benchmarks.fusion_cost ../shared/sequences --peers .venv-peers/bin/python
+    python -m benchmarks.fusion_cost ../shared/sequences --baselines .venv-baselines/bin/python
 
 Processor time of the one thread that tracks, of every frame from the second on, hidden ones
 included. Let nothing else run.
@@ -22,7 +22,7 @@ from benchmarks.fusion_runs import find_sequence, sequence
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.baselines.client import Peer
+from vehicle_pf_tracker.evaluation.baselines.client import Baseline
 
 SMALL = ("car_a", "car_e", "cdnet_bridge_total", "cdnet_pole_partial", "white_van", "Suv")
 """Sequences of 320x240 px."""
@@ -33,17 +33,19 @@ COLUMNS = (
 
 
 def main() -> int:
-    """Measure and print the table; 1 where a sequence or the peers are missing."""
+    """Measure and print the table; 1 where a sequence or the baselines are missing."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--names", nargs="+", default=SMALL, metavar="SEQUENCE")
     parser.add_argument("--passes", type=int, default=2, help="each with a seed of its own")
-    parser.add_argument("--peers", type=Path, help="Python with OpenCV's trackers (make peers)")
+    parser.add_argument(
+        "--baselines", type=Path, help="Python with OpenCV's trackers (make baselines)"
+    )
     args = parser.parse_args()
     cv2.setNumThreads(1)
     try:
         folders = [find_sequence(args.folder, name) for name in args.names]
-        with Peer("csrt", args.peers) as csrt:
+        with Baseline("csrt", args.baselines) as csrt:
             print(tables.header("sequence", COLUMNS), flush=True)
             for folder in folders:
                 frames, box = _readable(folder)
@@ -100,14 +102,14 @@ def step_times(
     return times
 
 
-def row(name: str, ours: Sequence[float], peer: Sequence[float]) -> str:
+def row(name: str, ours: Sequence[float], baseline: Sequence[float]) -> str:
     """Sum up the seconds of all steps in a line of the table."""
-    medians = statistics.median(ours), statistics.median(peer)
-    means = statistics.fmean(ours), statistics.fmean(peer)
+    medians = statistics.median(ours), statistics.median(baseline)
+    means = statistics.fmean(ours), statistics.fmean(baseline)
     cells = [
         str(len(ours)),
         *(f"{1e3 * one:.2f}" for one in (medians[0], means[0], max(ours))),
-        *(f"{1e3 * one:.2f}" for one in (medians[1], means[1], max(peer))),
+        *(f"{1e3 * one:.2f}" for one in (medians[1], means[1], max(baseline))),
         f"{medians[1] / medians[0]:.1f}",
         f"{means[1] / means[0]:.1f}",
     ]

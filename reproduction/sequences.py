@@ -3,7 +3,8 @@
 for s in ../shared/sequences/*/*/; do
     vehicle-pf-tracker import $s results/sequences/$(basename $s)
 done
-vehicle-pf-tracker evaluate results/sequences --variants all,peers --seeds 5 -o results/evaluation
+vehicle-pf-tracker evaluate results/sequences --variants all,baselines --seeds 5 \
+    -o results/evaluation
 python -m reproduction.sequences results/evaluation -o docs/sequences.md
 """
 

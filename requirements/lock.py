@@ -1,7 +1,7 @@
 """Write the lock files anew: `python requirements/lock.py python3.10 python3.11 python3.12 ...`.
 
-`--only peers` before the interpreters writes that lock alone; `--hashes` and no interpreters keep
-all versions and write the hashes anew.
+`--only baselines` before the interpreters writes that lock alone; `--hashes` and no interpreters
+keep all versions and write the hashes anew.
 
 For every interpreter and every lock file, pip resolves the extras of setup.py in a throw-away
 environment. A version that all interpreters share is written once; where they differ, each line
@@ -43,7 +43,7 @@ NOBLE = (  # what Ubuntu 24.04 has from apt; its Python is 3.12
     "rich==13.7.1",
     "pytest==7.4.4",
 )
-PEERS = ("opencv-contrib-python-headless<5",)  # the trackers compared with
+BASELINES = ("opencv-contrib-python-headless<5",)  # the trackers compared with
 # The ROS wheels unpack metadata of their own besides; only what pip installed has a WHEEL file.
 INSTALLED = """
 from importlib.metadata import distributions
@@ -55,7 +55,7 @@ for found in distributions():
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", choices=["peers"])
+    parser.add_argument("--only", choices=["baselines"])
     parser.add_argument("--hashes", action="store_true")
     parser.add_argument("interpreters", nargs="*")
     args = parser.parse_args()
@@ -67,7 +67,7 @@ def main() -> None:
     locks: dict[str, dict[str, set[str]]] = {}
     for interpreter in args.interpreters:
         version = run(interpreter, "-c", "import sys; print('%d.%d' % sys.version_info[:2])")[0]
-        pins = {"peers": resolve(interpreter, PEERS)}
+        pins = {"baselines": resolve(interpreter, BASELINES)}
         if args.only is None:
             pins |= own_pins(interpreter, version)
         for lock, found in pins.items():

@@ -48,7 +48,7 @@ def _measure(
     results: Results, wanted: Callable[[str], bool], effort: Effort, args: argparse.Namespace
 ) -> None:
     results.cases += _told(kernels.measure(wanted, effort))
-    of_steps, results.on_target = steps.measure(wanted, effort, args.peers)
+    of_steps, results.on_target = steps.measure(wanted, effort, args.baselines)
     results.cases += _told(of_steps)
     results.cases += _told(costs.measure(wanted, effort))
     results.memory += memory.measure(wanted)
@@ -57,7 +57,7 @@ def _measure(
     else:
         _measure_nodes(results, wanted, effort)
     for one in results.memory:
-        print(f"{one.name:48} {one.ours_mb:10.1f} MB {one.peer_mb:10.1f} MB")
+        print(f"{one.name:48} {one.ours_mb:10.1f} MB {one.baseline_mb:10.1f} MB")
     for delivery in results.deliveries:
         print(f"{delivery.name:48} {delivery.lost} of {delivery.sent} lost")
 
@@ -75,7 +75,7 @@ def _measure_nodes(results: Results, wanted: Callable[[str], bool], effort: Effo
 def _told(cases: Iterable[Case]) -> Iterator[Case]:
     for case in cases:
         print(
-            f"{case.name:48} {case.ours_ms:10.4f} ms {case.peer_ms:10.4f} ms "
+            f"{case.name:48} {case.ours_ms:10.4f} ms {case.baseline_ms:10.4f} ms "
             f"{case.ratio:8.2f}x  +- {case.spread / 2:.2f}",
             flush=True,
         )
@@ -89,7 +89,9 @@ def _arguments() -> argparse.Namespace:
         "--only", nargs="+", default=["*"], metavar="PATTERN", help="cases by name, as step/*/csrt"
     )
     parser.add_argument(
-        "--peers", type=Path, help="interpreter with OpenCV's contrib trackers; see `make peers`"
+        "--baselines",
+        type=Path,
+        help="interpreter with OpenCV's contrib trackers; see `make baselines`",
     )
     parser.add_argument("-o", "--output", type=Path, default=OUTPUT)
     return parser.parse_args()

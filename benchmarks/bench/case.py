@@ -9,32 +9,32 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Case:
-    """What ours and a peer took for the same work in one run.
+    """What ours and a baseline took for the same work in one run.
 
     Attributes
     ----------
     name : str
         Words from the general to the special, divided by slashes.
-    ours_ms, peer_ms : float
+    ours_ms, baseline_ms : float
         Medians over the rounds, in ms of CPU time.
     ratio : float
-        ``peer_ms / ours_ms``: above 1 ours is the cheaper one.
+        ``baseline_ms / ours_ms``: above 1 ours is the cheaper one.
     spread : float
         Interquartile range of the ratio over the rounds.
     """
 
     name: str
     ours_ms: float
-    peer_ms: float
+    baseline_ms: float
     ratio: float
     spread: float
 
     @classmethod
-    def of(cls, name: str, ours: Sequence[float], peer: Sequence[float]) -> Case:
-        """Sum up the rounds, in seconds, of which each has one time of ours and one of the peer."""
-        ours_ms, peer_ms = (statistics.median(times) * 1e3 for times in (ours, peer))
-        ratios = [theirs / own for own, theirs in zip(ours, peer, strict=True)]
-        return cls(name, ours_ms, peer_ms, peer_ms / ours_ms, interquartile_range(ratios))
+    def of(cls, name: str, ours: Sequence[float], baseline: Sequence[float]) -> Case:
+        """Sum up the rounds: in each, one time of ours and one of the baseline, in seconds."""
+        ours_ms, baseline_ms = (statistics.median(times) * 1e3 for times in (ours, baseline))
+        ratios = [theirs / own for own, theirs in zip(ours, baseline, strict=True)]
+        return cls(name, ours_ms, baseline_ms, baseline_ms / ours_ms, interquartile_range(ratios))
 
 
 def interquartile_range(values: Sequence[float]) -> float:

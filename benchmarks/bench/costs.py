@@ -16,7 +16,7 @@ TRACKERS = (1, 4, 16, 64)
 
 
 def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
-    """Measure ``cost/WHAT/VARIANT/SETTING``, whose peer is the same variant as `BASES` has it."""
+    """Measure ``cost/WHAT/VARIANT/SETTING``; the baseline is the same variant with `BASES`."""
     for variant in VARIANTS:
         for what, settings in _settings(variant).items():
             yield from _compared(f"cost/{what}/{variant}", settings, BASES[what], wanted, effort)

@@ -18,13 +18,13 @@ _LEAST_ROUNDS = 9
 _MOST_ROUNDS = 301
 
 
-def compare(name: str, ours: Work, peer: Work, seconds: float) -> Case:
+def compare(name: str, ours: Work, baseline: Work, seconds: float) -> Case:
     """Measure two pieces of work in turns for about `seconds`.
 
     Both are called once before anything counts. Each round takes CPU time of this thread alone,
     and the order within it changes from round to round.
     """
-    works = ours, peer
+    works = ours, baseline
     calls = [_calls(work) for work in works]
     times: tuple[list[float], list[float]] = ([], [])
     deadline = time.monotonic() + seconds

@@ -23,7 +23,7 @@ class MemoryCase:
 
     name: str
     ours_mb: float
-    peer_mb: float
+    baseline_mb: float
 
 
 def measure(wanted: Callable[[str], bool]) -> Iterator[MemoryCase]:

@@ -22,23 +22,23 @@ _HEAD = """# Performance
 
 Made from `results/bench/bench.json` by `make bench`; nothing here is written by hand. Every number
 is from one run, in which ours and what it is compared with took turns, and is CPU time of the one
-thread that works (of the whole process for nodes). Times are medians; a ratio is the peer's median
-over ours, so that above 1 ours is the cheaper one, and behind ± stands half its interquartile
-range. Absolute times are those of the machine below; the ratios are what to trust.
+thread that works (of the whole process for nodes). Times are medians; a ratio is the baseline's
+median over ours, so that above 1 ours is the cheaper one, and behind ± stands half its
+interquartile range. Absolute times are those of the machine below; the ratios are what to trust.
 """
 _KERNELS = """## Windows measured at once
 
-The naive peer takes one crop, one `cv2.calcHist` of 8x8x8 bins (or P2's three features in OpenCV
-and numpy) and one coefficient for each particle. The particles are spread around the vehicle by
-8 px, and every call sees another frame and another cloud. A turn lasts 5 ms at least, so that both
-work from warm caches; between the images of a node they are colder (see there). `kernel` is the
-route with numba, `kernel-opencv` the one without; `1080p-over-vga` compares the two image sizes
+The naive baseline takes one crop, one `cv2.calcHist` of 8x8x8 bins (or P2's three features in
+OpenCV and numpy) and one coefficient for each particle. The particles are spread around the vehicle
+by 8 px, and every call sees another frame and another cloud. A turn lasts 5 ms at least, so that
+both work from warm caches; between the images of a node they are colder (see there). `kernel` is
+the route with numba, `kernel-opencv` the one without; `1080p-over-vga` compares the two image sizes
 with each other, and `map512` the similarities of all pixels of an image by the two routes.
 """
 _STEPS = f"""## A frame's whole step
 
 Against OpenCV's trackers on one vehicle of 40x30 px that drives through 640x480 images. Each in its
-turn follows it through {BLOCK} frames at full speed, then the next one does. The peers run in a
+turn follows it through {BLOCK} frames at full speed, then the next one does. The baselines run in a
 process of their own with one thread; the transfer of the frame does not count. Defaults throughout.
 """
 _COSTS = """## What more costs
@@ -117,29 +117,29 @@ def _targets(results: Results, targets: Iterable[Target]) -> str:
 
 def _cases(results: Results, *prefixes: str) -> str:
     rows = [_row(case) for case in results.cases if case.name.startswith(prefixes)]
-    return table(("case", "ours, ms", "peer, ms", "ratio"), rows)
+    return table(("case", "ours, ms", "baseline, ms", "ratio"), rows)
 
 
 def _row(case: Case) -> tuple[str, ...]:
     ratio = f"{case.ratio:.3g} ± {case.spread / 2:.2g}"
-    return f"`{case.name}`", f"{case.ours_ms:.4g}", f"{case.peer_ms:.4g}", ratio
+    return f"`{case.name}`", f"{case.ours_ms:.4g}", f"{case.baseline_ms:.4g}", ratio
 
 
 def _steps(results: Results) -> str:
     found = {case.name: case for case in results.cases if case.name.startswith("step/")}
-    peers = list(dict.fromkeys(name.split("/")[2] for name in found))
+    baselines = list(dict.fromkeys(name.split("/")[2] for name in found))
     rows = []
     for variant in dict.fromkeys(name.split("/")[1] for name in found):
-        cases = [found.get(f"step/{variant}/{peer}") for peer in peers]
+        cases = [found.get(f"step/{variant}/{baseline}") for baseline in baselines]
         own = next(case.ours_ms for case in cases if case is not None)
         ratios = [_row(case)[3] if case else "" for case in cases]
         share = f"{100 * results.on_target.get(variant, 0):.0f} %"
         rows.append((f"`{variant}`", f"{own:.4g}", *ratios, share))
-    times = {case.name.split("/")[2]: case.peer_ms for case in found.values()}
-    for peer in peers:
-        share = f"{100 * results.on_target.get(peer, 0):.0f} %"
-        rows.append((f"{peer} itself", f"{times[peer]:.4g}", *[""] * len(peers), share))
-    head = ("step", "ms", *(f"over {peer}" for peer in peers), "on the vehicle")
+    times = {case.name.split("/")[2]: case.baseline_ms for case in found.values()}
+    for baseline in baselines:
+        share = f"{100 * results.on_target.get(baseline, 0):.0f} %"
+        rows.append((f"{baseline} itself", f"{times[baseline]:.4g}", *[""] * len(baselines), share))
+    head = ("step", "ms", *(f"over {baseline}" for baseline in baselines), "on the vehicle")
     return table(head, rows)
 
 
@@ -147,7 +147,7 @@ def _numba_share(results: Results) -> str:
     case = results.case("startup/apf/numba")
     if case is None:
         return ""
-    share = case.ours_ms - case.peer_ms
+    share = case.ours_ms - case.baseline_ms
     return f"Of a warm start's {case.ours_ms:.0f} ms, numba and its kernels take {share:.0f} ms.\n"
 
 
@@ -161,12 +161,12 @@ def _deliveries(results: Results) -> str:
 
 
 def _memory(results: Results) -> str:
-    rows = [(f"`{m.name}`", f"{m.ours_mb:.1f}", f"{m.peer_mb:.1f}") for m in results.memory]
+    rows = [(f"`{m.name}`", f"{m.ours_mb:.1f}", f"{m.baseline_mb:.1f}") for m in results.memory]
     words = (
         "Resident memory, shared libraries included: a process with many trackers against the "
         "same with one,\nand the node against the floor:\n\n"
     )
-    return words + table(("memory", "ours, MB", "peer, MB"), rows)
+    return words + table(("memory", "ours, MB", "baseline, MB"), rows)
 
 
 if __name__ == "__main__":

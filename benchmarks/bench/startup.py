@@ -38,9 +38,9 @@ def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
         for kind in kinds:
             if kind != "cold" or number % 2 == 0:  # it takes as long as all the others
                 times[kind].append(_start(kind))
-    for name, (ours, peer) in chosen.items():
-        rounds = min(len(times[ours]), len(times[peer]))
-        yield Case.of(name, times[ours][:rounds], times[peer][:rounds])
+    for name, (ours, baseline) in chosen.items():
+        rounds = min(len(times[ours]), len(times[baseline]))
+        yield Case.of(name, times[ours][:rounds], times[baseline][:rounds])
 
 
 def _start(kind: str) -> float:

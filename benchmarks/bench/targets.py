@@ -54,7 +54,7 @@ def _faster(case: str, times: float) -> Target:
 def _dearer(case: str, times: float) -> Target:
     def value(results: Results) -> float | None:
         found = results.case(case)
-        return found.ours_ms / found.peer_ms if found else None
+        return found.ours_ms / found.baseline_ms if found else None
 
     return Target(case, f"costs at most {times:g} times as much", value, times, False, "x")
 

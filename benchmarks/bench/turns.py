@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from benchmarks.bench.material import drive, enlarged
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.baselines.client import Peer
+from vehicle_pf_tracker.evaluation.baselines.client import Baseline
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 
@@ -89,18 +89,18 @@ class Own:
 
 
 class Theirs:
-    """A peer, whose own process does the work."""
+    """A baseline, whose own process does the work."""
 
-    def __init__(self, peer: Peer) -> None:
-        self._peer = peer
+    def __init__(self, baseline: Baseline) -> None:
+        self._baseline = baseline
 
     def start(self, frame: Frame, box: Box, seed: int) -> None:
-        """Begin on `box`; a peer has no seed."""
-        self.centre = self._peer.start(frame, box).box.centre
+        """Begin on `box`; a baseline has no seed."""
+        self.centre = self._baseline.start(frame, box).box.centre
 
     def step(self, frame: Frame) -> float:
         """Follow into the next frame."""
-        answer = self._peer.step(frame)
+        answer = self._baseline.step(frame)
         self.centre = answer.box.centre
         return answer.seconds
 

@@ -1,4 +1,4 @@
-"""The naive peer measures the same thing: its numbers are ours, by every route."""
+"""The naive baseline measures the same thing: its numbers are ours, by every route."""
 
 import numpy as np
 import pytest
@@ -26,9 +26,9 @@ def test_joint_histograms(route, sight):
     histogram = naive.joint_histogram(first, *centre, WINDOW)
     assert histogram.sum() == pytest.approx(1)
     own = route.joint(frame, positions, WINDOW, Reference(histogram))
-    peer = naive.joint_similarity(frame, positions, WINDOW, histogram)
-    assert np.ptp(peer) > 0.1
-    assert own == pytest.approx(peer, abs=1e-6)
+    baseline = naive.joint_similarity(frame, positions, WINDOW, histogram)
+    assert np.ptp(baseline) > 0.1
+    assert own == pytest.approx(baseline, abs=1e-6)
 
 
 @pytest.mark.parametrize("route", routes(), ids=lambda route: route.name)
@@ -36,9 +36,9 @@ def test_three_features(route, sight):
     first, frame, positions, centre = sight
     histograms = naive.three_histograms(first, *centre, WINDOW)
     own = route.three(frame, positions, WINDOW, three_references(histograms))
-    peer = naive.three_similarities(frame, positions, WINDOW, histograms)
-    assert (np.ptp(peer, axis=1) > 0.05).all()
-    assert own == pytest.approx(peer, abs=1e-6)
+    baseline = naive.three_similarities(frame, positions, WINDOW, histograms)
+    assert (np.ptp(baseline, axis=1) > 0.05).all()
+    assert own == pytest.approx(baseline, abs=1e-6)
 
 
 def test_larger_images_hold_the_frame_and_its_mirror_images():

@@ -87,16 +87,16 @@ def test_defaults_can_be_left_out(bags, tmp_path):
     assert list(systems(tmp_path / "out")) == ["pf@narrow", "ms"]
 
 
-def test_a_peer_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_path, capsys):
-    words = ["--variants", "ms,peer:csrt", "--peers-python", tmp_path / "none"]
+def test_a_baseline_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_path, capsys):
+    words = ["--variants", "ms,baseline:csrt", "--baselines-python", tmp_path / "none"]
     assert evaluate(tmp_path / "out", bags / "one", *words) == 0
-    assert "peer:csrt cannot run: there is no interpreter" in capsys.readouterr().err
-    failed = tmp_path / "out" / "cells" / "one" / "peer_csrt" / "seed-0" / "failed.json"
-    assert "make peers" in json.loads(failed.read_text())["reason"]
+    assert "baseline:csrt cannot run: there is no interpreter" in capsys.readouterr().err
+    failed = tmp_path / "out" / "cells" / "one" / "baseline_csrt" / "seed-0" / "failed.json"
+    assert "make baselines" in json.loads(failed.read_text())["reason"]
 
 
 def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
-    words = ["--variants", "peer:csrt", "--peers-python", tmp_path / "none"]
+    words = ["--variants", "baseline:csrt", "--baselines-python", tmp_path / "none"]
     assert evaluate(tmp_path / "out", bags / "one", *words) == 1
     assert capsys.readouterr().err.endswith("error: nothing could run; the report says why\n")
 
@@ -106,7 +106,11 @@ def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
     [
         (["--variants", "kalman"], 1, "no variant 'kalman'"),
         (["--variants", ","], 2, "--variants names none"),
-        (["--variants", "peer:boost"], 1, "no peer 'boost'"),
+        (["--variants", "baseline:boost"], 1, "no baseline 'boost'"),
+        (["--variants", "ms,peer:csrt"], 2, "peer:csrt is now called baseline:csrt"),
+        (["--variants", "peers"], 2, "peers is now called baselines"),
+        (["--peers-python", "python3"], 2, "--peers-python is now called --baselines-python"),
+        (["--peer-model", "vit:net=v"], 2, "--peer-model is now called --baseline-model"),
         (["--set", "sgima=2"], 1, "no parameter 'sgima' (did you mean 'sigma'?)"),
         (["--set", "seed=2"], 1, "no parameter 'seed'"),
         (["--set", "target.x=2"], 1, "no parameter 'target.x'"),
@@ -116,9 +120,9 @@ def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
         (["--params", "pf@a=none.yaml"], 1, "cannot read the parameter file none.yaml"),
         (["--params", "a=none.yaml"], 1, "cannot read the parameter file none.yaml"),
         (["--set", "a:sgima=2"], 1, "apf is not run with a: there is no parameter 'sgima'"),
-        (["--variants", "peer:csrt", "--set", "a:sigma=2"], 1, "is for no variant"),
+        (["--variants", "baseline:csrt", "--set", "a:sigma=2"], 1, "is for no variant"),
         (["--params", "@=none.yaml"], 2, "no label of a parameter set"),
-        (["--peer-model", "vit=a"], 2, "--peer-model wants PEER:NAME=FILE"),
+        (["--baseline-model", "vit=a"], 2, "--baseline-model wants BASELINE:NAME=FILE"),
         (["--seeds", "0"], 2, "'0' is no whole number from 1 on"),
         (["--max-diff", "-1"], 1, "seconds from 0"),
     ],

@@ -6,7 +6,7 @@ import pytest
 from small_recordings import frame_folder, record
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation.grid.systems import PEER
+from vehicle_pf_tracker.evaluation.grid.systems import BASELINE
 from vehicle_pf_tracker.evaluation.stress import KINDS
 
 PAGE = Path(__file__).parents[2] / "docs" / "evaluation.md"
@@ -53,7 +53,7 @@ def test_options_that_do_not_go_together_are_refused(footage, tmp_path, capsys):
     assert "--kinds does not go without --stress" in capsys.readouterr().err
     assert evaluate(tmp_path / "out", footage, "--stress", "quick", "--restarts") == 2
     assert "--restarts does not go with --stress" in capsys.readouterr().err
-    words = ["--stress", "quick", "--variants", f"{PEER}csrt"]
+    words = ["--stress", "quick", "--variants", f"{BASELINE}csrt"]
     assert main(["evaluate", str(footage), *words, "-o", str(tmp_path / "out")]) == 2
 
 

@@ -3,7 +3,7 @@ from vehicle_pf_tracker.cli.main import main
 
 def test_a_folder_that_holds_no_evaluation(tmp_path, capsys):
     assert main(["report", str(tmp_path)]) == 1
-    assert "is no folder of an evaluation: it has no evaluation.json" in capsys.readouterr().err
+    assert "is not an evaluation folder: it has no evaluation.json" in capsys.readouterr().err
 
 
 def test_the_verb_writes_where_the_evaluation_is(tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""A small evaluation folder: two recordings, three variants and a peer that could not run."""
+"""A small evaluation folder: two recordings, three variants and a baseline that could not run."""
 
 import json
 
@@ -21,7 +21,7 @@ VARIANTS = ("pf", "ms", "apf")
 SEEDS = (0, 1)
 ALONE = {"ms": SEEDS[:1]}
 """Seeds of those that draw nothing."""
-NO_PEERS = "the environment of the peers is not there; make it with `make peers`"
+NO_BASELINES = "the environment of the baselines is not there; make it with `make baselines`"
 
 
 def make_evaluation(folder):
@@ -37,8 +37,8 @@ def make_evaluation(folder):
                     _run(
                         cell_folder(made, name, variant, seed), folder / name, truth, variant, seed
                     )
-            failed = make_folder(cell_folder(made, name, "peer:csrt", seed)) / "failed.json"
-            write_json(failed, {"reason": NO_PEERS})
+            failed = make_folder(cell_folder(made, name, "baseline:csrt", seed)) / "failed.json"
+            write_json(failed, {"reason": NO_BASELINES})
     write_json(made / "evaluation.json", _plan(folder))
     return made
 
@@ -89,7 +89,9 @@ def _plan(folder):
         }
         for name in VARIANTS
     ]  # fmt: skip
-    systems.append({"label": "peer:csrt", "peer": "csrt", "overrides": {}, "parameters": {}})
+    systems.append(
+        {"label": "baseline:csrt", "baseline": "csrt", "overrides": {}, "parameters": {}}
+    )
     recordings = [
         {
             "name": name, "path": str(folder / name), "topic": "/camera/image_raw",
@@ -98,7 +100,7 @@ def _plan(folder):
         for name in HIDDEN
     ]  # fmt: skip
     plan = {
-        "format": 1,
+        "format": 2,
         "command": ["vehicle-pf-tracker", "evaluate", "free", "-o", "evaluation"],
         "recordings": recordings,
         "systems": systems,

@@ -1,5 +1,5 @@
 import pytest
-from evaluation_samples import FRAMES, NO_PEERS, SEEDS
+from evaluation_samples import FRAMES, NO_BASELINES, SEEDS
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
@@ -18,7 +18,7 @@ def folder(made_evaluation):
 def test_the_plan(folder):
     evaluation = EvaluationFolder(folder)
     assert [entry.name for entry in evaluation.recordings] == ["under_a_bridge", "free"]
-    assert [entry.kind for entry in evaluation.systems] == ["pf", "ms", "apf", "peer:csrt"]
+    assert [entry.kind for entry in evaluation.systems] == ["pf", "ms", "apf", "baseline:csrt"]
     assert evaluation.systems[0].overrides == {"num_particles": 40}
     assert evaluation.seeds == SEEDS
     assert evaluation.timings() is None
@@ -29,7 +29,7 @@ def test_cells_have_rows_or_a_reason(folder):
     cell = evaluation.cell("free", "pf", 1)
     assert len(cell.rows) == FRAMES
     assert cell.run["seed"] == 1
-    assert evaluation.cell("free", "peer:csrt", 0).reason == NO_PEERS
+    assert evaluation.cell("free", "baseline:csrt", 0).reason == NO_BASELINES
     assert evaluation.cell("free", "pf", 7).reason == "it was not run"
 
 
@@ -42,14 +42,15 @@ def test_truth_by_frame(folder):
 
 
 def test_labels_become_names_of_folders(tmp_path):
-    assert safe_name("peer:csrt") == "peer_csrt"
+    assert safe_name("baseline:csrt") == "baseline_csrt"
     assert safe_name("apf@fast/2") == "apf_fast_2"
-    assert cell_folder(tmp_path, "a", "peer:x", 3) == tmp_path / "cells/a/peer_x/seed-3"
+    assert cell_folder(tmp_path, "a", "baseline:x", 3) == tmp_path / "cells/a/baseline_x/seed-3"
 
 
 @pytest.mark.parametrize(
     ("text", "sentence"),
-    [(None, "no folder of an evaluation"), ("{", "no JSON"), ("[]", "no JSON object"),
+    [(None, "is not an evaluation folder"), ('{"format": 1}', "another version"),
+     ("{", "no JSON"), ("[]", "no JSON object"),
      ('{"recordings": []}', "broken: KeyError"), ('{"recordings": [{}]}', "broken")],
 )  # fmt: skip
 def test_mistakes_about_the_folder(tmp_path, text, sentence):

@@ -87,7 +87,7 @@ def check_sets(
     for each in sets:
         if not names:
             raise InputError(
-                f"the parameter set {each.name} is for no variant: there are only peers"
+                f"the parameter set {each.name} is for no variant: there are only baselines"
             )
         if each.variant is not None and each.variant not in names:
             raise InputError(

@@ -1,4 +1,4 @@
-"""The systems of an evaluation: variants with their parameter sets, and peers."""
+"""The systems of an evaluation: variants with their parameter sets, and baselines."""
 
 from __future__ import annotations
 
@@ -17,16 +17,27 @@ from vehicle_pf_tracker.cli.parameter_sets import (
     settable,
 )
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Peer
-from vehicle_pf_tracker.evaluation.grid.systems import PEER, PeerSystem, System, VariantSystem
+from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Baseline
+from vehicle_pf_tracker.evaluation.grid.systems import (
+    BASELINE,
+    BaselineSystem,
+    System,
+    VariantSystem,
+)
 from vehicle_pf_tracker.parameters.table import Value, parse_assignments, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
-ALL, ALL_PEERS = "all", "peers"
-_PEERS_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not models)
+ALL, ALL_BASELINES = "all", "baselines"
+_FORMER_BASELINE, _FORMER_ALL_BASELINES = "peer:", "peers"
+_RENAMED_OPTIONS = {
+    "--peers-python": "--baselines-python",
+    "--peer-model": "--baseline-model",
+}
+"""The options by their former names, which are refused with a sentence."""
+_BASELINES_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not models)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,8 +45,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "--variants", default=ALL, metavar="NAME,…",
-        help=f"what to compare: {', '.join(VARIANTS)}; {PEER}NAME of OpenCV's {', '.join(MODELS)}; "
-        f"{ALL} (default) for all variants, {ALL_PEERS} for {', '.join(_PEERS_WITHOUT_MODELS)}",
+        help=f"what to compare: {', '.join(VARIANTS)}; {BASELINE}NAME of OpenCV's "
+        f"{', '.join(MODELS)}; {ALL} (default) for all variants, {ALL_BASELINES} for "
+        f"{', '.join(_BASELINES_WITHOUT_MODELS)}",
     )  # fmt: skip
     add(
         "--params", action="append", default=[], metavar="[VARIANT@]LABEL=FILE",
@@ -51,13 +63,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="run the parameter sets alone, where a variant has any",
     )  # fmt: skip
     add(
-        "--peers-python", type=Path, metavar="FILE",
-        help="interpreter of the peers (default: .venv-peers/bin/python, by `make peers`)",
+        "--baselines-python", type=Path, metavar="FILE",
+        help="interpreter of the baselines (default: .venv-baselines/bin/python, built by "
+        "`make baselines`)",
     )  # fmt: skip
     add(
-        "--peer-model", action="append", default=[], metavar="PEER:NAME=FILE",
-        help="model file of a peer that needs some, as vit:net=vit.onnx; repeatable",
+        "--baseline-model", action="append", default=[], metavar="BASELINE:NAME=FILE",
+        help="model file of a baseline that needs some, as vit:net=vit.onnx; repeatable",
     )  # fmt: skip
+    for old, new in _RENAMED_OPTIONS.items():
+        add(old, action=_RenamedOption, const=new, help=argparse.SUPPRESS)
+
+
+class _RenamedOption(argparse.Action):
+    """Refuses an option under its name before 0.2, and says the new one."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option_string: str | None = None,
+    ) -> None:
+        parser.error(f"{option_string} is now called {self.const}")
 
 
 def chosen(args: argparse.Namespace) -> tuple[list[System], list[str]]:
@@ -71,7 +99,7 @@ def chosen(args: argparse.Namespace) -> tuple[list[System], list[str]]:
         If an option is malformed.
     """
     words = _words(args.variants)
-    variants = [find_variant(word) for word in words if not word.startswith(PEER)]
+    variants = [find_variant(word) for word in words if not word.startswith(BASELINE)]
     everywhere, sets = read_sets(args.params, args.assignments)
     check_sets(variants, everywhere, sets)
     fitting, notes = fitting_sets(variants, sets)
@@ -80,25 +108,36 @@ def chosen(args: argparse.Namespace) -> tuple[list[System], list[str]]:
         own = fitting[variant.name]
         defaults = [] if own and args.without_defaults else [ParameterSet("")]
         systems += [_variant_system(variant, each, everywhere) for each in [*defaults, *own]]
-    models = _models(args.peer_model)
+    models = _models(args.baseline_model)
     for word in words:
-        if word.startswith(PEER):
-            systems.append(_peer_system(word.removeprefix(PEER), args.peers_python, models, notes))
+        if word.startswith(BASELINE):
+            systems.append(
+                _baseline_system(word.removeprefix(BASELINE), args.baselines_python, models, notes)
+            )
     return systems, notes
 
 
 def _words(text: str) -> list[str]:
     words: list[str] = []
     for word in text.split(","):
+        _refuse_former_name(word)
         if word == ALL:
             words += VARIANTS
-        elif word == ALL_PEERS:
-            words += [f"{PEER}{name}" for name in _PEERS_WITHOUT_MODELS]
+        elif word == ALL_BASELINES:
+            words += [f"{BASELINE}{name}" for name in _BASELINES_WITHOUT_MODELS]
         elif word:
             words.append(word)
     if not words:
         raise UsageError(f"--variants names none; choose of {', '.join([*VARIANTS, ALL])}")
     return list(dict.fromkeys(words))
+
+
+def _refuse_former_name(word: str) -> None:
+    if word == _FORMER_ALL_BASELINES:
+        raise UsageError(f"--variants: {word} is now called {ALL_BASELINES}")
+    if word.startswith(_FORMER_BASELINE):
+        new = BASELINE + word.removeprefix(_FORMER_BASELINE)
+        raise UsageError(f"--variants: {word} is now called {new}")
 
 
 def _variant_system(
@@ -140,26 +179,26 @@ def make_system(
 def _models(words: Iterable[str]) -> dict[str, dict[str, str]]:
     models: dict[str, dict[str, str]] = {}
     for word in words:
-        peer, colon, rest = word.partition(":")
+        baseline, colon, rest = word.partition(":")
         name, equals, file = rest.partition("=")
         if not (colon and equals and file):
-            raise UsageError(f"--peer-model wants PEER:NAME=FILE, got {word!r}")
-        models.setdefault(peer, {})[name] = str(Path(file).absolute())
+            raise UsageError(f"--baseline-model wants BASELINE:NAME=FILE, got {word!r}")
+        models.setdefault(baseline, {})[name] = str(Path(file).absolute())
     return models
 
 
-def _peer_system(
+def _baseline_system(
     name: str, python: Path | None, models: dict[str, dict[str, str]], notes: list[str]
-) -> PeerSystem:
+) -> BaselineSystem:
     if name not in MODELS:
-        raise InputError(f"there is no peer {name!r}; the peers are {', '.join(MODELS)}")
+        raise InputError(f"there is no baseline {name!r}; the baselines are {', '.join(MODELS)}")
     own = models.get(name, {})
     files = {key: Path(path) for key, path in own.items()}
     build = ""
     try:
-        with Peer(name, python, files) as peer:
-            build = peer.opencv
+        with Baseline(name, python, files) as baseline:
+            build = baseline.opencv
     except InputError as error:
-        notes.append(f"{PEER}{name} cannot run: {error}")
+        notes.append(f"{BASELINE}{name} cannot run: {error}")
     interpreter = "" if python is None else str(python.absolute())
-    return PeerSystem(name, interpreter, tuple(sorted(own.items())), build)
+    return BaselineSystem(name, interpreter, tuple(sorted(own.items())), build)

@@ -119,6 +119,8 @@ def _row(path: Path, number: int, line: Mapping[str, str]) -> tuple[int, Truth]:
         raise InputError(f"line {number} of the truth {path} is broken: {error}") from error
 
 
+FORMAT = 2
+"""Of the folder; 1 called a baseline a peer, and had no digests of the cells."""
 PLAN, FAILED = "evaluation.json", "failed.json"
 TIMINGS = "timings.json"
 TRUTH = "truth.csv"
@@ -133,7 +135,7 @@ class SystemEntry:
     label : str
         Its name in all tables.
     kind : str
-        The variant, or the peer as ``peer:<name>``.
+        The variant, or the baseline as ``baseline:<name>``.
     parameter_set : str
         Where its parameters are from; empty for the defaults.
     overrides, parameters : mapping of str to Any
@@ -190,8 +192,13 @@ class EvaluationFolder:
     def __init__(self, path: Path) -> None:
         self.path = path
         if not (path / PLAN).is_file():
-            raise InputError(f"{path} is no folder of an evaluation: it has no {PLAN}")
+            raise InputError(f"{path} is not an evaluation folder: it has no {PLAN}")
         self.plan: Mapping[str, Any] = read_document(path / PLAN)
+        if self.plan.get("format", FORMAT) != FORMAT:
+            raise InputError(
+                f"{path} is an evaluation of another version of this program (format "
+                f"{self.plan['format']}, not {FORMAT}): evaluate again into another folder"
+            )
         try:
             self.recordings = tuple(Source.from_json(entry) for entry in self.plan["recordings"])
             self.systems = tuple(_system(entry) for entry in self.plan["systems"])
@@ -259,7 +266,7 @@ def _optional(path: Path) -> Mapping[str, Any] | None:
 
 
 def _system(entry: Mapping[str, Any]) -> SystemEntry:
-    kind = entry["variant"] if entry.get("variant") else f"peer:{entry['peer']}"
+    kind = entry["variant"] if entry.get("variant") else f"baseline:{entry['baseline']}"
     return SystemEntry(
         label=str(entry["label"]),
         kind=str(kind),

@@ -1,4 +1,4 @@
-"""The client and its worker, on the one peer that every OpenCV has: MIL, of this environment."""
+"""The client and its worker, on MIL, the baseline that every OpenCV has."""
 
 import ast
 import sys
@@ -15,10 +15,10 @@ from vehicle_pf_tracker.evaluation.baselines.client import (
     DEFAULT,
     MODELS,
     VARIABLE,
-    Peer,
-    PeerAnswer,
-    peer_python,
-    peer_rows,
+    Baseline,
+    BaselineAnswer,
+    baseline_python,
+    baseline_rows,
 )
 
 PYTHON = Path(sys.executable)
@@ -35,11 +35,11 @@ def frame_at(shift):
 
 @pytest.fixture(scope="module")
 def mil():
-    with Peer("mil", PYTHON) as peer:
-        yield peer
+    with Baseline("mil", PYTHON) as baseline:
+        yield baseline
 
 
-def test_a_peer_follows_the_vehicle_and_tells_its_cpu_time(mil):
+def test_a_baseline_follows_the_vehicle_and_tells_its_cpu_time(mil):
     answers = [mil.start(frame_at(0), TARGET), *(mil.step(frame_at(2 * i)) for i in range(1, 6))]
     assert all(answer.found and answer.seconds > 0 for answer in answers)
     assert answers[0].box == TARGET
@@ -64,40 +64,44 @@ def test_frames_arrive_as_they_are_also_views_with_gaps(tmp_path, monkeypatch):
     wide = np.random.default_rng(1).integers(0, 256, (30, 80, 3), np.uint8)
     frame = wide[3:, 7:60]
     assert not frame.flags.c_contiguous
-    with Peer("csrt", PYTHON) as peer:
-        assert peer.start(frame, Box(2.4, 2.6, 0.3, 7)).box == Box(2, 3, 1, 7)
+    with Baseline("csrt", PYTHON) as baseline:
+        assert baseline.start(frame, Box(2.4, 2.6, 0.3, 7)).box == Box(2, 3, 1, 7)
         expected = Box(*map(float, frame[0, 0]), float(frame.sum(dtype=int)))
-        assert peer.step(frame).box == expected
+        assert baseline.step(frame).box == expected
 
 
 def test_a_target_has_to_be_set_first():
-    with Peer("mil", PYTHON) as peer, pytest.raises(InputError, match="has no target yet"):
-        peer.step(frame_at(0))
+    with Baseline("mil", PYTHON) as baseline, pytest.raises(InputError, match="has no target yet"):
+        baseline.step(frame_at(0))
 
 
 def test_a_dead_worker_is_named():
-    with Peer("mil", PYTHON) as peer:
-        peer._process.kill()
-        peer._process.wait()
-        with pytest.raises(InputError, match=r"the peer mil, run by .* ended: status -9"):
-            peer.start(np.zeros((2000, 2000, 3), np.uint8), TARGET)
+    with Baseline("mil", PYTHON) as baseline:
+        baseline._process.kill()
+        baseline._process.wait()
+        with pytest.raises(InputError, match=r"the baseline mil, run by .* ended: status -9"):
+            baseline.start(np.zeros((2000, 2000, 3), np.uint8), TARGET)
 
 
 @pytest.mark.parametrize(
     ("name", "models", "words"),
     [
-        ("boost", {}, "there is no peer 'boost'; the peers are csrt, kcf, mil, vit, nano"),
+        ("boost", {}, "there is no baseline 'boost'; the baselines are csrt, kcf, mil, vit, nano"),
         ("csrt", {"net": "a.onnx"}, "csrt needs no model files; got net"),
         ("nano", {"backbone": "a.onnx"}, "model files: backbone, neckhead; got backbone"),
-        ("vit", {"net": "absent.onnx"}, "no file absent.onnx for the model net of the peer vit"),
+        (
+            "vit",
+            {"net": "absent.onnx"},
+            "no file absent.onnx for the model net of the baseline vit",
+        ),
     ],
 )
-def test_wrong_peers_and_models_are_told_in_a_sentence(name, models, words):
+def test_wrong_baselines_and_models_are_told_in_a_sentence(name, models, words):
     with pytest.raises(InputError, match=words):
-        Peer(name, PYTHON, {key: Path(path) for key, path in models.items()})
+        Baseline(name, PYTHON, {key: Path(path) for key, path in models.items()})
 
 
-def test_every_peer_of_the_client_is_known_to_the_worker():
+def test_every_baseline_of_the_client_is_known_to_the_worker():
     assert list(MODELS) == list(worker.CLASSES)
 
 
@@ -112,8 +116,8 @@ def test_an_environment_without_opencv_is_named(tmp_path):
     bare = tmp_path / "python"
     bare.write_text(f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n')  # -S: no site-packages
     bare.chmod(0o755)
-    with pytest.raises(InputError, match=r"No module named 'cv2'; `make peers` builds"):
-        Peer("mil", bare)
+    with pytest.raises(InputError, match=r"No module named 'cv2'; `make baselines` builds"):
+        Baseline("mil", bare)
 
 
 def test_the_interpreter_is_the_chosen_one_else_the_variables_else_the_default(
@@ -121,16 +125,16 @@ def test_the_interpreter_is_the_chosen_one_else_the_variables_else_the_default(
 ):
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv(VARIABLE, raising=False)
-    with pytest.raises(InputError, match=rf"no interpreter {DEFAULT} .*make peers.*{VARIABLE}"):
-        peer_python()
+    with pytest.raises(InputError, match=rf"no interpreter {DEFAULT} .*make baselines.*{VARIABLE}"):
+        baseline_python()
     for name in (str(DEFAULT), "named", "chosen"):
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.symlink_to(sys.executable)
-    assert peer_python() == tmp_path / DEFAULT  # and not what it links to
+    assert baseline_python() == tmp_path / DEFAULT  # and not what it links to
     monkeypatch.setenv(VARIABLE, "named")
-    assert peer_python() == tmp_path / "named"
-    assert peer_python(Path("chosen")) == tmp_path / "chosen"
+    assert baseline_python() == tmp_path / "named"
+    assert baseline_python(Path("chosen")) == tmp_path / "chosen"
 
 
 def test_the_worker_needs_only_opencv_numpy_and_the_standard_library():
@@ -142,21 +146,21 @@ def test_the_worker_needs_only_opencv_numpy_and_the_standard_library():
 
 
 class GivesUp:
-    """A peer that loses its target in the second frame."""
+    """A baseline that loses its target in the second frame."""
 
     name = "stub"
 
     def start(self, _, box):
-        return PeerAnswer(box, found=True, seconds=0.002)
+        return BaselineAnswer(box, found=True, seconds=0.002)
 
     def step(self, _):
-        return PeerAnswer(TARGET, found=False, seconds=0.003)
+        return BaselineAnswer(TARGET, found=False, seconds=0.003)
 
 
-def test_rows_wait_for_the_first_truth_and_say_where_the_peer_gave_up():
+def test_rows_wait_for_the_first_truth_and_say_where_the_baseline_gave_up():
     frame = frame_at(0)
     frames = [(0, frame), (10**9, frame), (2 * 10**9, None), (3 * 10**9, frame)]
-    rows = list(peer_rows(GivesUp(), frames, Truth(10**9, TARGET, Occlusion.NONE)))
+    rows = list(baseline_rows(GivesUp(), frames, Truth(10**9, TARGET, Occlusion.NONE)))
     assert [row.mode for row in rows] == ["WAITING", "TRACKING", "REJECTED", "LOST"]
     assert [row.frame for row in rows] == [1, 2, 3, 4]
     assert rows[3].position == TARGET.centre
@@ -165,4 +169,4 @@ def test_rows_wait_for_the_first_truth_and_say_where_the_peer_gave_up():
 
 def test_rows_need_an_image_of_the_first_truth():
     with pytest.raises(InputError, match=r"no image is within 0.01 s of the first truth, at 5.000"):
-        list(peer_rows(GivesUp(), [(0, frame_at(0))], Truth(5 * 10**9, TARGET, Occlusion.NONE)))
+        list(baseline_rows(GivesUp(), [(0, frame_at(0))], Truth(5 * 10**9, TARGET, Occlusion.NONE)))

@@ -9,7 +9,7 @@ from grid_samples import here, make_plan, results, silent, system, write_recordi
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.cluster import on_cluster, run_checked
 from vehicle_pf_tracker.evaluation.grid.running import complete
-from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem
+from vehicle_pf_tracker.evaluation.grid.systems import BaselineSystem
 
 distributed = pytest.importorskip("distributed")
 
@@ -50,7 +50,7 @@ def test_a_worker_killed_halfway_costs_nothing_and_gives_nothing_twice(cluster, 
 
 def test_what_cannot_run_there_says_why(cluster, tmp_path):
     paths = write_recordings(tmp_path / "recordings")[:1]
-    plan = make_plan(paths, [PeerSystem("mil", str(tmp_path / "none"))])
+    plan = make_plan(paths, [BaselineSystem("mil", str(tmp_path / "none"))])
     reasons = []
 
     def listening(cells):

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.grid import sources
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
-from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem
+from vehicle_pf_tracker.evaluation.grid.systems import BaselineSystem
 
 
 @pytest.fixture(scope="module")
@@ -125,10 +125,10 @@ def test_what_a_killed_run_left_half_written_goes(plan, out):
 
 
 def test_what_cannot_run_says_why_and_is_tried_again(recordings, out, tmp_path):
-    plan = make_plan(recordings, [PeerSystem("csrt", str(tmp_path / "none")), system("ms")])
+    plan = make_plan(recordings, [BaselineSystem("csrt", str(tmp_path / "none")), system("ms")])
     assert complete(plan, out, here, silent) == 4
     folder = EvaluationFolder(out)
-    assert "there is no interpreter" in folder.cell("free", "peer:csrt", 0).reason
+    assert "there is no interpreter" in folder.cell("free", "baseline:csrt", 0).reason
     assert folder.cell("free", "ms", 0).rows is not None
     assert complete(plan, out, here, silent) == 2
 

@@ -11,7 +11,7 @@ from vehicle_pf_tracker.evaluation.failures import follow_restarted
 from vehicle_pf_tracker.evaluation.grid.cells import Start, shifted_starts, start_frames
 from vehicle_pf_tracker.evaluation.grid.plan import Robustness
 from vehicle_pf_tracker.evaluation.grid.running import complete
-from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem
+from vehicle_pf_tracker.evaluation.grid.systems import BaselineSystem
 from vehicle_pf_tracker.evaluation.grid.timing import WARM_UP, time_systems
 
 TRUE = Box(100, 50, 20, 10)
@@ -129,13 +129,13 @@ def test_a_start_without_a_place_is_the_first_truth_as_it_is():
 
 
 def test_the_speed_of_all_that_can_run_is_measured(recordings, tmp_path):
-    systems = [system("pf"), system("ms"), PeerSystem("csrt", str(tmp_path / "none"))]
+    systems = [system("pf"), system("ms"), BaselineSystem("csrt", str(tmp_path / "none"))]
     told = []
     time_systems(make_plan(recordings, systems), tmp_path, 10, told.append)
     cells = json.loads((tmp_path / "timings.json").read_text())["cells"]
     assert len(cells) == 6
     for cell in cells:
-        if cell["system"] == "peer:csrt":
+        if cell["system"] == "baseline:csrt":
             assert cell["steps"] == 0
             assert cell["step_ms_p50"] is None
         else:

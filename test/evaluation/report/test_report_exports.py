@@ -72,7 +72,11 @@ def test_evo_agrees_on_the_rmse_of_the_recording(evo, exported, runs):
 
 @pytest.mark.parametrize(
     ("system", "name"),
-    [("apf", "apf/seed_3"), ("peer:csrt", "peer_csrt/seed_3"), ("2nd-try", "_2nd_try/seed_3")],
+    [
+        ("apf", "apf/seed_3"),
+        ("baseline:csrt", "baseline_csrt/seed_3"),
+        ("2nd-try", "_2nd_try/seed_3"),
+    ],
 )
 def test_topics_are_names_that_ros_takes(system, name):
     assert topic_name(system, 3) == name

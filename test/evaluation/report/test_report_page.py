@@ -5,7 +5,7 @@ from collections import Counter
 from html.parser import HTMLParser
 
 import pytest
-from evaluation_samples import HIDDEN, NO_PEERS, VARIANTS
+from evaluation_samples import HIDDEN, NO_BASELINES, VARIANTS
 
 from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
 
@@ -110,7 +110,7 @@ def test_it_shows_all_systems_and_recordings(page):
 
 def test_it_says_how_it_was_made_and_what_failed(page):
     assert "vehicle-pf-tracker evaluate free -o evaluation" in page.text("code")
-    assert NO_PEERS in page.text("td")
+    assert NO_BASELINES in page.text("td")
     assert "under_a_bridge: seed 0, 1; free: seed 0, 1" in page.text("td")
     assert "4 of 14 cells have no result" in page.text("li")
     assert "40" in page.text("strong")  # num_particles was set

@@ -61,7 +61,7 @@ def test_the_best_mean_rank_comes_first(aggregates):
     ranks = [rank.mean_rank for rank in aggregates.rankings["success_auc"].ranks]
     assert ranks == sorted(ranks)
     assert aggregates.order == tuple(r.system for r in aggregates.rankings["success_auc"].ranks)
-    assert set(aggregates.order) == set(VARIANTS)  # the peer has no result
+    assert set(aggregates.order) == set(VARIANTS)  # the baseline has no result
     assert len(aggregates.pairs) == 3
 
 
@@ -103,7 +103,7 @@ def test_markdown_has_a_table_for_each_recording_and_every_failed_cell(evaluatio
     ]  # fmt: skip
     tables = [line for line in text.splitlines() if line.startswith("| pf |")]
     assert len(tables) == 2 + len(HIDDEN)
-    assert text.count("| peer:csrt |") == len(HIDDEN) * len(SEEDS)
+    assert text.count("| baseline:csrt |") == len(HIDDEN) * len(SEEDS)
 
 
 def test_latex_escapes_what_it_must(aggregates):

@@ -22,14 +22,15 @@ from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.evaluation.processes import wait_or_kill
 
-VARIABLE = "VEHICLE_PF_TRACKER_PEERS"
+VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 """Environment variable that names the interpreter."""
+_FORMER_VARIABLE = "VEHICLE_PF_TRACKER_PEERS"
 
-DEFAULT = Path(".venv-peers/bin/python")
-"""What `make peers` builds, below the working directory."""
+DEFAULT = Path(".venv-baselines/bin/python")
+"""What `make baselines` builds, below the working directory."""
 
 
-def peer_python(chosen: Path | None = None) -> Path:
+def baseline_python(chosen: Path | None = None) -> Path:
     """Find the interpreter that has OpenCV's contrib trackers.
 
     Parameters
@@ -42,11 +43,13 @@ def peer_python(chosen: Path | None = None) -> Path:
     InputError
         If there is no such file.
     """
+    if _FORMER_VARIABLE in os.environ:
+        raise InputError(f"the environment variable {_FORMER_VARIABLE} is now called {VARIABLE}")
     python = chosen or Path(os.environ.get(VARIABLE) or DEFAULT)
     if not python.is_file():
         raise InputError(
             f"there is no interpreter {python} to run OpenCV's trackers with; build {DEFAULT} with "
-            f"`make peers`, or name another one in the environment variable {VARIABLE}"
+            f"`make baselines`, or name another one in the environment variable {VARIABLE}"
         )
     return python.absolute()  # not resolved: a link is what makes it the environment's
 
@@ -61,20 +64,20 @@ MODELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "dasiamrpn": ("model", "kernel_cls1", "kernel_r1"),
     }
 )
-"""The peers by name, and the model files that the user brings for each."""
+"""The baselines by name, and the model files that the user brings for each."""
 
 _WORKER = Path(__file__).with_name("worker.py")
 
 
-class PeerAnswer(NamedTuple):
-    """What a peer says of one frame.
+class BaselineAnswer(NamedTuple):
+    """What a baseline says of one frame.
 
     Attributes
     ----------
     box : Box
-        In px; the last one known where the peer gave the frame up.
+        In px; the last one known where the baseline gave the frame up.
     found : bool
-        Whether the peer claims to see its target.
+        Whether the baseline claims to see its target.
     seconds : float
         CPU of the tracking thread, without the transfer of the frame.
     """
@@ -84,7 +87,7 @@ class PeerAnswer(NamedTuple):
     seconds: float
 
 
-class Peer:
+class Baseline:
     """One of OpenCV's trackers; a context manager, since it owns a process.
 
     A new process repeats a run exactly. Started anew in the same process, MIL draws other samples.
@@ -94,9 +97,9 @@ class Peer:
     name : str
         A key of `MODELS`.
     python : Path or None
-        Interpreter with OpenCV's contrib package; None looks where `peer_python` says.
+        Interpreter with OpenCV's contrib package; None looks where `baseline_python` says.
     models : mapping of str to Path
-        Model files by the names that `MODELS` gives for this peer.
+        Model files by the names that `MODELS` gives for this baseline.
 
     Attributes
     ----------
@@ -106,7 +109,7 @@ class Peer:
     Raises
     ------
     InputError
-        If there is no such peer, interpreter, tracker or model file.
+        If there is no such baseline, interpreter, tracker or model file.
     """
 
     def __init__(
@@ -118,7 +121,7 @@ class Peer:
         words = [f"{key}={path}" for key, path in _checked_models(name, models).items()]
         self.name = name
         self._box: Box | None = None
-        self._python = str(peer_python(python))
+        self._python = str(baseline_python(python))
         command = [self._python, "-I", str(_WORKER), name, *words]
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process
         try:
@@ -134,13 +137,13 @@ class Peer:
             self.close()
             raise
 
-    def start(self, frame: Frame, box: Box) -> PeerAnswer:
+    def start(self, frame: Frame, box: Box) -> BaselineAnswer:
         """Begin anew on `box` (rounded to whole px, as these trackers want it) of `frame`.
 
         Raises
         ------
         InputError
-            If the peer refuses the box, or has died.
+            If the baseline refuses the box, or has died.
         """
         self._box = None
         left, top = round(box.x), round(box.y)
@@ -148,16 +151,16 @@ class Peer:
             frame, box=[left, top, max(round(box.width), 1), max(round(box.height), 1)]
         )
 
-    def step(self, frame: Frame) -> PeerAnswer:
+    def step(self, frame: Frame) -> BaselineAnswer:
         """Follow the target into the next frame, which is (H, W, 3) RGB.
 
         Raises
         ------
         InputError
-            If the peer was not started, or has died.
+            If the baseline was not started, or has died.
         """
         if self._box is None:
-            raise InputError(f"the peer {self.name} has no target yet: start it on a box first")
+            raise InputError(f"the baseline {self.name} has no target yet: start it on a box first")
         return self._ask(frame)
 
     def close(self) -> None:
@@ -170,13 +173,13 @@ class Peer:
             self._process.stdout.close()
         self._log.close()
 
-    def __enter__(self) -> Peer:
+    def __enter__(self) -> Baseline:
         return self
 
     def __exit__(self, *failure: object) -> None:
         self.close()
 
-    def _ask(self, frame: Frame, **request: object) -> PeerAnswer:
+    def _ask(self, frame: Frame, **request: object) -> BaselineAnswer:
         width, height = frame_size(frame)
         header = json.dumps({"height": height, "width": width, **request}).encode() + b"\n"
         assert self._process.stdin is not None
@@ -191,7 +194,7 @@ class Peer:
         box = Box(*answer["box"]) if found else self._box
         assert box is not None  # a start answers with a box
         self._box = box
-        return PeerAnswer(box, found, float(answer["seconds"]))
+        return BaselineAnswer(box, found, float(answer["seconds"]))
 
     def _answer(self) -> dict[str, Any]:
         assert self._process.stdout is not None
@@ -200,7 +203,7 @@ class Peer:
             raise self._death()
         answer: dict[str, Any] = json.loads(line)
         if "error" in answer:
-            raise InputError(f"the peer {self.name} cannot go on: {answer['error']}")
+            raise InputError(f"the baseline {self.name} cannot go on: {answer['error']}")
         return answer
 
     def _death(self) -> InputError:
@@ -209,38 +212,38 @@ class Peer:
         said = self._log.read().decode(errors="replace").strip().splitlines()
         reason = said[-1] if said else f"status {status}"
         return InputError(
-            f"the peer {self.name}, run by {self._python}, ended: {reason}; "
-            "`make peers` builds an environment that has what it needs"
+            f"the baseline {self.name}, run by {self._python}, ended: {reason}; "
+            "`make baselines` builds an environment that has what it needs"
         )
 
 
 def _checked_models(name: str, models: Mapping[str, Path]) -> dict[str, Path]:
     if name not in MODELS:
-        raise InputError(f"there is no peer {name!r}; the peers are {', '.join(MODELS)}")
+        raise InputError(f"there is no baseline {name!r}; the baselines are {', '.join(MODELS)}")
     wanted = MODELS[name]
     if set(models) != set(wanted):
         words = f"these model files: {', '.join(wanted)}" if wanted else "no model files"
         given = f"got {', '.join(sorted(models))}" if models else "got none"
-        raise InputError(f"the peer {name} needs {words}; {given}")
+        raise InputError(f"the baseline {name} needs {words}; {given}")
     for key, path in models.items():
         if not Path(path).is_file():
-            raise InputError(f"there is no file {path} for the model {key} of the peer {name}")
+            raise InputError(f"there is no file {path} for the model {key} of the baseline {name}")
     return {key: Path(path).absolute() for key, path in models.items()}
 
 
-def peer_rows(
-    peer: Peer, frames: Iterable[tuple[int, Frame | None]], first_truth: Truth
+def baseline_rows(
+    baseline: Baseline, frames: Iterable[tuple[int, Frame | None]], first_truth: Truth
 ) -> Iterator[EstimateRow]:
     """Track through (stamp in ns, frame) pairs, and give one row for each.
 
-    The peer starts on the first truth's box, in the first image that belongs to it by its stamp.
-    Where it gives up, the row is ``LOST`` at its last box. ``step_ms`` is CPU time, which a peer
-    that works in one thread alone needs at least.
+    The baseline starts on the first truth's box, in the first image that belongs to it by its
+    stamp. Where it gives up, the row is ``LOST`` at its last box. ``step_ms`` is CPU time of one
+    thread.
 
     Raises
     ------
     InputError
-        If no image belongs to the first truth, or the peer cannot go on.
+        If no image belongs to the first truth, or the baseline cannot go on.
     """
     limit = max_diff_ns(MAX_DIFF)
     started = False
@@ -248,20 +251,20 @@ def peer_rows(
         if frame is None:
             yield EstimateRow.without(number, stamp, REJECTED)
         elif started:
-            yield _row(number, stamp, peer.step(frame))
+            yield _row(number, stamp, baseline.step(frame))
         elif abs(stamp - first_truth.stamp_ns) <= limit:
             started = True
-            yield _row(number, stamp, peer.start(frame, first_truth.box))
+            yield _row(number, stamp, baseline.start(frame, first_truth.box))
         else:
             yield EstimateRow.without(number, stamp, WAITING)
     if not started:
         raise InputError(
             f"no image is within {MAX_DIFF:g} s of the first truth, "
-            f"at {first_truth.stamp_ns / 1e9:.3f} s; the peer {peer.name} cannot start"
+            f"at {first_truth.stamp_ns / 1e9:.3f} s; the baseline {baseline.name} cannot start"
         )
 
 
-def _row(number: int, stamp_ns: int, answer: PeerAnswer) -> EstimateRow:
+def _row(number: int, stamp_ns: int, answer: BaselineAnswer) -> EstimateRow:
     box = answer.box
     return EstimateRow(
         frame=number,

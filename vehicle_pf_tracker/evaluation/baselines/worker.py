@@ -63,7 +63,7 @@ def tracker_maker(name: str, models: dict[str, str]) -> Callable[[], Any]:
     if create is None:
         raise LookupError(
             f"OpenCV {cv2.__version__} of {sys.executable} has no {kind}, neither in cv2 nor in "
-            "cv2.legacy; `make peers` builds an environment that has it"
+            "cv2.legacy; `make baselines` builds an environment that has it"
         )
     make: Callable[..., Any] = create
     if not models:

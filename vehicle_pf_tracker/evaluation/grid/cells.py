@@ -118,7 +118,7 @@ BESIDE = "robustness"
 _PACKAGE = "vehicle_pf_tracker"
 _SHARED = frozenset({f"{_PACKAGE}.recordings.reader"})
 _OURS = frozenset({f"{_PACKAGE}.evaluation.offline"})
-_PEERS = frozenset(f"{_PACKAGE}.evaluation.baselines.{name}" for name in ("client", "worker"))
+_BASELINES = frozenset(f"{_PACKAGE}.evaluation.baselines.{name}" for name in ("client", "worker"))
 _STARTS = frozenset({f"{_PACKAGE}.evaluation.grid.cells", f"{_PACKAGE}.evaluation.failures"})
 
 
@@ -130,7 +130,7 @@ class GridCell:
     ----------
     source : Source
         The recording.
-    system : VariantSystem or PeerSystem
+    system : VariantSystem or BaselineSystem
         What follows the vehicle.
     seed : int
         Of the random numbers.
@@ -175,4 +175,4 @@ class GridCell:
         modules = _SHARED | (_STARTS if self.start.kind else frozenset())
         if isinstance(self.system, VariantSystem):
             return modules | _OURS | variant_modules(find_variant(self.system.variant))
-        return modules | _PEERS
+        return modules | _BASELINES

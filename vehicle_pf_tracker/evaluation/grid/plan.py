@@ -11,6 +11,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
+    FORMAT,
     PLAN,
     TRUTH,
     Source,
@@ -28,8 +29,6 @@ from vehicle_pf_tracker.evaluation.grid.cells import (
 from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
 from vehicle_pf_tracker.evaluation.results import versions
-
-FORMAT = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +107,7 @@ class Plan:
         return grid + beside
 
     def _cells(self, source: Source, starts: Sequence[Start]) -> Iterator[GridCell]:
-        # Peers are slow: begun last, they would be waited for.
+        # Baselines are slow: begun last, they would be waited for.
         ordered = sorted(self.systems, key=lambda system: isinstance(system, VariantSystem))
         for start in starts:
             for system in ordered:

@@ -1,4 +1,4 @@
-"""What follows the vehicle: a variant with its parameters, or a peer."""
+"""What follows the vehicle: a variant with its parameters, or a baseline."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.registry import Variant, find_variant
 
-PEER = "peer:"
+BASELINE = "baseline:"
 Settings = tuple[tuple[str, Value], ...]
 
 
@@ -96,24 +96,24 @@ class VariantSystem:
 
 
 @dataclass(frozen=True, slots=True)
-class PeerSystem:
+class BaselineSystem:
     """One of OpenCV's trackers, in an environment of its own.
 
     A new process repeats a run exactly, so that one run of it is enough.
 
     Attributes
     ----------
-    peer : str
-        Its name without ``peer:``.
+    baseline : str
+        Its name without ``baseline:``.
     python : str
-        The interpreter that runs it; empty looks where `peers.environment` says.
+        The interpreter that runs it; empty looks where `baselines.environment` says.
     models : tuple of (str, str)
         Its model files by name.
     build : str
         What is known of the interpreter's OpenCV, so that results of another one are not kept.
     """
 
-    peer: str
+    baseline: str
     python: str = ""
     models: tuple[tuple[str, str], ...] = ()
     build: str = ""
@@ -121,7 +121,7 @@ class PeerSystem:
     @property
     def label(self) -> str:
         """Its name in all tables."""
-        return f"{PEER}{self.peer}"
+        return f"{BASELINE}{self.baseline}"
 
     @property
     def is_deterministic(self) -> bool:
@@ -130,7 +130,7 @@ class PeerSystem:
 
     def facts(self, seed: int) -> dict[str, Any]:
         """Give what decides about its runs, besides the code."""
-        return {"peer": self.peer, "models": self.models, "build": self.build, "seed": seed}
+        return {"baseline": self.baseline, "models": self.models, "build": self.build, "seed": seed}
 
     def model_files(self) -> Mapping[str, Path]:
         """Return its model files."""
@@ -141,7 +141,7 @@ class PeerSystem:
         models: dict[str, Value] = dict(self.models)
         return {
             "label": self.label,
-            "peer": self.peer,
+            "baseline": self.baseline,
             "parameter_set": "",
             "overrides": models,
             "parameters": {**models, "opencv": self.build},
@@ -149,7 +149,7 @@ class PeerSystem:
         }
 
 
-System = VariantSystem | PeerSystem
+System = VariantSystem | BaselineSystem
 
 
 def seeds_of(system: System, seeds: Sequence[int]) -> Sequence[int]:

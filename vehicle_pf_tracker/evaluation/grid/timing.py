@@ -2,7 +2,7 @@
 
 Each frame is given to all systems before the next one is, so that whatever slows the machine down
 for a while slows all of them alike, and nothing of ours runs beside. What counts is the processor
-time of the thread that tracks; decoding and the way to a peer's process are left out.
+time of the thread that tracks; decoding and the way to a baseline's process are left out.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.association import max_diff_ns
-from vehicle_pf_tracker.evaluation.baselines.client import Peer
+from vehicle_pf_tracker.evaluation.baselines.client import Baseline
 from vehicle_pf_tracker.evaluation.evaluation_folder import TIMINGS, Source
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
@@ -134,12 +134,12 @@ class _TimedVariant:
         return time.thread_time() - began
 
 
-class _TimedPeer:
-    def __init__(self, peer: Peer) -> None:
-        self._peer = peer
+class _TimedBaseline:
+    def __init__(self, baseline: Baseline) -> None:
+        self._baseline = baseline
 
     def step(self, stamp_ns: int, frame: Frame) -> float:
-        return self._peer.step(frame).seconds
+        return self._baseline.step(frame).seconds
 
 
 def _start(
@@ -150,6 +150,6 @@ def _start(
         timed.step(*first)
         return timed
     python = Path(system.python) if system.python else None
-    peer = stack.enter_context(Peer(system.peer, python, system.model_files()))
-    peer.start(first[1], box)
-    return _TimedPeer(peer)
+    baseline = stack.enter_context(Baseline(system.baseline, python, system.model_files()))
+    baseline.start(first[1], box)
+    return _TimedBaseline(baseline)

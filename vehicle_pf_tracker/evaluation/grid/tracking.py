@@ -13,12 +13,12 @@ import cv2
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.baselines.client import Peer, peer_rows
+from vehicle_pf_tracker.evaluation.baselines.client import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.evaluation.failures import follow_restarted
 from vehicle_pf_tracker.evaluation.grid.cells import RESTARTS, GridCell
 from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
-from vehicle_pf_tracker.evaluation.grid.systems import PeerSystem, VariantSystem
+from vehicle_pf_tracker.evaluation.grid.systems import BaselineSystem, VariantSystem
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
 from vehicle_pf_tracker.evaluation.results import RunInfo, describe_run, versions
@@ -93,7 +93,7 @@ class Follower(Protocol):
 def _follower(cell: GridCell, start: Truth) -> Follower:
     if isinstance(cell.system, VariantSystem):
         return _VariantFollower(cell, cell.system, start)
-    return _PeerFollower(cell, cell.system, start)
+    return _BaselineFollower(cell, cell.system, start)
 
 
 class _VariantFollower:
@@ -117,8 +117,8 @@ class _VariantFollower:
         return describe_run(info, self._tracker.session)
 
 
-class _PeerFollower:
-    def __init__(self, cell: GridCell, system: PeerSystem, start: Truth) -> None:
+class _BaselineFollower:
+    def __init__(self, cell: GridCell, system: BaselineSystem, start: Truth) -> None:
         self._cell = cell
         self._system = system
         self._start = start
@@ -127,9 +127,9 @@ class _PeerFollower:
 
     def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]:
         python = Path(self._system.python) if self._system.python else None
-        with Peer(self._system.peer, python, self._system.model_files()) as peer:
-            self._opencv = peer.opencv
-            for row in peer_rows(peer, frames, self._start):
+        with Baseline(self._system.baseline, python, self._system.model_files()) as baseline:
+            self._opencv = baseline.opencv
+            for row in baseline_rows(baseline, frames, self._start):
                 if self._start_frame is None and row.mode not in {WAITING, REJECTED}:
                     self._start_frame = row.frame
                 yield row
@@ -141,7 +141,7 @@ class _PeerFollower:
             "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
             "recording": source.path,
             "image_topic": source.topic,
-            "peer": self._system.peer,
+            "baseline": self._system.baseline,
             "seed": self._cell.seed,
             "target": [box.x, box.y, box.width, box.height],
             "start_frame": self._start_frame,

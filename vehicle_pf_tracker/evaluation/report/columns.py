@@ -123,7 +123,7 @@ COLUMNS = (
            lambda m: m.occluded_precision,
            "Share of the frames with the mode OCCLUDED that are totally occluded.", False),
     Column("occluded_recall", CLAIMS, "OCCLUDED recall", "", 2, True, lambda m: m.occluded_recall,
-           "Share of the totally occluded frames with the mode OCCLUDED, which peers do not have.",
+           "Share of the totally occluded frames with the mode OCCLUDED; baselines have none.",
            False),
     Column("lost_visible", CLAIMS, "LOST though visible", "frames", 1, None,
            lambda m: float(m.lost_visible),
