@@ -17,7 +17,7 @@ from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import with_target
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs, to_mapping
 from vehicle_pf_tracker.scenes.scene import Scene, SceneFrame
 from vehicle_pf_tracker.trackers.registry import find_variant

@@ -34,7 +34,7 @@ from reproduction.mfpf_systems import (
 from reproduction.numbers import mean_and_spread
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
+from vehicle_pf_tracker.image.colour import RgbMarginals
 from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, hellinger_distance
 from vehicle_pf_tracker.image.window_feature import WindowFeature
 from vehicle_pf_tracker.scenes.scene import SceneFrame

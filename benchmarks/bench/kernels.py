@@ -13,7 +13,7 @@ from benchmarks.bench.material import clouds, drive, enlarged
 from benchmarks.bench.routes import Route, routes, three_references
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
-from vehicle_pf_tracker.image.reference import Reference
+from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Positions, Window
 
 COUNTS = (50, 200, 1000, 5000)

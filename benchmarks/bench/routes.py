@@ -9,13 +9,12 @@ import numpy as np
 from benchmarks.bench.naive import ThreeHistograms
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.glcm import Cooccurrence
+from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.joint_colour import JointColour
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
 from vehicle_pf_tracker.image.kernels.interface import Kernels, SimilarityMap
-from vehicle_pf_tracker.image.reference import Reference
-from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
+from vehicle_pf_tracker.image.similarity import Reference
+from vehicle_pf_tracker.image.textures import Cooccurrence
 from vehicle_pf_tracker.image.window import Positions, Window
 
 _THREE = RgbMarginals(), GradientDirections(), Cooccurrence()

@@ -7,7 +7,7 @@ from benchmarks.bench import kernels, naive
 from benchmarks.bench.material import clouds, drive, enlarged
 from benchmarks.bench.routes import routes, three_references
 from benchmarks.bench.targets import TARGETS
-from vehicle_pf_tracker.image.reference import Reference
+from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Window
 
 WINDOW = Window(9, 6)

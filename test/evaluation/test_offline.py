@@ -9,7 +9,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.session import Session
 

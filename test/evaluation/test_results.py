@@ -14,7 +14,7 @@ from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
 from vehicle_pf_tracker.evaluation.output_files import write_json, write_text
 from vehicle_pf_tracker.evaluation.results import ResultFolder, RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 PF = VARIANTS["pf"]

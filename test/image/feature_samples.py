@@ -2,12 +2,9 @@
 
 import numpy as np
 
-from vehicle_pf_tracker.image.glcm import Cooccurrence
+from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.haralick import HaralickStatistics
-from vehicle_pf_tracker.image.joint_colour import JointColour
-from vehicle_pf_tracker.image.lbp import BinaryPatterns
-from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
+from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
 
 FEATURES = {
     "joint": JointColour(),

@@ -5,10 +5,12 @@ from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import check_frame
-from vehicle_pf_tracker.image.colour import bin_count, bin_indices, joint_histogram
-from vehicle_pf_tracker.image.joint_colour import JointColour
-from vehicle_pf_tracker.image.reference import Reference
-from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, hellinger_distance
+from vehicle_pf_tracker.image.colour import JointColour, bin_count, bin_indices, joint_histogram
+from vehicle_pf_tracker.image.similarity import (
+    Reference,
+    bhattacharyya_coefficient,
+    hellinger_distance,
+)
 from vehicle_pf_tracker.image.window import Window
 
 

@@ -5,8 +5,12 @@ from feature_samples import checkerboard, ramp, step_edge
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.sobel import direction_bins, squared_limits, squared_strength
+from vehicle_pf_tracker.image.gradients import (
+    GradientDirections,
+    direction_bins,
+    squared_limits,
+    squared_strength,
+)
 from vehicle_pf_tracker.image.window import Window, bounds
 
 

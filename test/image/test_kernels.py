@@ -7,16 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.image import kernels
-from vehicle_pf_tracker.image.glcm import Cooccurrence
-from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.joint_colour import JointColour
+from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
+from vehicle_pf_tracker.image.gradients import GradientDirections, direction_bins
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
 from vehicle_pf_tracker.image.kernels.interface import PixelRange
-from vehicle_pf_tracker.image.lbp import BinaryPatterns
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
-from vehicle_pf_tracker.image.reference import Reference
-from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
-from vehicle_pf_tracker.image.sobel import direction_bins
+from vehicle_pf_tracker.image.similarity import Reference
+from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence
 from vehicle_pf_tracker.image.window import Window
 
 OPENCV = load_kernels("opencv")

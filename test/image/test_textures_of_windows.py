@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 from feature_samples import checkerboard, grey, ramp, step_edge
 
-from vehicle_pf_tracker.image.glcm import Cooccurrence, pair_bins
-from vehicle_pf_tracker.image.haralick import HaralickStatistics, descriptors
-from vehicle_pf_tracker.image.lbp import BinaryPatterns, patterns
+from vehicle_pf_tracker.image.textures import (
+    BinaryPatterns,
+    Cooccurrence,
+    HaralickStatistics,
+    descriptors,
+    pair_bins,
+    patterns,
+)
 from vehicle_pf_tracker.image.window import Window
 
 

@@ -6,8 +6,7 @@ from feature_samples import FEATURES
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.image.reference import Reference
-from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient
+from vehicle_pf_tracker.image.similarity import Reference, bhattacharyya_coefficient
 from vehicle_pf_tracker.image.window import Window
 
 every_feature = pytest.mark.parametrize("feature", FEATURES.values(), ids=list(FEATURES))

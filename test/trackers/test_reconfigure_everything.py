@@ -11,7 +11,7 @@ import pytest
 from street import Street
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters, TargetParameters
+from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.parameters.table import ParameterSpec, from_mapping, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.session import Session

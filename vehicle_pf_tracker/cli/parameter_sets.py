@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import (
     ParameterSpec,
     parse_assignments,

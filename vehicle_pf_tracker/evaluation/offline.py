@@ -13,7 +13,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters, TargetParameters
+from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.trackers.continuity import StrayImageError
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
 
@@ -10,13 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.sobel import (
-    DIRECTION_BINS,
-    Strengths,
-    direction_bins,
-    squared_limits,
-    squared_strength,
-)
 from vehicle_pf_tracker.image.window import (
     Bounds,
     Positions,
@@ -25,15 +19,141 @@ from vehicle_pf_tracker.image.window import (
     centres,
     keep_inside,
 )
-from vehicle_pf_tracker.image.window_feature import Counted, CountedFeature, to_grey
-from vehicle_pf_tracker.image.window_gradients import window_direction_counts
+from vehicle_pf_tracker.image.window_feature import Counted, CountedFeature, Grey, to_grey
 from vehicle_pf_tracker.image.window_sums import areas, bin_counts, covered_region
+
+Strengths: TypeAlias = npt.NDArray[np.float32]
+"""Squared magnitude of the gradient; whole numbers below 2**24, so exact."""
+
+DIRECTION_BINS = 64
+
+
+def squared_strength(gx: npt.NDArray[Any], gy: npt.NDArray[Any]) -> Strengths:
+    """Squared magnitude of equation 7, in grey levels squared."""
+    gx, gy = gx.astype(np.float32), gy.astype(np.float32)
+    return np.asarray(gx * gx + gy * gy)
+
+
+def squared_limits(peaks: Strengths, threshold: float, floor: float = 0.0) -> Strengths:
+    """Least squared strength of edge points where the strongest has `peaks`.
+
+    Parameters
+    ----------
+    peaks : array
+        Squared strengths.
+    threshold : float
+        Share of the strongest gradient that makes an edge point.
+    floor : float
+        Gradient that an edge point has at least, whatever the strongest is.
+
+    Returns
+    -------
+    array
+        Infinite where there is no gradient at all: nothing is an edge point there.
+    """
+    limits = np.maximum(np.float32(threshold) ** 2 * peaks, np.float32(floor) ** 2)
+    return np.asarray(np.where(peaks > 0, limits, np.inf), np.float32)
+
+
+def direction_bins(
+    gx: npt.NDArray[Any], gy: npt.NDArray[Any], *, signed: bool
+) -> npt.NDArray[np.intp]:
+    """Bin 0 to 63 of the direction in the image (x to the right, y down).
+
+    Parameters
+    ----------
+    gx, gy : arrays of one shape
+        Whole numbers, not both zero.
+    signed : bool
+        False takes ``atan(gy / gx)``, which knows no opposite directions.
+
+    Returns
+    -------
+    array
+        -180 degrees is bin 0, 0 degrees the lower end of bin 32; 180 degrees is -180.
+    """
+    if not signed:
+        fold = (gx < 0) | ((gx == 0) & (gy < 0))
+        gx, gy = np.where(fold, -gx, gx), np.where(fold, -gy, gy)
+    turns = np.arctan2(gy.astype(np.float64), gx.astype(np.float64)) / (2 * np.pi) + 0.5
+    return np.floor(turns * DIRECTION_BINS).astype(np.intp) % DIRECTION_BINS
+
+
+Indices: TypeAlias = npt.NDArray[np.intp]
+LimitsOf: TypeAlias = Callable[[Strengths], Strengths]
+
+
+def window_direction_counts(
+    grey: Grey, windows: Bounds, limits_of: LimitsOf, *, signed: bool
+) -> npt.NDArray[np.intp]:
+    """Count edge points by direction, each window being an image of its own.
+
+    Parameters
+    ----------
+    grey : (H, W) array
+        Grey levels.
+    windows : Bounds
+        Rectangles in `grey`, arrays of shape (N,).
+    limits_of : callable
+        Squared strength that makes an edge point, from the windows' largest ones.
+    signed : bool
+        As in `direction_bins`.
+
+    Returns
+    -------
+    (N, 64) array
+    """
+    parts = [_counts(grey, part, limits_of, signed=signed) for part in _chunks(windows)]
+    return np.concatenate(parts)
+
+
+def _chunks(windows: Bounds) -> Iterator[Bounds]:
+    largest = (windows.right - windows.left).max() * (windows.bottom - windows.top).max()
+    size = max(_CHUNK // int(largest), 1)
+    for start in range(0, len(windows.left), size):
+        yield Bounds(*(side[start : start + size] for side in windows))
+
+
+def _counts(
+    grey: Grey, windows: Bounds, limits_of: LimitsOf, *, signed: bool
+) -> npt.NDArray[np.intp]:
+    rows, row_exists = _mirrored(windows.top, windows.bottom)
+    columns, column_exists = _mirrored(windows.left, windows.right)
+    pixels = grey[rows[:, :, np.newaxis], columns[:, np.newaxis, :]].astype(np.int32)
+    along_x = pixels[:, :, 2:] - pixels[:, :, :-2]
+    along_y = pixels[:, 2:] - pixels[:, :-2]
+    gx = along_x[:, :-2] + 2 * along_x[:, 1:-1] + along_x[:, 2:]
+    gy = along_y[:, :, :-2] + 2 * along_y[:, :, 1:-1] + along_y[:, :, 2:]
+    strength = squared_strength(gx, gy)
+    strength *= row_exists[:, :, np.newaxis] & column_exists[:, np.newaxis, :]
+    limits = limits_of(strength.max(axis=(1, 2)))
+    edges = np.nonzero(strength >= limits[:, np.newaxis, np.newaxis])
+    bins = direction_bins(gx[edges], gy[edges], signed=signed)
+    count = len(windows.left)
+    flat = np.bincount(edges[0] * DIRECTION_BINS + bins, minlength=count * DIRECTION_BINS)
+    return flat.reshape(count, DIRECTION_BINS)
+
+
+def _mirrored(first: Indices, end: Indices) -> tuple[Indices, npt.NDArray[np.bool_]]:
+    """Pixel numbers from one before each window to one behind the longest, mirrored into it.
+
+    Returns
+    -------
+    (N, longest + 2) array of pixel numbers, and (N, longest) array that tells which pixels exist
+    """
+    steps = np.arange(-1, (end - first).max() + 1)
+    index = first[:, np.newaxis] + np.abs(steps)
+    last = end[:, np.newaxis] - 1
+    exists = index[:, 1:-1] <= last
+    mirrored = np.where(index > last, 2 * last - index, index)
+    return np.clip(mirrored, first[:, np.newaxis], last), exists
+
 
 Counts: TypeAlias = npt.NDArray[np.int64]
 
 _NO_EDGE = DIRECTION_BINS
 _CHUNK = 1_000_000
-"""Pairs of a window and an edge point that are compared at once; bounds the memory."""
+"""Pixels of windows, or pairs of window and edge point, handled at once: 8 MB per float64 array."""
 
 
 @dataclass(frozen=True)

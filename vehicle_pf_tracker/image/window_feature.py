@@ -10,8 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.reference import Reference
-from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient
+from vehicle_pf_tracker.image.similarity import Reference, bhattacharyya_coefficient
 from vehicle_pf_tracker.image.window import Positions, Window
 
 Grey: TypeAlias = npt.NDArray[np.uint8]

@@ -1,4 +1,4 @@
-"""All parameters of a node as one value: its variant's, its stream's and its own."""
+"""All parameters of a node as one value: those of its variant, of its stream and its own."""
 
 from __future__ import annotations
 
@@ -7,11 +7,126 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.node_parameters import NodeParameters
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
-from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, from_mapping, specs
+from vehicle_pf_tracker.parameters.table import (
+    ParameterSpec,
+    Value,
+    from_mapping,
+    group,
+    parameter,
+    specs,
+)
 from vehicle_pf_tracker.parameters.table import to_mapping as values_of
+
+
+@dataclass(frozen=True, slots=True)
+class PublishParameters:
+    """Which outputs are published; `~/position`, `~/mode` and `/diagnostics` always are."""
+
+    box: bool = parameter(True, "Publish ~/box; off saves a message per image.")
+    velocity: bool = parameter(True, "Publish ~/velocity; off saves a message per image.")
+    particles: bool = parameter(True, "Publish ~/particles while somebody subscribes.")
+    overlay: bool = parameter(True, "Publish ~/overlay while somebody subscribes.")
+
+
+@dataclass(frozen=True, slots=True)
+class NodeParameters:
+    """Transport, start-up and outputs of a node."""
+
+    image_transport: str = parameter(
+        "raw",
+        "Which images to subscribe to: image, or image/compressed (JPEG or PNG).",
+        choices=("raw", "compressed"),
+        read_only=True,
+    )
+    queue_depth: int = parameter(
+        1,
+        "Images that may wait: 1 always takes the newest of a live camera, 10 and more keeps "
+        "every image of a recording.",
+        minimum=1,
+        maximum=10_000,
+        unit="images",
+        read_only=True,
+    )
+    autostart: bool = parameter(
+        True,
+        "Configure and activate at start-up; off waits for a lifecycle manager.",
+        read_only=True,
+    )
+    publish: PublishParameters = group(PublishParameters)
+
+
+_LARGEST = 1e5
+
+
+@dataclass(frozen=True, slots=True)
+class TargetParameters:
+    """The box to start on."""
+
+    x: float = parameter(
+        0.0,
+        "Left edge of the target.",
+        minimum=-_LARGEST,
+        maximum=_LARGEST,
+        unit="px",
+        effect="starts",
+    )
+    y: float = parameter(
+        0.0,
+        "Top edge of the target.",
+        minimum=-_LARGEST,
+        maximum=_LARGEST,
+        unit="px",
+        effect="starts",
+    )
+    width: float = parameter(
+        0.0,
+        "Width of the target; 0 waits for a target.",
+        minimum=0.0,
+        maximum=_LARGEST,
+        unit="px",
+        effect="starts",
+    )
+    height: float = parameter(
+        0.0,
+        "Height of the target; 0 waits for a target.",
+        minimum=0.0,
+        maximum=_LARGEST,
+        unit="px",
+        effect="starts",
+    )
+
+    @property
+    def box(self) -> Box | None:
+        """The box, or None where there is none to start on.
+
+        A side of 0 is none, so that the four can also be set one after the other.
+        """
+        if not (self.width and self.height):
+            return None
+        return Box(self.x, self.y, self.width, self.height)
+
+
+@dataclass(frozen=True, slots=True)
+class SessionParameters:
+    """What a stream needs besides its variant's parameters."""
+
+    target: TargetParameters = group(TargetParameters)
+    reset_on_time_jump: bool = parameter(
+        True,
+        "Start again on the configured target when stamps go back and stay back (a recording that "
+        "loops).",
+    )
+
+    def validate(self) -> None:
+        """Refuse a target too small for any tracker."""
+        box = self.target.box
+        if box is not None and min(box.width, box.height) < 1:
+            raise InputError(
+                f"the target {box} is smaller than one pixel; "
+                "give target.width and target.height at least 1, or 0 to wait for a target"
+            )
 
 
 class Parametrised(Protocol):

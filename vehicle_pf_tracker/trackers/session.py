@@ -11,7 +11,7 @@ from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.clock import StampClock, StampEvent, Tick
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.base import DEFAULT_PERIOD
 from vehicle_pf_tracker.trackers.continuity import Continuity, StrayImageError, Verdict
 from vehicle_pf_tracker.trackers.estimate import Estimate

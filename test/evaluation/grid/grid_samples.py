@@ -11,7 +11,7 @@ from vehicle_pf_tracker.evaluation.grid.sources import describe
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.tracking import run_cell
 from vehicle_pf_tracker.evaluation.processes import Turn
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.registry import find_variant

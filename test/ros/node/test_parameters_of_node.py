@@ -21,10 +21,12 @@ from rclpy.parameter import Parameter
 from tracker_rig import TARGET, Rig, on_target, overrides, road, values_of
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.configuration import (
+    Configuration,
+    NodeParameters,
+    SessionParameters,
+)
 from vehicle_pf_tracker.parameters.files import to_yaml
-from vehicle_pf_tracker.parameters.node_parameters import NodeParameters
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant

@@ -8,8 +8,7 @@ from street import Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.papers.apf import ApfTracker
-from vehicle_pf_tracker.trackers.papers.apf_parameters import ApfParameters
+from vehicle_pf_tracker.trackers.papers.apf import ApfParameters, ApfTracker
 from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters, log_likelihood
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from street import Street, error, follow
 
-from vehicle_pf_tracker.image.glcm import Cooccurrence
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.haralick import HaralickStatistics
-from vehicle_pf_tracker.image.lbp import BinaryPatterns
+from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters

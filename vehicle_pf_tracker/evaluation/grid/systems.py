@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.parameters.session_parameters import SessionParameters
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.registry import Variant, find_variant

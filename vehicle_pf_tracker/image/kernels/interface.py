@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.joint_colour import JointColour
-from vehicle_pf_tracker.image.reference import Reference
+from vehicle_pf_tracker.image.colour import JointColour
+from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Positions, Window
 from vehicle_pf_tracker.image.window_feature import (
     Coefficients,
@@ -144,7 +144,7 @@ class Kernels(ABC):
         window: Window,
         reference: Reference,
     ) -> Coefficients:
-        """Compare kernel-weighted histograms with a reference; see `features.mean_shift`."""
+        """Compare kernel-weighted histograms with a reference; see `image.mean_shift`."""
 
     @abstractmethod
     def mean_shift(
@@ -155,4 +155,4 @@ class Kernels(ABC):
         window: Window,
         reference: Reference,
     ) -> Positions:
-        """Move every position one mean-shift step; see `features.mean_shift`."""
+        """Move every position one mean-shift step; see `image.mean_shift`."""

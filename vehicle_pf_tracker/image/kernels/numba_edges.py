@@ -8,17 +8,19 @@ Squared magnitudes are whole numbers, and so are the limits that they are held a
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from numba import types
 
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.gradients import DIRECTION_BINS, GradientDirections
 from vehicle_pf_tracker.image.kernels.numba_cells import RECTANGLES, TABLE, Table
+from vehicle_pf_tracker.image.kernels.numba_inputs import CellTable, Placement
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_windows import PAIR, QUAD, Counts, Pixels
-from vehicle_pf_tracker.image.sobel import DIRECTION_BINS
-from vehicle_pf_tracker.image.window_feature import Grey
+from vehicle_pf_tracker.image.window_feature import Grey, to_grey
 
 Gradients: TypeAlias = npt.NDArray[np.int16]
 Strengths: TypeAlias = npt.NDArray[np.int32]
@@ -47,7 +49,7 @@ TANGENTS.flags.writeable = False
 
 @inlined
 def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
-    """Bin 0 to 63, as `sobel.direction_bins` has it; whole numbers are never near a tangent."""
+    """Bin 0 to 63, as `gradients.direction_bins` has it; whole numbers are never near a tangent."""
     if not signed and (gx < 0 or (gx == 0 and gy < 0)):
         gx, gy = -gx, -gy
     if gx > 0 and gy >= 0:
@@ -130,7 +132,7 @@ def _raise_to(numbers: Strengths, others: Strengths) -> None:
 
 @inlined
 def _limits_of(peaks: Strengths, firsts: Pixels, rule: tuple[float, float]) -> Numbers:
-    """Least squared magnitude that counts in each window; see `sobel.squared_limits`."""
+    """Least squared magnitude that counts in each window; see `gradients.squared_limits`."""
     share, least = rule
     limits = np.empty(len(firsts), np.int64)
     for i in range(len(firsts)):
@@ -230,7 +232,7 @@ def count_edges(
         Share of a window's largest squared magnitude, and squared magnitude, that an edge point
         has at least.
     directions : (64,) array, (15,) array, bool
-        Cell of each direction; `TANGENTS`; as in `sobel.direction_bins`.
+        Cell of each direction; `TANGENTS`; as in `gradients.direction_bins`.
     counts : (N, K + 1 or more) array
         Filled with the points of each cell.
 
@@ -259,3 +261,28 @@ def count_edges(
             x, y = firsts[i]
             totals[i] = _count_window(points, limits[i], (x, y, x + width, y + height), counts[i])
     return totals
+
+
+class CellCounts(NamedTuple):
+    """Counts of the table's cells (N, K + 1 or more), and of all bins together (N,)."""
+
+    cells: Counts
+    totals: Numbers
+
+
+def count_directions(
+    feature: GradientDirections, frame: Frame, place: Placement, table: CellTable
+) -> CellCounts:
+    """Count edge points by direction, the gradient taken in the frame."""
+    # One pixel more makes every gradient in the windows that of the whole frame.
+    left, top, right, bottom = place.covered(margin=1)
+    counts = np.empty((len(place.pixels), len(table.values)), np.int32)
+    totals = count_edges(
+        to_grey(frame[top:bottom, left:right]),
+        (left, top),
+        (place.pixels, place.extent, (place.reach[0], place.reach[2])),
+        (np.float32(feature.threshold) ** 2, np.float32(feature.floor) ** 2),
+        (table.cells, TANGENTS, feature.signed),
+        counts,
+    )
+    return CellCounts(counts, totals)

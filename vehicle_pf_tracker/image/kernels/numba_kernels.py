@@ -8,35 +8,44 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.glcm import Cooccurrence
+from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.joint_colour import JointColour
 from vehicle_pf_tracker.image.kernels import numba_jit
 from vehicle_pf_tracker.image.kernels.interface import Kernels, PixelRange, SimilarityMap
-from vehicle_pf_tracker.image.kernels.numba_cells import Cells
-from vehicle_pf_tracker.image.kernels.numba_counting import compare_pixels, planes_of
-from vehicle_pf_tracker.image.kernels.numba_gradients import count_directions
+from vehicle_pf_tracker.image.kernels.numba_cells import (
+    Cells,
+    marginal_cells,
+    pair_cells,
+    stack_windows,
+)
+from vehicle_pf_tracker.image.kernels.numba_edges import count_directions
+from vehicle_pf_tracker.image.kernels.numba_inputs import (
+    CellTable,
+    Placement,
+    reach_of,
+    roots_up_to,
+    table_for_counting,
+    table_of,
+    table_of_all,
+    window_rectangles,
+)
 from vehicle_pf_tracker.image.kernels.numba_mean_shift import (
     compare_kernels,
     ellipse,
     shift_kernels,
 )
-from vehicle_pf_tracker.image.kernels.numba_place import Place, reach_of
-from vehicle_pf_tracker.image.kernels.numba_reference import (
-    CellTable,
-    roots_up_to,
-    table_for_counting,
-    table_of,
-    table_of_all,
-)
 from vehicle_pf_tracker.image.kernels.numba_windows import (
     Counts,
+    Reals,
     compare_counts,
+    compare_joint,
+    compare_rectangles,
+    compare_windows,
     joint_cells,
     map_windows,
 )
-from vehicle_pf_tracker.image.reference import Reference
-from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
+from vehicle_pf_tracker.image.similarity import Reference
+from vehicle_pf_tracker.image.textures import Cooccurrence
 from vehicle_pf_tracker.image.window import Positions, Window
 from vehicle_pf_tracker.image.window_feature import (
     Coefficients,
@@ -44,7 +53,79 @@ from vehicle_pf_tracker.image.window_feature import (
     CountedFeature,
     Histograms,
     WindowFeature,
+    to_grey,
 )
+
+
+def compare_pixels(
+    feature: WindowFeature,
+    frame: Frame,
+    positions: Positions,
+    window: Window,
+    table: CellTable,
+    counts: Counts,
+) -> Reals:
+    """Compare windows from the region that they cover, or apart where that is less work.
+
+    Parameters
+    ----------
+    feature : WindowFeature
+        Joint colours, marginals or co-occurrences.
+    frame, positions, window
+        As for `Kernels.similarity`.
+    table : CellTable
+        Of the reference, or of what to count.
+    counts : (N or 0, K) array
+        Filled with each window's counts, if it has room.
+
+    Returns
+    -------
+    (N,) array
+        Bhattacharyya coefficients.
+    """
+    area = window.width * window.height
+    scale = table.values, roots_up_to(planes_of(feature) * area)
+    if isinstance(feature, JointColour):
+        half = window.half_width, window.half_height
+        return compare_joint(frame, positions, feature.bits, half, table.cells, scale, counts)
+    place = Placement.of(feature, frame, positions, window)
+    left, top, right, bottom = place.covered()
+    if (right - left) * (bottom - top) > len(place.pixels) * area:
+        return _compare_apart(feature, frame, place, table, counts)
+    cells = _cells(feature, frame[top:bottom, left:right], table)
+    return compare_windows(
+        cells, place.pixels, place.extent, (left, top), place.reach, scale, counts
+    )
+
+
+def _compare_apart(
+    feature: WindowFeature, frame: Frame, place: Placement, table: CellTable, counts: Counts
+) -> Reals:
+    """Compare windows that share few pixels, from a copy of each."""
+    width, height = 2 * place.reach[0] + 1, 2 * place.reach[2] + 1
+    whole = window_rectangles(
+        place.pixels, (place.reach[0], place.reach[0] + 1, place.reach[2]), (0, 0), place.size
+    )
+    stack = stack_windows(frame, whole, width, height)
+    rectangles = place.rectangles((0, 0))
+    rectangles[:, [0, 2]] -= whole[:, :1]
+    rectangles[:, [1, 3]] += (height * np.arange(len(whole)) - whole[:, 1])[:, np.newaxis]
+    roots = roots_up_to(planes_of(feature) * width * height)
+    return compare_rectangles(
+        _cells(feature, stack, table), rectangles, (table.values, roots), counts
+    )
+
+
+def _cells(feature: WindowFeature, pixels: Frame, table: CellTable) -> Cells:
+    if isinstance(feature, RgbMarginals):
+        return marginal_cells(pixels, CHANNEL_BINS, table.cells)
+    return pair_cells(to_grey(pixels), table.cells)
+
+
+def planes_of(feature: WindowFeature) -> int:
+    """Count the bins that each pixel adds to."""
+    return 3 if type(feature) is RgbMarginals else 1
+
 
 _OF_PIXELS = {JointColour, RgbMarginals, Cooccurrence}
 _NO_COUNTS: Counts = np.zeros((0, 0), np.int32)
@@ -69,11 +150,11 @@ class NumbaKernels(Kernels):
         """Count windows; see `Kernels.counts`."""
         table = table_for_counting(active, feature.bins)
         if counts_edges(feature):
-            place = Place.of(feature, frame, positions, window)
+            place = Placement.of(feature, frame, positions, window)
             cells, totals = count_directions(feature, frame, place, table)
             return Counted(cells[:, : table.active], totals)
         if counts_pixels(feature):
-            place = Place.of(feature, frame, positions, window)
+            place = Placement.of(feature, frame, positions, window)
             counts = np.empty((len(positions), table.active), np.int32)
             compare_pixels(feature, frame, positions, window, table, counts)
             left, top, right, bottom = place.rectangles((0, 0)).T
@@ -104,7 +185,7 @@ class NumbaKernels(Kernels):
             table = table_of(reference)
             return compare_pixels(feature, frame, positions, window, table, _NO_COUNTS)
         if counts_edges(feature):
-            place, table = Place.of(feature, frame, positions, window), table_of(reference)
+            place, table = Placement.of(feature, frame, positions, window), table_of(reference)
             cells, totals = count_directions(feature, frame, place, table)
             roots = roots_up_to(window.width * window.height)
             return compare_counts(cells, totals, (table.values, roots))
@@ -140,7 +221,7 @@ class NumbaKernels(Kernels):
     ) -> Coefficients:
         """Compare; see `Kernels.kernel_similarity`."""
         offsets, profile = ellipse(window)
-        place, table = Place.of(feature, frame, positions, window), table_of(reference)
+        place, table = Placement.of(feature, frame, positions, window), table_of(reference)
         cells, origin = _covered_cells(feature, frame, place, table)
         return compare_kernels(cells, place.pixels, origin, offsets, (profile, table.values))
 
@@ -154,14 +235,14 @@ class NumbaKernels(Kernels):
     ) -> Positions:
         """Move; see `Kernels.mean_shift`."""
         offsets, profile = ellipse(window)
-        place, table = Place.of(feature, frame, positions, window), table_of(reference)
+        place, table = Placement.of(feature, frame, positions, window), table_of(reference)
         cells, origin = _covered_cells(feature, frame, place, table)
         steps = shift_kernels(cells, place.pixels, origin, offsets, (profile, table.values))
         return np.where(np.isnan(steps), positions, place.pixels + 0.5 + steps)
 
 
 def _covered_cells(
-    feature: JointColour, frame: Frame, place: Place, table: CellTable
+    feature: JointColour, frame: Frame, place: Placement, table: CellTable
 ) -> tuple[Cells, tuple[int, int]]:
     left, top, right, bottom = place.covered()
     return joint_cells(frame[top:bottom, left:right], feature.bits, table.cells), (left, top)

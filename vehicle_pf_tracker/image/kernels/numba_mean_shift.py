@@ -1,4 +1,4 @@
-"""Mean shift of many windows (`features.mean_shift`), in numba."""
+"""Mean shift of many windows (`image.mean_shift`), in numba."""
 
 from __future__ import annotations
 

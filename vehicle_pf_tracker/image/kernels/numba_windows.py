@@ -67,33 +67,6 @@ def window_pixels(
     return pixels, (x0, y0, x1, y1)
 
 
-@compiled(RECTANGLES(RECTANGLES, REACH, PAIR, PAIR))
-def window_rectangles(
-    pixels: Pixels, reach: Reach, origin: tuple[int, int], size: tuple[int, int]
-) -> Rectangles:
-    """Left, top, right, bottom of windows as seen from `origin`, cut at the border; shape (N, 4).
-
-    Parameters
-    ----------
-    pixels : (N, 2) array
-        Centres in the frame.
-    reach : (int, int, int)
-        As for `compare_windows`.
-    origin, size : (int, int)
-        x, y in the frame that count as 0, and width, height of the frame in px.
-    """
-    left, right, up = reach
-    rectangles = np.empty((len(pixels), 4), np.int64)
-    last = size[0] - (left + 1 - right)
-    for i in range(len(pixels)):
-        x, y = pixels[i]
-        rectangles[i, 0] = max(x - left, 0) - origin[0]
-        rectangles[i, 1] = max(y - up, 0) - origin[1]
-        rectangles[i, 2] = min(x + right, last) - origin[0]
-        rectangles[i, 3] = min(y + up + 1, size[1]) - origin[1]
-    return rectangles
-
-
 @compiled(CELLS(FRAME, types.int64, TABLE))
 def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
     """Cells of joint RGB bins, one plane."""

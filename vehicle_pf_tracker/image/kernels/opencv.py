@@ -9,11 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.colour import bin_indices
-from vehicle_pf_tracker.image.joint_colour import JointColour
+from vehicle_pf_tracker.image.colour import JointColour, bin_indices
 from vehicle_pf_tracker.image.kernels.interface import Kernels, PixelRange, SimilarityMap
 from vehicle_pf_tracker.image.mean_shift import kernel_similarity, mean_shift
-from vehicle_pf_tracker.image.reference import Reference
+from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Positions, Window
 from vehicle_pf_tracker.image.window_feature import (
     Coefficients,

@@ -12,7 +12,7 @@ from sensor_msgs.msg import Image, PointCloud2
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.parameters.node_parameters import PublishParameters
+from vehicle_pf_tracker.parameters.configuration import PublishParameters
 from vehicle_pf_tracker.ros.messages import (
     box_message,
     image_message,

@@ -21,10 +21,13 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import sample_disc
 from vehicle_pf_tracker.filtering.resampling import SCHEMES, Ancestors
 from vehicle_pf_tracker.filtering.weights import Weights, effective_sample_size, from_log
+from vehicle_pf_tracker.image.colour import RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.reference import Reference
-from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
-from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, hellinger_distance
+from vehicle_pf_tracker.image.similarity import (
+    Reference,
+    bhattacharyya_coefficient,
+    hellinger_distance,
+)
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.image.window_feature import Histograms, WindowFeature
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker

@@ -6,9 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
-from vehicle_pf_tracker.image.glcm import Cooccurrence
-from vehicle_pf_tracker.image.haralick import HaralickStatistics
-from vehicle_pf_tracker.image.lbp import BinaryPatterns
+from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
 from vehicle_pf_tracker.image.window_feature import WindowFeature
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.contract import ParticleParameters

@@ -13,10 +13,9 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.joint_colour import JointColour
+from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
-from vehicle_pf_tracker.image.reference import Reference
-from vehicle_pf_tracker.image.similarity import hellinger_distance
+from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
 from vehicle_pf_tracker.trackers.contract import CommonParameters

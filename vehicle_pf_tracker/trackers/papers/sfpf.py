@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals
+from vehicle_pf_tracker.image.colour import RgbMarginals
 from vehicle_pf_tracker.image.window_feature import WindowFeature
 from vehicle_pf_tracker.trackers.papers.mfpf import FeatureFilter, edge_feature
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (

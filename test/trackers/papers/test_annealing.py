@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.filtering.annealing import annealing_rate, survival_rate
+from vehicle_pf_tracker.trackers.papers.sapf import annealing_rate, survival_rate
 
 
 def test_survival_rate_by_hand():

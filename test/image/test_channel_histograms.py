@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from feature_samples import checkerboard, ramp
 
-from vehicle_pf_tracker.image.rgb_marginals import RgbMarginals, marginal_bins
+from vehicle_pf_tracker.image.colour import RgbMarginals, marginal_bins
 from vehicle_pf_tracker.image.window import Window
 
 

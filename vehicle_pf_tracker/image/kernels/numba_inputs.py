@@ -1,0 +1,185 @@
+"""Windows and references in the form that the compiled kernels take."""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba import types
+
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.kernels.interface import PixelRange
+from vehicle_pf_tracker.image.kernels.numba_cells import RECTANGLES, Rectangles, Table
+from vehicle_pf_tracker.image.kernels.numba_jit import compiled
+from vehicle_pf_tracker.image.kernels.numba_windows import (
+    PAIR,
+    REACH,
+    Pixels,
+    Reach,
+    Reals,
+    window_pixels,
+)
+from vehicle_pf_tracker.image.similarity import Histogram, Reference
+from vehicle_pf_tracker.image.textures import Cooccurrence
+from vehicle_pf_tracker.image.window import Positions, Window
+from vehicle_pf_tracker.image.window_feature import WindowFeature
+
+
+@compiled(RECTANGLES(RECTANGLES, REACH, PAIR, PAIR))
+def window_rectangles(
+    pixels: Pixels, reach: Reach, origin: tuple[int, int], size: tuple[int, int]
+) -> Rectangles:
+    """Left, top, right, bottom of windows as seen from `origin`, cut at the border; shape (N, 4).
+
+    Parameters
+    ----------
+    pixels : (N, 2) array
+        Centres in the frame.
+    reach : (int, int, int)
+        As for `compare_windows`.
+    origin, size : (int, int)
+        x, y in the frame that count as 0, and width, height of the frame in px.
+    """
+    left, right, up = reach
+    rectangles = np.empty((len(pixels), 4), np.int64)
+    last = size[0] - (left + 1 - right)
+    for i in range(len(pixels)):
+        x, y = pixels[i]
+        rectangles[i, 0] = max(x - left, 0) - origin[0]
+        rectangles[i, 1] = max(y - up, 0) - origin[1]
+        rectangles[i, 2] = min(x + right, last) - origin[0]
+        rectangles[i, 3] = min(y + up + 1, size[1]) - origin[1]
+    return rectangles
+
+
+class Placement(NamedTuple):
+    """Where windows lie in a frame.
+
+    Attributes
+    ----------
+    pixels : (N, 2) array
+        Centre x, y of each window.
+    extent : (int, int, int, int)
+        Least x and y, largest x and y of them.
+    reach : (int, int, int)
+        Pixels of a window left of its centre, right of it counting itself, and above it.
+    size : (int, int)
+        Width and height of the frame.
+    """
+
+    pixels: Pixels
+    extent: tuple[int, int, int, int]
+    reach: Reach
+    size: tuple[int, int]
+
+    @classmethod
+    def of(
+        cls, feature: WindowFeature, frame: Frame, positions: Positions, window: Window
+    ) -> Placement:
+        """Find the windows around positions."""
+        size = frame_size(frame)
+        pixels, extent = window_pixels(positions, *size)
+        return cls(pixels, extent, reach_of(feature, window), size)
+
+    def covered(self, margin: int = 0) -> PixelRange:
+        """Smallest part of the frame that has all windows in it, and a margin as far as it goes."""
+        (x0, y0, x1, y1), (left, _, up) = self.extent, self.reach
+        width, height = self.size
+        return PixelRange(
+            max(x0 - left - margin, 0),
+            max(y0 - up - margin, 0),
+            min(x1 + left + 1 + margin, width),
+            min(y1 + up + 1 + margin, height),
+        )
+
+    def rectangles(self, origin: tuple[int, int]) -> Rectangles:
+        """Left, top, right, bottom of each window as seen from `origin`, shape (N, 4)."""
+        return window_rectangles(self.pixels, self.reach, origin, self.size)
+
+
+def reach_of(feature: WindowFeature, window: Window) -> Reach:
+    """Reach of a feature's windows; pairs of pixels end one column earlier."""
+    right = window.half_width + (0 if type(feature) is Cooccurrence else 1)
+    return window.half_width, right, window.half_height
+
+
+_LANES = 16
+"""Cells are padded to a multiple of this, so that loops over them fill vector registers."""
+
+_MOST_ROOTS = 1 << 16
+
+_HISTOGRAM = types.Array(types.float64, 1, "A", readonly=True)
+
+
+class CellTable(NamedTuple):
+    """Which cell each bin has, and what a cell's count is worth.
+
+    Attributes
+    ----------
+    cells : (bins,) array of uint16
+        Position of each active bin among the K active ones, K for all others.
+    active : int
+        K.
+    values : (K + 1 or more,) array
+        Square roots of the reference at the active bins, followed by zeros; of no meaning where
+        bins are only counted.
+    """
+
+    cells: Table
+    active: int
+    values: Reals
+
+
+@compiled(types.Tuple((types.uint16[::1], types.int64, types.float64[::1]))(_HISTOGRAM))
+def _number_cells(histogram: Histogram) -> tuple[Table, int, Reals]:
+    """Give a number to each bin that is not zero; see `CellTable` for what is returned."""
+    active = 0
+    for value in histogram:
+        active += value != 0
+    cells = np.full(len(histogram), active, np.uint16)
+    values = np.zeros(-(-(active + 1) // _LANES) * _LANES)
+    number = 0
+    for k in range(len(histogram)):
+        if histogram[k] != 0:
+            cells[k], values[number] = number, math.sqrt(histogram[k])
+            number += 1
+    return cells, active, values
+
+
+def table_for_counting(active: npt.NDArray[np.intp], bins: int) -> CellTable:
+    """Table of the bins `active` without any reference."""
+    if len(active) == bins:
+        return table_of_all(bins)
+    chosen = np.zeros(bins)
+    chosen[active] = 1.0
+    return CellTable(*_number_cells(chosen))
+
+
+def table_of(reference: Reference) -> CellTable:
+    """Table of a reference, made once."""
+    kept = reference.kept.get("cells")
+    if not isinstance(kept, CellTable):
+        kept = CellTable(*_number_cells(reference.histogram))
+        reference.kept["cells"] = kept
+    return kept
+
+
+def roots_up_to(count: int) -> Reals:
+    """Square roots of 0 to `count` or more, as far as a table of them is worth while."""
+    return _roots(min(1 << int(count).bit_length(), _MOST_ROOTS))
+
+
+@functools.lru_cache(maxsize=32)
+def _roots(length: int) -> Reals:
+    table = np.sqrt(np.arange(length + 1, dtype=np.float64))
+    table.flags.writeable = False
+    return table
+
+
+@functools.lru_cache(maxsize=8)
+def table_of_all(bins: int) -> CellTable:
+    """Table of all bins without any reference."""
+    return CellTable(*_number_cells(np.ones(bins)))
