@@ -124,7 +124,7 @@ def _show(found: Sequence[Group]) -> None:
 
     from vehicle_pf_tracker.evaluation.stress.report import table_rows
 
-    headings, rows = table_rows(found)
+    headings, rows = table_rows(found, intervals=False)
     table = Table()
     for heading in headings:
         table.add_column(Text(heading), justify="right")

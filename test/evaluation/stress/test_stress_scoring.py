@@ -13,7 +13,7 @@ from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.stress import Reliability, Score, score_estimates
 from vehicle_pf_tracker.evaluation.stress.report import write_report
 from vehicle_pf_tracker.evaluation.stress.running import Result
-from vehicle_pf_tracker.evaluation.stress.summary import groups
+from vehicle_pf_tracker.evaluation.stress.summary import difference, groups
 
 STAMP = 10**8
 BOX = Box(10.0, 10.0, 30.0, 40.0)
@@ -152,6 +152,18 @@ def test_means_are_over_seeds_then_cases_then_cameras(tmp_path):
     lines = (tmp_path / "stress.csv").read_text().splitlines()
     assert lines[0] == "by,name,system,measure,unit,count,mean,spread,low,high"
     assert any(line.startswith("kind,plain,mine,on_target,,2,0.4375,") for line in lines)
+
+
+def test_differences_are_paired_by_case_and_seed():
+    results = [
+        result("a1", "A", [0, 0]), result("a2", "A", [0, 0]), result("b1", "B", [60, 0]),
+        result("a1", "A", [0, 60])._replace(system="other"),
+        result("b1", "B", [60, 60])._replace(system="other"),
+        result("b1", "B", [0, 0], seed=1)._replace(system="other"),
+    ]  # fmt: skip
+    gain = difference(results, "mine", "other", "on_target")
+    assert (gain.count, gain.mean) == (2, 0.5)
+    assert difference(results, "mine", "nobody", "on_target") is None
 
 
 def test_occlusions_are_told_apart_by_path_and_speed():

@@ -16,7 +16,12 @@ nothing large is stored, and the same case always gives the same frames and the 
 >>> results = run_battery(cases, [variant_system("fusion", {"num_particles": 50})],
 ...                       seeds=range(3), workers=2, store=Path("scores.jsonl"))
 >>> [(r.case.name, r.system, r.seed, r.score.on_target, r.score.recovered) for r in results]
+>>> for group in groups(results):                             # all, kind, path, occlusion, camera
+...     group.system, group.by, group.name, group.summary("on_target"), group.recoveries
+...     group.reliability().calibration_error, group.reliability().diagram()
+>>> difference(results, "fusion", "fusion without turns", "mean_iou")   # paired, over cameras
 
+Cases are frozen and picklable: to save the minute that listing a full battery takes, pickle them.
 `docs/evaluation.md` lists the kinds of cases and the measures.
 """
 
@@ -35,11 +40,14 @@ from vehicle_pf_tracker.evaluation.stress.running import (
     variant_system,
 )
 from vehicle_pf_tracker.evaluation.stress.scoring import Score, score_case, score_estimates
+from vehicle_pf_tracker.evaluation.stress.summary import MEASURES, Group, difference, groups
 
 __all__ = [
     "KINDS",
+    "MEASURES",
     "Case",
     "Follower",
+    "Group",
     "Kind",
     "Reliability",
     "Result",
@@ -47,9 +55,11 @@ __all__ = [
     "StressFrame",
     "StressSource",
     "StressSystem",
+    "difference",
     "find_sequences",
     "follow",
     "full_battery",
+    "groups",
     "list_cases",
     "quick_battery",
     "run_battery",

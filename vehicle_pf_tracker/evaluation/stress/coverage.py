@@ -9,6 +9,9 @@ from vehicle_pf_tracker.core.box import Box
 
 Floats = npt.NDArray[np.float64]
 
+_UPRIGHT = 1e-5
+"""Slope of an edge that moves it by less than a hundredth of a pixel over a thousand."""
+
 
 def visible_share(corners: Floats, box: Box, size: tuple[int, int]) -> float:
     """Compute the share of a box, as far as it is in the image, outside a painted rectangle.
@@ -39,8 +42,8 @@ def visible_share(corners: Floats, box: Box, size: tuple[int, int]) -> float:
 def coverage(corners: Floats, region: tuple[int, int, int, int]) -> Floats:
     """Compute the share of each pixel of a region that a rectangle covers.
 
-    Exact for upright rectangles at least a pixel wide; at slanted edges the share follows from the
-    distance between the pixel's centre and the edge.
+    Exact but for the pixels at the corners of slanted rectangles, where the product of the shares
+    along the two axes stands for the true one.
 
     Parameters
     ----------
@@ -57,30 +60,36 @@ def coverage(corners: Floats, region: tuple[int, int, int, int]) -> Floats:
     left, top, width, height = region
     x = left + 0.5 + np.arange(width, dtype=float)
     y = (top + 0.5 + np.arange(height, dtype=float))[:, np.newaxis]
-    inside = [_distance(one, other, x, y) for one, other in _edges(corners)]
-    # Opposite edges first: a rectangle's share is the product of those along its two axes.
-    along = [np.clip(inside[i] + 0.5, 0, 1) + np.clip(inside[i + 2] + 0.5, 0, 1) for i in (0, 1)]
-    shares = [np.clip(each - 1.0, 0, 1) for each in along]
-    return np.asarray(shares[0] * shares[1])
+    ends = np.roll(corners, -1, axis=0)
+    inside = [_share_inside(one, end, x, y) for one, end in zip(corners, ends, strict=True)]
+    # What two opposite edges cut off a pixel has nothing in common.
+    along = [np.clip(inside[i] + inside[i + 2] - 1.0, 0, 1) for i in (0, 1)]
+    return np.asarray(along[0] * along[1])
 
 
 def _is_beside(corners: Floats, region: tuple[int, int, int, int]) -> bool:
     """Tell quickly that a rectangle touches no pixel of a region, as in most frames."""
     (left, top), (right, bottom) = corners.min(axis=0), corners.max(axis=0)
-    # Half a pixel more, since slanted edges are smoothed.
-    beside = right + 0.5 < region[0] or region[2] < left - 0.5
-    return bool(beside or bottom + 0.5 < region[1] or region[3] < top - 0.5)
+    beside = right < region[0] or region[2] < left
+    return bool(beside or bottom < region[1] or region[3] < top)
 
 
-def _edges(corners: Floats) -> list[tuple[Floats, Floats]]:
-    return list(zip(corners, np.roll(corners, -1, axis=0), strict=True))
+def _share_inside(one: Floats, end: Floats, x: Floats, y: Floats) -> Floats:
+    """Compute the share of pixels on the inner side of the edge from `one` to `end`.
 
-
-def _distance(one: Floats, other: Floats, x: Floats, y: Floats) -> Floats:
-    """Distance of pixels to the edge from `one` to `other`, positive inside, px."""
-    (dx, dy) = other - one
+    That is the distribution function of the distance to the edge of a point drawn from the pixel:
+    a sum of two uniform variables, as wide as the edge's normal is long along x and y.
+    """
+    dx, dy = (float(each) for each in end - one)
     length = float(np.hypot(dx, dy)) or 1.0
-    return np.asarray((dx * (y - one[1]) - dy * (x - one[0])) / length)
+    distance = (dx * (y - one[1]) - dy * (x - one[0])) / length
+    low, high = sorted((abs(dx) / length, abs(dy) / length))
+    if low < _UPRIGHT:
+        return np.asarray(np.clip(distance + 0.5, 0, 1))
+    outer, inner = (high + low) / 2, (high - low) / 2
+    squares = [np.maximum(distance + each, 0.0) ** 2 for each in (outer, inner, -inner, -outer)]
+    share = (squares[0] - squares[1] - squares[2] + squares[3]) / (2 * low * high)
+    return np.asarray(np.clip(share, 0, 1))
 
 
 def _span(low: float, high: float, side: int) -> tuple[int, int]:

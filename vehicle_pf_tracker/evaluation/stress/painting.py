@@ -32,6 +32,11 @@ _BODIES = (
 """Paint of lorries, in daylight."""
 _OWN_PAINT = 0.55
 """Share of a lorry's side that is paint; the rest is the patch of the footage."""
+_FINE_PX = 1.0
+_LARGEST_GRAIN = 0.06
+"""Share of its level that a surface varies by from pixel to pixel at most: foliage has more."""
+_SOFTNESS_PX = 0.6
+"""A lens and a JPEG blur what is painted no less than the rest."""
 _EDGE = 0.55
 """Brightness of an outline against its surface."""
 
@@ -74,7 +79,8 @@ class Texture:
             image = _wall(shape, patch, rng)
         if footage.is_grey:
             image = np.repeat(image.mean(axis=2, keepdims=True), 3, axis=2)
-        return np.ascontiguousarray(np.clip(image, 0, 255), np.float32)
+        soft = cv2.GaussianBlur(np.ascontiguousarray(image), (0, 0), _SOFTNESS_PX)
+        return np.asarray(np.clip(soft, 0, 255), np.float32)
 
     def _patch(self, footage: StressFootage) -> Image:
         x, y, width, height = self.patch
@@ -115,7 +121,7 @@ def _wall(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Ima
     """Draw concrete slabs with joints, lit from above."""
     base = np.full(3, _level(patch)) * rng.uniform(0.75, 1.3) * (1.03, 1.0, 0.94)
     shade = 1 + 0.10 * value_noise(shape, (40, 25), rng) + 0.06 * value_noise(shape, (5, 4), rng)
-    shade += 0.05 * rng.standard_normal(shape)
+    shade += _grain(patch) * rng.standard_normal(shape)
     slab = max(12, round(min(shape) * rng.uniform(0.35, 0.6)))
     shade[:, ::slab] *= 0.75
     shade[::slab, :] *= 0.8
@@ -140,7 +146,9 @@ def _lorry(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Im
     rows, columns = shape
     paint = np.asarray(_BODIES[rng.integers(len(_BODIES))]) * _level(patch) / 128
     side = cv2.resize(patch, (columns, rows), interpolation=cv2.INTER_LINEAR)
-    shade = 1 + 0.05 * value_noise(shape, (12, 30), rng) + 0.03 * rng.standard_normal(shape)
+    shade = (
+        1 + 0.05 * value_noise(shape, (12, 30), rng) + _grain(patch) * rng.standard_normal(shape)
+    )
     shade[:, :: max(5, columns // 14)] *= 0.8
     shade *= np.linspace(1.1, 0.85, rows)[:, np.newaxis]
     image = _outlined(_OWN_PAINT * _tint(paint, shade) + (1 - _OWN_PAINT) * side)
@@ -179,6 +187,12 @@ def _outlined(image: Image) -> Image:
 
 def _tint(base: Floats | Image, shade: Floats) -> Image:
     return (shade[..., np.newaxis] * base).astype(np.float32)
+
+
+def _grain(patch: Image) -> float:
+    """Measure how much the footage varies from pixel to pixel, as a share of its level."""
+    fine = patch - cv2.GaussianBlur(patch, (0, 0), _FINE_PX)
+    return min(float(fine.std()) / _level(patch), _LARGEST_GRAIN)
 
 
 def _level(patch: Image) -> float:

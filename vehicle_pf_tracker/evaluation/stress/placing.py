@@ -237,7 +237,7 @@ def _axis(seen: Floats, anchor: int) -> int:
 
 
 def _near(rectangle: Box, seen: Floats) -> npt.NDArray[np.bool_]:
-    """Tell which boxes the rectangle may touch; smooth edges reach a pixel further."""
+    """Tell which boxes the rectangle may touch, with two pixels to spare for rounding."""
     low = np.array([rectangle.x, rectangle.y])
     high = low + np.array([rectangle.width, rectangle.height])
     return np.asarray(((seen[:, :2] <= high + 2.0) & (low - 2.0 <= seen[:, 2:])).all(axis=1))

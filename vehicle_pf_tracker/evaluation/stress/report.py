@@ -72,7 +72,9 @@ def _markdown(found: Sequence[Group], broken: Sequence[str]) -> str:
     return "\n".join(parts)
 
 
-def table_rows(found: Sequence[Group]) -> tuple[list[str], list[list[str]]]:
+def table_rows(
+    found: Sequence[Group], *, intervals: bool = True
+) -> tuple[list[str], list[list[str]]]:
     """Return the headings and the rows of a table of groups, a line for each."""
     is_named = found[0].by != ALL
     names = [name for name in MEASURES if any(group.summary(name) for group in found)]
@@ -80,20 +82,20 @@ def table_rows(found: Sequence[Group]) -> tuple[list[str], list[list[str]]]:
     header = [*([found[0].by] if is_named else []), "system", "cases", *titles, "ECE"]
     rows = []
     for group in sorted(found, key=lambda each: [f.name for f in found].index(each.name)):
-        cells = [_cell(group, name) for name in names]
+        cells = [_cell(group, name, intervals) for name in names]
         error = group.reliability().calibration_error
         start = [group.name] if is_named else []
         rows.append([*start, f"`{group.system}`", f"{group.cases}", *cells, _number(error)])
     return header, rows
 
 
-def _cell(group: Group, measure: str) -> str:
+def _cell(group: Group, measure: str, intervals: bool) -> str:
     summary = group.summary(measure)
     if summary is None:
         return NOTHING
     decimals = 1 if MEASURES[measure].unit else 3
     text = _number(summary.mean, decimals)
-    if summary.low is not None and summary.high is not None:
+    if intervals and summary.low is not None and summary.high is not None:
         text += f" ({_number(summary.low, decimals)}–{_number(summary.high, decimals)})"
     if measure == "recovered":
         recovered, judged = group.recoveries

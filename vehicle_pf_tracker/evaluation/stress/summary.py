@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import statistics
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -121,6 +122,25 @@ def groups(results: Sequence[Result]) -> list[Group]:
                 members = tuple(result for result in own if name(result) == value)
                 found.append(Group(system, by, value, members))
     return found
+
+
+def difference(results: Sequence[Result], one: str, other: str, measure: str) -> Summary | None:
+    """Compare two systems case by case: the mean of `one` minus `other`, with its interval.
+
+    Differences of the cases and seeds that both have are averaged over each camera; the interval is
+    over the cameras. None where no case has both.
+    """
+    take = MEASURES[measure].of
+    scores = {(r.system, r.case.name, r.seed): take(r.score) for r in results}
+    seeds = sorted({result.seed for result in results})
+    camera = {result.case.name: result.case.camera for result in results}
+    pairs = []
+    for case, seed in itertools.product(camera, seeds):
+        first, second = scores.get((one, case, seed)), scores.get((other, case, seed))
+        if first is not None and second is not None:
+            pairs.append((case, first - second))
+    by_camera = _means((camera[case], mean) for case, mean in _means(pairs).items())
+    return summarise(list(by_camera.values()))
 
 
 def _occlusion(result: Result) -> str:
