@@ -123,7 +123,7 @@ def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
         (["--variants", "baseline:csrt", "--set", "a:sigma=2"], 1, "is for no variant"),
         (["--params", "@=none.yaml"], 2, "no label of a parameter set"),
         (["--baseline-model", "vit=a"], 2, "--baseline-model wants BASELINE:NAME=FILE"),
-        (["--seeds", "0"], 2, "'0' is no whole number from 1 on"),
+        (["--seeds", "0"], 2, "'0' is not an integer >= 1"),
         (["--max-diff", "-1"], 1, "seconds from 0"),
     ],
 )

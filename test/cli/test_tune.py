@@ -79,7 +79,7 @@ def test_the_same_search_gives_the_same_and_runs_nothing_again(bags, tmp_path):
         (["--variant", "kalman"], 1, "no variant 'kalman'"),
         (["--objective", "beauty"], 2, "argument --objective"),
         (["--set", "target.x=3"], 1, "no parameter 'target.x'"),
-        (["--trials", "0"], 2, "no whole number from 1 on"),
+        (["--trials", "0"], 2, "not an integer >= 1"),
         (["--params", "none.yaml"], 1, "cannot read the parameter file none.yaml"),
     ],
 )

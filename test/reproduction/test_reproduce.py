@@ -58,8 +58,8 @@ def test_the_page_has_what_was_made_before_too_and_a_second_time_nothing_changes
     [
         ([], 2, "--list"),
         (["apf-fig99"], 1, "'apf-fig99'"),
-        (["apf-fig2", "--workers", "0"], 2, "'0' is no whole number from 1 on"),
-        (["apf-fig2", "--seeds", "two"], 2, "'two' is no whole number from 1 on"),
+        (["apf-fig2", "--workers", "0"], 2, "'0' is not an integer >= 1"),
+        (["apf-fig2", "--seeds", "two"], 2, "'two' is not an integer >= 1"),
         (["apf-fig2", "--first-seed", "-1"], 2, "first-seed"),
     ],
 )

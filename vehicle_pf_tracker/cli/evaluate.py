@@ -8,8 +8,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli import report, stress, system_options
 from vehicle_pf_tracker.cli.console import print_table, tell_error, tell_notices
-from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers
-from vehicle_pf_tracker.cli.whole_numbers import natural, positive
+from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers, natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
 from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
 from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine

@@ -1,11 +1,10 @@
-"""Options that several verbs have."""
+"""Options and numbers that several verbs read from the command line."""
 
 from __future__ import annotations
 
 import argparse
 import os
 
-from vehicle_pf_tracker.cli.whole_numbers import positive
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 
 
@@ -23,3 +22,19 @@ def add_workers(parser: argparse.ArgumentParser) -> None:
         "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
         help="processes; results do not depend on it (default: one per processor)",
     )  # fmt: skip
+
+
+def positive(text: str) -> int:
+    """Read an integer >= 1."""
+    return _at_least(1, text)
+
+
+def natural(text: str) -> int:
+    """Read an integer >= 0."""
+    return _at_least(0, text)
+
+
+def _at_least(least: int, text: str) -> int:
+    if not text.isascii() or not text.isdigit() or int(text) < least:
+        raise argparse.ArgumentTypeError(f"{text!r} is not an integer >= {least}")
+    return int(text)

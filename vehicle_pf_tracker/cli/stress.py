@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import UsageError, print_table, tell_notices
+from vehicle_pf_tracker.cli.shared_options import positive
 from vehicle_pf_tracker.cli.system_options import chosen
-from vehicle_pf_tracker.cli.whole_numbers import positive
 from vehicle_pf_tracker.cli.work_progress import telling
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from vehicle_pf_tracker.cli import parameter_options, system_options
 from vehicle_pf_tracker.cli.console import print_table, tell_notices
 from vehicle_pf_tracker.cli.parameter_sets import settable
-from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers
-from vehicle_pf_tracker.cli.whole_numbers import natural, positive
+from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers, natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth

@@ -18,7 +18,7 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.node.serialized_image import read_serialized
+from vehicle_pf_tracker.ros.node.images import read_serialized
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError
 
 ImageCallback = Callable[[Any, Mapping[str, Any]], None]

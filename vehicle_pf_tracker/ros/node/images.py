@@ -1,13 +1,76 @@
-"""Image messages as frames, read in place."""
+"""Image messages as frames, read in place.
+
+Serialized `sensor_msgs/Image` messages are used where they lie: rclpy would copy the pixels of
+every image again on their way into a message of Python.
+"""
 
 from __future__ import annotations
 
-from sensor_msgs.msg import CompressedImage, Image
+import struct
+from typing import NamedTuple
 
+from sensor_msgs.msg import CompressedImage, Image
+from std_msgs.msg import Header
+
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.image.encodings import to_rgb
-from vehicle_pf_tracker.ros.node.serialized_image import SerializedImage
+
+_BODY = 4
+"""Bytes before the message, the second of which tells the byte order."""
+
+
+class _Layout(NamedTuple):
+    """The numbers before the frame_id, before the encoding, and before the pixels."""
+
+    stamp: struct.Struct
+    size: struct.Struct
+    step: struct.Struct
+
+
+_LAYOUTS = [
+    _Layout(*(struct.Struct(order + kinds) for kinds in ("iII", "III", "II"))) for order in "><"
+]
+"""For a big-endian and for a little-endian message."""
+
+
+class SerializedImage(NamedTuple):
+    """The fields of a `sensor_msgs/Image`; `data` is a view of the serialized message."""
+
+    header: Header
+    height: int
+    width: int
+    encoding: str
+    is_bigendian: int
+    step: int
+    data: memoryview
+
+
+def read_serialized(message: bytes) -> SerializedImage:
+    """Read a `sensor_msgs/Image` in CDR, its encapsulation header included.
+
+    Raises
+    ------
+    InputError
+        If it is cut off.
+    """
+    try:
+        layout = _LAYOUTS[message[1] & 1]
+        seconds, nanoseconds, length = layout.stamp.unpack_from(message, _BODY)
+        frame_id, at = _text(message, _BODY + 12, length)
+        at = _aligned(at)
+        height, width, length = layout.size.unpack_from(message, at)
+        encoding, at = _text(message, at + 12, length)
+        is_bigendian = message[at]
+        at = _aligned(at + 1)
+        step, size = layout.step.unpack_from(message, at)
+    except (struct.error, IndexError):
+        raise InputError("a serialized image is cut off before its pixels") from None
+    data = memoryview(message)[at + 8 : at + 8 + size]
+    header = Header()
+    header.stamp.sec, header.stamp.nanosec, header.frame_id = seconds, nanoseconds, frame_id
+    return SerializedImage(header, height, width, encoding, is_bigendian, step, data)
 
 
 def read_image(message: Image | SerializedImage | CompressedImage) -> Frame:
@@ -28,3 +91,14 @@ def read_image(message: Image | SerializedImage | CompressedImage) -> Frame:
         bool(message.is_bigendian),
         message.data,
     )
+
+
+def _text(message: bytes, at: int, length: int) -> tuple[str, int]:
+    """Text of `length` bytes with the zero at its end, and where the next field begins."""
+    text = message[at : at + max(length - 1, 0)]
+    return text.decode("utf-8", "replace"), at + length
+
+
+def _aligned(at: int) -> int:
+    """Where a number of four bytes begins at or after `at`."""
+    return at + -at % 4

@@ -16,9 +16,8 @@ from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.health import Health
-from vehicle_pf_tracker.ros.node.images import read_image
+from vehicle_pf_tracker.ros.node.images import SerializedImage, read_image
 from vehicle_pf_tracker.ros.node.outputs import Outputs
-from vehicle_pf_tracker.ros.node.serialized_image import SerializedImage
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session
