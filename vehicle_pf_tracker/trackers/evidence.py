@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.running_level import RunningLevel
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.estimate import Mode
 
@@ -61,13 +62,12 @@ class EvidenceJudge:
     def __init__(self) -> None:
         self.mode = Mode.TRACKING
         self.seconds_without = 0.0
-        self._level = 0.0
-        self._clear_frames = 0
+        self._level = RunningLevel()
 
     @property
     def level(self) -> float:
         """Running level of the similarity in clear frames, 0 to 1."""
-        return self._level
+        return self._level.value
 
     def judge(
         self,
@@ -95,7 +95,7 @@ class EvidenceJudge:
         """
         if self._is_evidence(similarity, parameters):
             self.mode, self.seconds_without = Mode.TRACKING, 0.0
-            self._follow(similarity, parameters.level_rate)
+            self._level.add(similarity, parameters.level_rate)
             return self.mode
         self.seconds_without += seconds
         gone = left_image or self.seconds_without >= lost_after or self.mode is Mode.LOST
@@ -104,14 +104,9 @@ class EvidenceJudge:
 
     def confidence(self, similarity: float) -> float:
         """Similarity relative to its clear level, 0 to 1."""
-        return min(similarity / self._level, 1.0) if self._level > 0 else 0.0
+        return min(similarity / self.level, 1.0) if self.level > 0 else 0.0
 
     def _is_evidence(self, similarity: float, parameters: EvidenceParameters) -> bool:
         in_sight = self.mode is Mode.TRACKING
         share = parameters.occluded_below if in_sight else parameters.clear_above
-        return similarity >= max(parameters.minimum, share * self._level)
-
-    def _follow(self, similarity: float, rate: float) -> None:
-        # A plain mean at first: the first frame's similarity to itself says nothing about clear.
-        self._clear_frames += 1
-        self._level += max(rate, 1.0 / self._clear_frames) * (similarity - self._level)
+        return similarity >= max(parameters.minimum, share * self.level)
