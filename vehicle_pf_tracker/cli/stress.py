@@ -1,4 +1,4 @@
-"""The stress battery of `evaluate`: its options, and what is done with them."""
+"""The stress battery of `evaluate`: its options and its run."""
 
 from __future__ import annotations
 

@@ -177,7 +177,7 @@ def test_only_the_part_in_the_image_counts():
 def test_points_go_to_a_frame_and_back(a, b, shift, speed, index):
     motion = Motion(3, (speed, -speed), 0, ((a, b, shift, 2 * shift),) * 10)
     points = rectangle(5, 6, 20, 10)
-    back = motion.unplace(motion.place(points, index)[np.newaxis], index)[0]
+    back = motion.to_anchor(motion.from_anchor(points, index)[np.newaxis], index)[0]
     assert np.abs(back - points).max() < 1e-6
 
 

@@ -27,9 +27,11 @@ _WIDTH = 320
 """Width in px that images are reduced to: flow is exact enough there, and takes 1 ms."""
 _CORNERS = 150
 _LEAST_CORNERS = 12
+"""Many for a fit that traffic disturbs, and three times as many as four unknowns need."""
 _CLEARANCE = 0.75
 """Corners closer to the target's centre than this share of its size are the target's."""
 _RANSAC_PX = 1.0
+"""Distance of reduced px to the model below which a corner agrees: flow is good to about 0.3."""
 _STILL_PX = 0.2
 """Median flow of the reduced image below which a frame does not move: JPEG noise gives 0.05."""
 _STILL_SHARE = 0.9
@@ -39,12 +41,12 @@ _AGREEING = 0.6
 Corners on other vehicles and at several depths do not."""
 _LOOMING = 0.005
 """Median change of scale per frame from which the camera drives into the scene: what stands there
-is passed, not seen for long. Two cameras in cars gave 0.008 and 0.013, five drones up to 0.004."""
+is soon passed. Two cameras in cars gave 0.008 and 0.013, five drones up to 0.004."""
 
 
 @dataclass(frozen=True, eq=False)
 class Background:
-    """Where points of the background go.
+    """Motion of the background through a sequence.
 
     Attributes
     ----------
@@ -89,7 +91,7 @@ def background_of(source: Source) -> Background:
 
 
 def _steps(footage: StressFootage) -> Iterator[tuple[Matrix, float, float]]:
-    """Similarity, median flow in px of the reduced image, and share that agrees, per frame."""
+    """Yield the similarity, the median flow (reduced px) and the agreeing share of each frame."""
     last, zoom = _reduced(footage.frame(0))
     for index in range(1, len(footage.truth)):
         present, _ = _reduced(footage.frame(index))

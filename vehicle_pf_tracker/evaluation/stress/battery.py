@@ -1,4 +1,4 @@
-"""Which cases of a set of sequences are run."""
+"""The choice of cases from a set of sequences."""
 
 from __future__ import annotations
 

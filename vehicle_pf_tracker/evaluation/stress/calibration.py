@@ -38,8 +38,8 @@ class Reliability:
             return cls()
         confidence = np.clip([pair[0] for pair in pairs], 0.0, 1.0)
         hit = np.array([pair[1] for pair in pairs], float)
-        place = np.minimum((confidence * BINS).astype(int), BINS - 1)
-        sums = (np.bincount(place, values, BINS) for values in (None, confidence, hit))
+        bins = np.minimum((confidence * BINS).astype(int), BINS - 1)
+        sums = (np.bincount(bins, values, BINS) for values in (None, confidence, hit))
         counts, confidences, hits = (values.tolist() for values in sums)
         return cls(tuple(counts), tuple(confidences), tuple(map(round, hits)))
 

@@ -43,9 +43,9 @@ class Case:
     origin : StressSource
         The sequence and its camera.
     kind : str
-        What is put to the test; one of `kinds.KINDS`.
+        Name of what is tested, one of `kinds.KINDS`.
     variation : str
-        Which case of its kind.
+        Name of the case within its kind.
     first, count, step : int
         Frames of the sequence by index: `count` of them from `first` on, every `step`-th; a
         negative step plays backwards.
@@ -56,7 +56,7 @@ class Case:
     start : Start
         Shift and scale of the box to start on.
     changes : tuple of Change
-        What is done to the images, in this order.
+        Changes of the images, applied in this order.
     dropped : float
         Share of the frames after the first that are missing.
     """
@@ -101,8 +101,8 @@ class Case:
         """Compute the truth of every frame, without decoding one."""
         footage, fps = open_footage(self.origin.source), self.fps
         return [
-            self._truth(footage.truth[index], index, stamp_of(place, fps))
-            for place, index in self._kept()
+            self._truth(footage.truth[index], index, stamp_of(position, fps))
+            for position, index in self._kept()
         ]
 
     def start_box(self) -> Box:
@@ -117,20 +117,20 @@ class Case:
         footage, fps = open_footage(self.origin.source), self.fps
         painters = [change.painter(footage, self.seed) for change in self.changes]
         last = -1
-        for place, index in self._kept():
+        for position, index in self._kept():
             frame = footage.frame(index)
             for paint in painters:
                 frame = paint(frame, index)
-            truth = self._truth(footage.truth[index], index, stamp_of(place, fps))
-            yield StressFrame(frame, float(place - last), truth)
-            last = place
+            truth = self._truth(footage.truth[index], index, stamp_of(position, fps))
+            yield StressFrame(frame, float(position - last), truth)
+            last = position
 
     def _kept(self) -> Iterator[tuple[int, int]]:
-        """Place in the case's time, and index in the sequence, of each frame that is there."""
+        """Yield the position in the case and the index in the sequence of each frame kept."""
         draws = stream(self.seed, "dropped").random(self.count)
-        for place in range(self.count):
-            if place == 0 or draws[place] >= self.dropped:
-                yield place, self.first + self.step * place
+        for position in range(self.count):
+            if position == 0 or draws[position] >= self.dropped:
+                yield position, self.first + self.step * position
 
     def _truth(self, truth: Truth | None, index: int, stamp_ns: int) -> Truth | None:
         if truth is None:

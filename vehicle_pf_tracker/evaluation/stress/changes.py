@@ -181,7 +181,7 @@ _SWAYS = ((0.021, 0.55), (0.09, 0.3), (0.23, 0.15))
 class Shake:
     """Shift images as a swaying camera does, by at most `amplitude` px along each axis.
 
-    What comes in at the border repeats the image's outermost pixels.
+    Pixels that come in at the border repeat the outermost ones.
     """
 
     amplitude: float

@@ -62,7 +62,7 @@ def coverage(corners: Floats, region: tuple[int, int, int, int]) -> Floats:
     y = (top + 0.5 + np.arange(height, dtype=float))[:, np.newaxis]
     ends = np.roll(corners, -1, axis=0)
     inside = [_share_inside(one, end, x, y) for one, end in zip(corners, ends, strict=True)]
-    # What two opposite edges cut off a pixel has nothing in common.
+    # The parts of a pixel that two opposite edges cut off never overlap.
     along = [np.clip(inside[i] + inside[i + 2] - 1.0, 0, 1) for i in (0, 1)]
     return np.asarray(along[0] * along[1])
 

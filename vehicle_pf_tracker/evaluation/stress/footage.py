@@ -52,7 +52,7 @@ class StressFootage:
 
     @property
     def is_grey(self) -> bool:
-        """Whether the footage carries no colour."""
+        """True for footage without colour."""
         return is_grey(self.frame(0))
 
 
@@ -96,14 +96,14 @@ def find_sequences(
         If there is none, one cannot be read or has no truth, two share a name, or a table names a
         sequence twice.
     """
-    places = [locations] if isinstance(locations, Path | str) else locations
+    roots = [locations] if isinstance(locations, Path | str) else locations
     found: dict[str, StressSource] = {}
     table = _read_cameras(cameras) if cameras else {}
-    for place in map(Path, places):
-        own = place / CAMERAS
+    for root in map(Path, roots):
+        own = root / CAMERAS
         known = table or (_read_cameras(own) if own.is_file() else {})
-        for path in _sequences_in(place):
-            name = path.relative_to(place).as_posix() if path != place else place.absolute().name
+        for path in _sequences_in(root):
+            name = path.relative_to(root).as_posix() if path != root else root.absolute().name
             name = name.removesuffix(".mcap")
             if name in found:
                 raise InputError(f"several sequences would be called {name}; rename a folder")
@@ -196,16 +196,16 @@ def _digest(files: Sequence[Path]) -> str:
     return digest.hexdigest()
 
 
-def _sequences_in(place: Path) -> list[Path]:
-    if not place.exists():
-        raise InputError(f"there is no sequence {place}")
-    if _is_sequence(place):
-        return [place]
-    inside = sorted(path for path in place.rglob("*") if _is_sequence(path))
+def _sequences_in(root: Path) -> list[Path]:
+    if not root.exists():
+        raise InputError(f"there is no sequence {root}")
+    if _is_sequence(root):
+        return [root]
+    inside = sorted(path for path in root.rglob("*") if _is_sequence(path))
     # The MCAP file in a rosbag2 folder is part of the recording that was found already.
     found = [path for path in inside if path.parent not in inside]
     if not found:
-        raise InputError(f"{place} has no recording and no frame folder with truth in it")
+        raise InputError(f"{root} has no recording and no frame folder with truth in it")
     return found
 
 

@@ -25,6 +25,7 @@ _LEAST_SIDE = 8.0
 _SHAKES = (0.01, 0.03)
 """Amplitude in image widths: a mast in wind, a camera held by hand."""
 _DROPPED = 0.2
+"""What a radio link at the edge of its range loses."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +56,7 @@ def case_seed(seed: int, *words: object) -> int:
 
 
 def _playing(origin: StressSource, kind: str, variation: str = "", **more: Any) -> Iterator[Case]:
-    """All frames from the first one with truth on."""
+    """Yield the case of all frames from the first one with truth on."""
     footage = open_footage(origin.source)
     first = next((i for i, truth in enumerate(footage.truth) if truth is not None), 0)
     count = len(footage.truth) - first
@@ -80,10 +81,10 @@ def _reversed(origin: StressSource, seed: int) -> Iterator[Case]:
 
 def _last_in_view(truths: tuple[Truth | None, ...]) -> int:
     """Index of the last frame in full view, else of the last that is not hidden; else -1."""
-    for wanted in ({Occlusion.NONE}, {Occlusion.NONE, Occlusion.PARTIAL}):
+    for accepted in ({Occlusion.NONE}, {Occlusion.NONE, Occlusion.PARTIAL}):
         for index in range(len(truths) - 1, -1, -1):
             truth = truths[index]
-            if truth is not None and truth.occlusion in wanted:
+            if truth is not None and truth.occlusion in accepted:
                 return index
     return -1
 

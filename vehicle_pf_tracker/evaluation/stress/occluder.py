@@ -1,4 +1,4 @@
-"""An occluder in front of the vehicle: where it is in each frame, and what share it hides."""
+"""An occluder in front of the vehicle: its position in each frame, and the share it hides."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _STANDING: Similarity = (1.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """Where a rectangle of the frame `anchor` is in other frames.
+    """Motion of a rectangle, given in the frame `anchor`, through other frames.
 
     Attributes
     ----------
@@ -41,14 +41,14 @@ class Motion:
     first: int = 0
     carried: tuple[Similarity, ...] = ()
 
-    def place(self, points: Floats, index: int) -> Floats:
+    def from_anchor(self, points: Floats, index: int) -> Floats:
         """Take points (N, 2) of frame `anchor` to frame `index`."""
         moved = points + (index - self.anchor) * np.asarray(self.velocity)
         a, b, x, y = self.carried[index - self.first] if self.carried else _STANDING
         turn = np.array([[a, b], [-b, a]])
         return np.asarray(moved @ turn + np.array([x, y]))
 
-    def unplace(self, points: Floats, first: int) -> Floats:
+    def to_anchor(self, points: Floats, first: int) -> Floats:
         """Take points (frames, N, 2) of the frames from `first` on to frame `anchor`."""
         count = len(points)
         begin = first - self.first
@@ -70,9 +70,9 @@ class Occluder:
     rectangle : Box
         In the coordinates of the motion's anchor frame, px.
     motion : Motion
-        Where it is in each frame.
+        Its motion through the sequence.
     texture : Texture
-        What it looks like.
+        Its surface.
     """
 
     rectangle: Box
@@ -85,7 +85,7 @@ class Occluder:
 
     def corners(self, index: int) -> Floats:
         """Return the corners in frame `index`, clockwise, (4, 2) px."""
-        return self.motion.place(np.asarray(self.rectangle.corners), index)
+        return self.motion.from_anchor(np.asarray(self.rectangle.corners), index)
 
     def visible_share(self, box: Box, index: int, size: Size) -> float:
         """Compute the share of a box that is not behind the occluder, of its part in the image."""

@@ -1,8 +1,8 @@
 """Cases with painted occluders: which, of what duration, over which stretch of a sequence.
 
-Standing occluders move with the background, or stay in place where the camera stands; a sequence
-whose background is not one plane to the camera (see `background`) gets none. Lorries move relative
-to the background, or, in such a sequence, relative to the image.
+Standing occluders move with the background, and stay where they are before a camera that stands; a
+sequence whose background is not one plane to the camera (see `background`) gets none. Lorries move
+relative to the background, or, in such a sequence, relative to the image.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from vehicle_pf_tracker.evaluation.stress.cases import Case
 from vehicle_pf_tracker.evaluation.stress.footage import StressFootage, StressSource, open_footage
 from vehicle_pf_tracker.evaluation.stress.occluder import Occluder
 from vehicle_pf_tracker.evaluation.stress.painting import LORRY, POLE, WALL
-from vehicle_pf_tracker.evaluation.stress.placing import Placed, Placer, Wanted
+from vehicle_pf_tracker.evaluation.stress.placing import OcclusionSpec, Placed, Placer
 from vehicle_pf_tracker.scenes.randomness import stream
 
 DURATIONS = (5, 10, 20, 40)
@@ -29,34 +29,36 @@ _CROSSINGS = {"fast": 4.0, "slow": 15.0}
 _LORRIES = (("fast", 5), ("fast", 10), ("fast", 20), ("slow", 10), ("slow", 20), ("slow", 40))
 """A slow lorry that hides for 5 frames is shorter than the vehicle; a fast one for 40, a train."""
 _POLES = 3
+"""Posts differ in width, place and shade, and not in duration, so that a few will do."""
 _ANCHORS = 32
-"""Places in a sequence that are tried, evenly spread."""
+"""Frames tried in a sequence, evenly spread: with 16, half as many turning stretches were found."""
 _LARGEST_SHARE = 0.6
 """Share of the image that an occluder may cover: more is no picture of a road any more."""
 _PATCH_TRIES = 12
+"""Random patches that the most textured is taken of; a few are sky or empty road."""
 
 
 def walls(origin: StressSource, seed: int) -> Iterator[Case]:
     """Make cases with a wall, one over a straight and one over a turning stretch of each length."""
     for duration in DURATIONS:
-        yield from _cases(origin, WALL, Wanted(WALL, duration), f"{duration}", seed)
+        yield from _cases(origin, WALL, OcclusionSpec(WALL, duration), f"{duration}", seed)
 
 
 def poles(origin: StressSource, seed: int) -> Iterator[Case]:
     """Make cases with a post that hides the vehicle in part."""
     for number in range(1, _POLES + 1):
-        yield from _cases(origin, POLE, Wanted(POLE), f"{number}", seed)
+        yield from _cases(origin, POLE, OcclusionSpec(POLE), f"{number}", seed)
 
 
 def lorries(origin: StressSource, seed: int) -> Iterator[Case]:
     """Make cases with a lorry that drives across."""
     for speed, duration in _LORRIES:
-        wanted = Wanted(LORRY, duration, _CROSSINGS[speed])
-        yield from _cases(origin, LORRY, wanted, f"{speed}_{duration}", seed, speed=speed)
+        spec = OcclusionSpec(LORRY, duration, _CROSSINGS[speed])
+        yield from _cases(origin, LORRY, spec, f"{speed}_{duration}", seed, speed=speed)
 
 
 def _cases(
-    origin: StressSource, kind: str, wanted: Wanted, variation: str, seed: int, **labels: str
+    origin: StressSource, kind: str, spec: OcclusionSpec, variation: str, seed: int, **labels: str
 ) -> Iterator[Case]:
     footage, background = open_footage(origin.source), background_of(origin.source)
     size = origin.source.width, origin.source.height
@@ -64,7 +66,7 @@ def _cases(
     own = zlib.crc32(f"{seed}/{origin.name}/{kind}/{variation}".encode())
     done = set[str]()
     for anchor in _anchors(len(footage.truth), own):
-        placed = placer.place(wanted, anchor, own)
+        placed = placer.place(spec, anchor, own)
         if placed is None or placed.path in done or _is_too_large(placed, footage):
             continue
         done.add(placed.path)
@@ -81,8 +83,8 @@ def _cases(
 
 def _anchors(frames: int, seed: int) -> list[int]:
     """Frames to try, in random order."""
-    places = np.unique(np.linspace(0, frames - 1, _ANCHORS + 2).round().astype(int)[1:-1])
-    return [int(place) for place in stream(seed, "anchors").permutation(places)]
+    frames_tried = np.unique(np.linspace(0, frames - 1, _ANCHORS + 2).round().astype(int)[1:-1])
+    return [int(frame) for frame in stream(seed, "anchors").permutation(frames_tried)]
 
 
 def _carrier(background: Background) -> str:

@@ -43,7 +43,7 @@ _EDGE = 0.55
 
 @dataclass(frozen=True, slots=True)
 class Texture:
-    """The look of an occluder.
+    """Surface of an occluder.
 
     Attributes
     ----------
@@ -133,8 +133,8 @@ def _pole(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Ima
     """Draw a round post along the longer side, bright at one flank."""
     is_upright = shape[0] >= shape[1]
     across = shape[1] if is_upright else shape[0]
-    place = (np.arange(across) + 0.5) / across
-    flank = 0.55 + 0.65 * np.exp(-(((place - 0.35) / 0.28) ** 2))
+    position = (np.arange(across) + 0.5) / across
+    flank = 0.55 + 0.65 * np.exp(-(((position - 0.35) / 0.28) ** 2))
     shade = (flank if is_upright else flank[:, np.newaxis]) * np.ones(shape)
     shade = shade * (1 + 0.05 * value_noise(shape, (6, 6), rng))
     base = np.full(3, _level(patch)) * rng.uniform(0.7, 1.3) * (0.97, 1.0, 1.04)

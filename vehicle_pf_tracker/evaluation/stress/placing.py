@@ -1,4 +1,4 @@
-"""Where an occluder has to stand, or to drive, to hide the vehicle for a given time."""
+"""Placing an occluder so that it hides the vehicle for a given time."""
 
 from __future__ import annotations
 
@@ -28,16 +28,17 @@ _LONGEST_TOUCH = 60
 _HEADING_FRAMES = 15
 """Frames before and after an occlusion that headings are taken over, half a second."""
 _TURNING_DEGREES = 15.0
+"""Change of heading that leaves a constant velocity a quarter of the way beside the vehicle."""
 _LEAST_WAY = 0.15, 4.0
 """Way in diagonals, and in px, below which a heading is noise of the truth."""
 _POLE_SHARES = (0.3, 0.5)
 """Width of a pole in widths (or heights) of the vehicle: partial, never total."""
 _TOLERANCE = 0.25
-"""Deviation of the real duration from the wanted one, as a share, that is accepted."""
+"""Accepted deviation from the duration asked for, as a share: 5 and 10 frames stay apart."""
 
 
-class Wanted(NamedTuple):
-    """What is to be painted.
+class OcclusionSpec(NamedTuple):
+    """An occlusion to be painted.
 
     Attributes
     ----------
@@ -56,7 +57,7 @@ class Wanted(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """An occluder that does what was wanted.
+    """An occluder that keeps to its specification.
 
     Attributes
     ----------
@@ -101,26 +102,26 @@ class Placer:
             [nowhere if each is None else each.box.corners for each in truth], float
         )
 
-    def place(self, wanted: Wanted, anchor: int, seed: int) -> Placed | None:
+    def place(self, spec: OcclusionSpec, anchor: int, seed: int) -> Placed | None:
         """Place an occluder that hides the vehicle around frame `anchor`; None if that fails."""
-        if wanted.style != LORRY and not self._background.coherent:
+        if spec.style != LORRY and not self._background.coherent:
             return None
-        span = self._span(anchor, wanted.duration)
+        span = self._span(anchor, spec.duration)
         if span is None:
             return None
         rng = stream(seed, "place", anchor)
-        motion = self._motion(wanted, anchor, span, rng)
-        seen = self._relative(motion, span)
-        rectangles = _rectangles(wanted, seen, anchor - span.start, rng)
-        counts = [(abs(_hidden(each, seen) - wanted.duration), each) for each in rectangles]
+        motion = self._motion(spec, anchor, span, rng)
+        boxes = self._relative(motion, span)
+        rectangles = _rectangles(spec, boxes, anchor - span.start, rng)
+        counts = [(abs(_hidden(each, boxes) - spec.duration), each) for each in rectangles]
         miss, best = min(counts, key=lambda pair: pair[0])
-        if miss > 2 * _slack(wanted):  # far from it even by its outline, so look no closer
+        if miss > 2 * _slack(spec):  # far from it even by its outline, so nothing exact is computed
             return None
-        occluder = Occluder(best, motion, Texture(wanted.style, seed, anchor, (0, 0, 1, 1)))
-        return self._judge(occluder, span, _near(best, seen), wanted)
+        occluder = Occluder(best, motion, Texture(spec.style, seed, anchor, (0, 0, 1, 1)))
+        return self._judge(occluder, span, _near(best, boxes), spec)
 
     def _span(self, anchor: int, duration: int) -> range | None:
-        """Frames around `anchor`, all of them with truth, that an occlusion could matter in."""
+        """Return the frames around `anchor`, all with truth, that an occlusion could matter in."""
         reach = duration // 2 + _LONGEST_TOUCH + max(LEAD, TAIL)
         first = last = anchor
         while first > max(0, anchor - reach) and self._truth[first - 1] is not None:
@@ -131,30 +132,32 @@ class Placer:
         enough = anchor - first >= LEAST_LEAD and last - anchor >= LEAST_TAIL
         return range(first, last + 1) if enough and self._truth[anchor] is not None else None
 
-    def _motion(self, wanted: Wanted, anchor: int, span: range, rng: np.random.Generator) -> Motion:
+    def _motion(
+        self, spec: OcclusionSpec, anchor: int, span: range, rng: np.random.Generator
+    ) -> Motion:
         standing = Motion(anchor)
         if self._background.coherent and not self._background.stands:
             carried = similarities(self._background.between(anchor, span))
             standing = Motion(anchor, (0.0, 0.0), span.start, carried)
-        if wanted.style != LORRY:
+        if spec.style != LORRY:
             return standing
-        seen = self._relative(standing, span)
+        boxes = self._relative(standing, span)
         near = slice(max(0, anchor - span.start - 5), anchor - span.start + 6)
-        velocity = np.mean(np.diff(_centres(seen[near]), axis=0), axis=0)
-        extent = seen[anchor - span.start, 2] - seen[anchor - span.start, 0]
-        passing = rng.choice([-1.0, 1.0]) * extent / wanted.crossing
+        velocity = np.mean(np.diff(_centres(boxes[near]), axis=0), axis=0)
+        extent = boxes[anchor - span.start, 2] - boxes[anchor - span.start, 0]
+        passing = rng.choice([-1.0, 1.0]) * extent / spec.crossing
         x, y = (velocity + np.array([passing, 0.0])).tolist()
         return replace(standing, velocity=(round(x, 3), round(y, 3)))
 
     def _relative(self, motion: Motion, span: range) -> Floats:
         """Take the vehicle's boxes to the occluder's coordinates: left, top, right, bottom."""
-        corners = motion.unplace(self._corners[span.start : span.stop], span.start)
+        corners = motion.to_anchor(self._corners[span.start : span.stop], span.start)
         return np.concatenate([corners.min(axis=1), corners.max(axis=1)], axis=1)
 
     def _judge(
-        self, occluder: Occluder, span: range, near: npt.NDArray[np.bool_], wanted: Wanted
+        self, occluder: Occluder, span: range, near: npt.NDArray[np.bool_], spec: OcclusionSpec
     ) -> Placed | None:
-        """Choose the frames to play; None where the occlusion is not what was wanted.
+        """Choose the frames to play; None where the occlusion is not as specified.
 
         Frames in which the occluder is not near the vehicle have nothing hidden.
         """
@@ -163,8 +166,8 @@ class Placer:
             shares[row] = self._share(occluder, span[row])
         hidden = np.flatnonzero(shares < TOTAL_BELOW)
         touched = np.flatnonzero(shares < 1.0)
-        is_total = wanted.style != POLE
-        if not len(touched) or not _is_right(hidden, wanted) or touched[0] < LEAST_LEAD:
+        is_total = spec.style != POLE
+        if not len(touched) or not _is_right(hidden, spec) or touched[0] < LEAST_LEAD:
             return None
         core = hidden if is_total else touched
         if np.ptp(touched) + 1 - len(hidden) > _LONGEST_TOUCH and not is_total:
@@ -206,19 +209,19 @@ class Placer:
 
 
 def _rectangles(
-    wanted: Wanted, seen: Floats, anchor: int, rng: np.random.Generator
+    spec: OcclusionSpec, boxes: Floats, anchor: int, rng: np.random.Generator
 ) -> Iterator[Box]:
-    """Rectangles that hide the vehicle for longer and longer around row `anchor` of `seen`."""
+    """Yield rectangles that hide the vehicle longer and longer around row `anchor`."""
     margins = rng.uniform(0.15, 0.9, 4)
-    if wanted.style == LORRY:
+    if spec.style == LORRY:
         margins = rng.uniform(0.05, 0.3, 4)
     share = rng.uniform(*_POLE_SHARES)
-    for length in range(1, max(wanted.duration, 1) + 1):
+    for length in range(1, max(spec.duration, 1) + 1):
         begin = max(0, anchor - (length - 1) // 2)
-        inner = seen[begin : begin + length]
+        inner = boxes[begin : begin + length]
         low, high = inner[:, :2].min(axis=0), inner[:, 2:].max(axis=0)
-        axis = _axis(seen, anchor) if wanted.style != LORRY else 0
-        if wanted.style == POLE:
+        axis = _axis(boxes, anchor) if spec.style != LORRY else 0
+        if spec.style == POLE:
             middle, extent = (low[axis] + high[axis]) / 2, share * (high - low)[axis]
             low[axis], high[axis] = middle - extent / 2, middle + extent / 2
         across = 1 - axis
@@ -229,38 +232,38 @@ def _rectangles(
         yield Box(left, top, width, height)
 
 
-def _axis(seen: Floats, anchor: int) -> int:
-    """Axis that the vehicle passes a standing occluder along: 0 for x, 1 for y."""
-    near = _centres(seen[max(0, anchor - 10) : anchor + 11])
-    way = np.abs(near[-1] - near[0]) / (seen[anchor, 2:] - seen[anchor, :2])
+def _axis(boxes: Floats, anchor: int) -> int:
+    """Return the axis that the vehicle passes a standing occluder along: 0 for x, 1 for y."""
+    near = _centres(boxes[max(0, anchor - 10) : anchor + 11])
+    way = np.abs(near[-1] - near[0]) / (boxes[anchor, 2:] - boxes[anchor, :2])
     return int(way[1] > way[0])
 
 
-def _near(rectangle: Box, seen: Floats) -> npt.NDArray[np.bool_]:
+def _near(rectangle: Box, boxes: Floats) -> npt.NDArray[np.bool_]:
     """Tell which boxes the rectangle may touch, with two pixels to spare for rounding."""
     low = np.array([rectangle.x, rectangle.y])
     high = low + np.array([rectangle.width, rectangle.height])
-    return np.asarray(((seen[:, :2] <= high + 2.0) & (low - 2.0 <= seen[:, 2:])).all(axis=1))
+    return np.asarray(((boxes[:, :2] <= high + 2.0) & (low - 2.0 <= boxes[:, 2:])).all(axis=1))
 
 
-def _hidden(rectangle: Box, seen: Floats) -> int:
+def _hidden(rectangle: Box, boxes: Floats) -> int:
     """Count the boxes, as the occluder sees them, that are behind the rectangle."""
-    low = np.maximum(seen[:, :2], (rectangle.x, rectangle.y))
-    high = np.minimum(seen[:, 2:], (rectangle.x + rectangle.width, rectangle.y + rectangle.height))
+    low = np.maximum(boxes[:, :2], (rectangle.x, rectangle.y))
+    high = np.minimum(boxes[:, 2:], (rectangle.x + rectangle.width, rectangle.y + rectangle.height))
     shared = np.prod(np.maximum(high - low, 0.0), axis=1)
-    areas = np.prod(seen[:, 2:] - seen[:, :2], axis=1)
+    areas = np.prod(boxes[:, 2:] - boxes[:, :2], axis=1)
     return int(np.count_nonzero(shared > (1 - TOTAL_BELOW) * areas))
 
 
-def _is_right(hidden: npt.NDArray[np.intp], wanted: Wanted) -> bool:
-    if wanted.style == POLE:
+def _is_right(hidden: npt.NDArray[np.intp], spec: OcclusionSpec) -> bool:
+    if spec.style == POLE:
         return len(hidden) == 0
     is_one_run = len(hidden) > 0 and np.ptp(hidden) + 1 == len(hidden)
-    return bool(is_one_run) and abs(len(hidden) - wanted.duration) <= _slack(wanted)
+    return bool(is_one_run) and abs(len(hidden) - spec.duration) <= _slack(spec)
 
 
-def _slack(wanted: Wanted) -> float:
-    return max(1.0, _TOLERANCE * wanted.duration)
+def _slack(spec: OcclusionSpec) -> float:
+    return max(1.0, _TOLERANCE * spec.duration)
 
 
 def _centres(boxes: Floats) -> Floats:

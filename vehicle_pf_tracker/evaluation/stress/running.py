@@ -28,7 +28,7 @@ _THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 
 
 class Follower(Protocol):
-    """What is run: every tracker of the package, or anything like it."""
+    """A tracker under test: any of the package, or anything with the same two methods."""
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target in the first frame."""

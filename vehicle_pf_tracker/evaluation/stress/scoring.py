@@ -1,4 +1,4 @@
-"""What a tracker's run through a case is worth."""
+"""Scores of a tracker's run through a case."""
 
 from __future__ import annotations
 

@@ -63,9 +63,9 @@ class Group:
     system : str
         Label of the system.
     by : str
-        What they have in common: ``kind``, ``camera``, ``occlusion`` or `ALL`.
+        Property that they share: ``kind``, ``path``, ``occlusion``, ``camera`` or `ALL`.
     name : str
-        Which kind, camera or occlusion.
+        Value of that property.
     results : tuple of Result
         Runs of all seeds.
     """
