@@ -1,3 +1,5 @@
+import contextlib
+
 import numpy as np
 import pytest
 from street import Street, error
@@ -112,6 +114,90 @@ def test_a_stray_stamp_costs_the_track_nothing(stamp, times):
     strays = {t: [(street.frame(t), stamp)] for t in times}
     plain = feed(session(street.box(0)), street, range(30))
     assert positions(feed_with_strays(session(street.box(0)), street, strays)) == positions(plain)
+
+
+def feed_with_one_ahead(of, street, at, ahead_ns, size=30):
+    """Feed frames of which one has a stamp that is ahead; it may cost its own estimate alone."""
+    estimates = []
+    for t in range(size):
+        if t == at:
+            with contextlib.suppress(StrayImageError):
+                of.feed(street.frame(t), (t + 1) * PERIOD_NS + ahead_ns)
+        else:
+            estimates += feed(of, street, [t])
+    return estimates
+
+
+@pytest.mark.parametrize("ahead", [1.05, 2.25, 4, 30, 112, 124, 10**6])
+@pytest.mark.parametrize("at", [1, 2, 12])
+@pytest.mark.parametrize("variant", ["apf", "fusion"])
+def test_one_stamp_ahead_costs_its_own_estimate_alone(variant, at, ahead):
+    """As if the image had never come, whether its stamp passes for a gap or not."""
+    street = Street()
+    kind = VARIANTS[variant]
+
+    def made():
+        return Session(kind, kind.parameters(), configured(street.box(0)))
+
+    plain = feed(made(), street, [t for t in range(30) if t != at])
+    odd = feed_with_one_ahead(made(), street, at, round(ahead * PERIOD_NS))
+    assert positions(odd) == positions(plain)
+
+
+@pytest.mark.parametrize("ahead", [3, 100, 10**6])
+def test_a_first_stamp_ahead_costs_nothing(ahead):
+    street = Street()
+    odd = session(street.box(0))
+    odd.feed(street.frame(0), (1 + ahead) * PERIOD_NS)
+    estimates = feed(odd, street, range(1, 30))
+    assert all(error(e, street, t) < 10 for t, e in enumerate(estimates, start=1))
+
+
+def test_one_stamp_ahead_drops_no_target_that_was_set_by_hand():
+    street, hand = Street(), session()
+    hand.set_target(street.box(0))
+    estimates = feed_with_one_ahead(hand, street, 12, 3 * PERIOD_NS)
+    assert all(estimates)
+    assert hand.events == []
+
+
+def test_one_stamp_ahead_after_dropped_images_costs_the_track_nothing():
+    street = Street()
+    of = session(street.box(0))
+    feed(of, street, range(10))
+    of.feed(street.frame(15), 16 * PERIOD_NS)
+    of.feed(street.frame(16), 20 * PERIOD_NS)
+    (estimate,) = feed(of, street, [17])
+    assert of.events == ["the last image's stamp was ahead; its estimate is taken back"]
+    assert error(estimate, street, 17) < 10
+
+
+def test_what_is_set_after_a_stamp_ahead_is_kept():
+    street = Street()
+    of = session(street.box(0))
+    feed(of, street, range(10))
+    of.feed(street.frame(10), 14 * PERIOD_NS)
+    of.reconfigure(from_mapping(ApfParameters, {"num_particles": 50}), of.settings)
+    (estimate,) = feed(of, street, [11])
+    assert len(estimate.weights) == 50
+
+
+def test_a_target_that_is_set_in_an_image_ahead_is_kept():
+    street = Street()
+    of = session()
+    feed(of, street, range(10))
+    of.set_target(street.box(10))
+    of.feed(street.frame(10), 14 * PERIOD_NS)
+    assert error(feed(of, street, [11, 12])[-1], street, 12) < 10
+
+
+def test_two_stamps_ahead_that_agree_are_a_change():
+    street = Street()
+    of = session(street.box(0))
+    feed(of, street, range(10))
+    feed(of, street, [10, 11], offset=30)
+    with pytest.raises(StrayImageError, match="goes back"):
+        feed(of, street, [12])
 
 
 def test_stray_sizes_cost_the_track_nothing():

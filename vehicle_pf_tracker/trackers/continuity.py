@@ -3,11 +3,13 @@
 Cameras, drivers and networks now and then deliver one image that does not belong: of another size,
 without a stamp, with a stamp of yesterday or of tomorrow. A track must not pay for it. Real changes
 look the same at first, but they last. So an odd image is doubted, and only a second one that agrees
-with it makes both believed.
+with it makes both believed. A stamp that is ahead by no more than a gap cannot be told from one; it
+is noticed when the next image continues the one before it.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 from enum import Enum
 
@@ -20,6 +22,13 @@ LONGEST_GAP_NS = 5_000_000_000
 
 _SLOWER = 3
 """How many times the interval before a longer gap may be: slow cameras have long intervals too."""
+
+_LATE = 1.5
+"""Usual intervals after which a stamp may be ahead: one that makes the next image go back, which
+comes two intervals after the image before, is at least two late; half a one allows for jitter."""
+
+_REMEMBERED = 10
+"""Intervals whose smallest is the usual one: it survives a run of dropped images."""
 
 PATIENCE = 10
 """Odd stamps in a row after which a camera is taken to have no usable clock."""
@@ -35,6 +44,8 @@ class Verdict(Enum):
     """How an image goes with those before it."""
 
     CONTINUES = "continues the stream"
+    LEAPS = "comes later than usual, so that its stamp may be ahead"
+    CORRECTS = "continues the image before the last, whose stamp was ahead"
     CONFIRMS = "agrees with the doubted image before it; both are believed"
     UNTIMED = "has a stamp that says nothing, as all those before it"
 
@@ -50,8 +61,12 @@ class Continuity:
 
     def __init__(self) -> None:
         self._last: _Seen | None = None
+        self._before: _Seen | None = None
+        self._intervals: deque[int] = deque(maxlen=_REMEMBERED)
+        self._last_leapt = False
         self._doubted: _Seen | None = None
         self._interval_ns = 0
+        self._believed = 0
         self._odd = 0
 
     @property
@@ -80,10 +95,14 @@ class Continuity:
         reason = self._oddity(seen, timed)
         if reason is None:
             self._believe(seen, stamp_ns - self._last.stamp_ns if self._last else 0)
-            return Verdict.CONTINUES
+            return Verdict.LEAPS if timed and self._last_leapt else Verdict.CONTINUES
         if self._doubted is not None and self._agrees(seen, self._doubted):
             self._believe(seen, stamp_ns - self._doubted.stamp_ns)
             return Verdict.CONFIRMS
+        if self._shows_last_ahead(seen):
+            self._last = self._before
+            self._believe(seen, stamp_ns - self._last.stamp_ns if self._last else 0)
+            return Verdict.CORRECTS
         self._doubted = seen
         self._odd += 1
         if self._odd > PATIENCE and size == self.size:
@@ -110,9 +129,22 @@ class Continuity:
         longest = max(LONGEST_GAP_NS, leap + leap // 2)
         return seen.size == doubted.size and 0 <= interval <= longest
 
+    def _shows_last_ahead(self, seen: _Seen) -> bool:
+        """Tell whether leaving the last image out makes `seen` continue the stream."""
+        assert self._last is not None
+        if seen.size != self._last.size or seen.stamp_ns >= self._last.stamp_ns:
+            return False
+        if self._before is None:
+            return self._believed == 1  # the first image's stamp has nothing on its side either
+        return self._last_leapt and seen.stamp_ns > self._before.stamp_ns
+
     def _believe(self, seen: _Seen, interval_ns: int) -> None:
-        self._last, self._doubted, self._odd = seen, None, 0
+        self._believed += 1
+        self._before, self._last, self._doubted, self._odd = self._last, seen, None, 0
+        self._last_leapt = interval_ns > _LATE * min(self._intervals, default=0)
         self._interval_ns = interval_ns
+        if interval_ns > 0:
+            self._intervals.append(interval_ns)
 
 
 def _words(size: Size) -> str:

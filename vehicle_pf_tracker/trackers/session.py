@@ -5,6 +5,7 @@ Offline runs and the node both drive their tracker through this, and so give the
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 from vehicle_pf_tracker.core.box import Box, check_target
@@ -12,7 +13,7 @@ from vehicle_pf_tracker.core.clock import StampClock, StampEvent, Tick
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
-from vehicle_pf_tracker.trackers.base import DEFAULT_PERIOD
+from vehicle_pf_tracker.trackers.base import DEFAULT_PERIOD, BaseTracker
 from vehicle_pf_tracker.trackers.continuity import Continuity, StrayImageError, Verdict
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
@@ -23,7 +24,8 @@ class Session:
 
     One odd image, of another size or out of its time, is rejected and kept aside. If the next one
     agrees with it, the stream has changed: then the tracker is shown both, and nothing but the
-    first one's estimate is missing.
+    first one's estimate is missing. An image whose stamp proves to have been ahead when the next
+    one comes is taken back, as if it had never come.
 
     Parameters
     ----------
@@ -50,6 +52,7 @@ class Session:
         self._clock = StampClock(parameters.frame_rate)
         self._continuity = Continuity()
         self._aside: tuple[Frame, int] | None = None
+        self._backup: tuple[StampClock, BaseTracker[Any]] | None = None
         self._pending: Box | None = self.settings.target.box
         self._size: tuple[int, int] | None = None
 
@@ -70,7 +73,7 @@ class Session:
     def reset(self) -> None:
         """Go back to the configured target, or to waiting for one, and forget the stream."""
         self._clock = StampClock(self.tracker.parameters.frame_rate)
-        self._continuity, self._aside = Continuity(), None
+        self._continuity, self._aside, self._backup = Continuity(), None, None
         self._size, self._pending = None, self.settings.target.box
 
     def reconfigure(self, parameters: Any, settings: SessionParameters) -> None:
@@ -109,7 +112,27 @@ class Session:
             raise
         if verdict is Verdict.CONFIRMS and aside is not None:
             self._take(*aside)
+        if verdict is Verdict.CORRECTS:
+            self._take_back()
+        self._backup = self._copied() if verdict is Verdict.LEAPS else None
         return self._take(frame, None if verdict is Verdict.UNTIMED else stamp_ns)
+
+    def _copied(self) -> tuple[StampClock, BaseTracker[Any]]:
+        """Copy what an image changes; kernels have no state of their own."""
+        kernels = self.tracker.kernels
+        return copy.deepcopy((self._clock, self.tracker), {id(kernels): kernels})
+
+    def _take_back(self) -> None:
+        """Go back to before the last image, whose stamp was ahead."""
+        self.events.append("the last image's stamp was ahead; its estimate is taken back")
+        parameters = self.tracker.parameters
+        if self._backup is None:  # it started the target, and its stamp is all that was wrong
+            self._clock = StampClock(parameters.frame_rate)
+            return
+        self._clock, self.tracker = self._backup
+        self._clock.set_frame_rate(parameters.frame_rate)
+        if self.tracker.parameters != parameters:
+            self.tracker.reconfigure(parameters)
 
     def _take(self, frame: Frame, stamp_ns: int | None) -> Estimate | None:
         size, tick = frame_size(frame), self._tick(stamp_ns)
@@ -150,7 +173,7 @@ class Session:
 
     def _start(self, frame: Frame, box: Box, size: tuple[int, int]) -> Estimate:
         estimate = self.tracker.start(frame, box)
-        self._size = size
+        self._size, self._backup = size, None
         return estimate
 
     def _forget(self) -> None:
