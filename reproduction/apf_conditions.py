@@ -10,13 +10,13 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 from typing import TypeAlias
 
-from reproduction.apf_systems import ALL_READINGS, APF, RIVALS
+from reproduction.apf_systems import ALL_INTERPRETATIONS, APF, RIVALS
 from reproduction.cells import SceneChoice
 from reproduction.experiment import Claim, DataTable, Entry, Finding, Holds
 from vehicle_pf_tracker.parameters.table import Value
 
 FACTOR = 1.5
-"""How many times the best rival's median error is still as good."""
+"""Factor of the best rival's median error that still counts as equal."""
 _FAST = 15.0
 _SCENES: dict[str, tuple[str, dict[str, Value]]] = {
     "clear": ("clear", {}),
@@ -35,15 +35,15 @@ CONDITIONS: dict[str, SceneChoice] = {
         for name, (scene, settings) in _SCENES.items()
     },
 }
-"""By name: each with a still and clean camera, and with one that shakes, flickers and is noisy."""
+"""Conditions by name: each with a clean camera, and with one that shakes, flickers and is noisy."""
 
 Errors: TypeAlias = Mapping[str, Mapping[str, Sequence[float]]]
 
 
 def condition_table(conditions: Errors) -> DataTable:
     """Put the medians side by side, and how far APF is behind the best rival."""
-    readings = [system.label for system in ALL_READINGS.values()]
-    labels = [*(rival.label for rival in RIVALS), *readings]
+    interpretations = [system.label for system in ALL_INTERPRETATIONS.values()]
+    labels = [*(rival.label for rival in RIVALS), *interpretations]
     rows: list[tuple[Entry, ...]] = [
         (name, *(median(errors[label]) for label in labels), f"{_ratio(errors, APF.label):.2f}")
         for name, errors in conditions.items()
@@ -52,24 +52,24 @@ def condition_table(conditions: Errors) -> DataTable:
 
 
 def condition_claims(conditions: Errors) -> tuple[Claim, ...]:
-    """Judge every reading in all conditions."""
+    """Judge every interpretation in all conditions."""
     return (
         Claim(
             f"(not the paper's, but what it takes for granted) without occlusion APF's median RMSE "
             f"is at most {FACTOR:g} times the best rival's, in each condition",
             "unoccluded conditions",
-            tuple(_finding(conditions, reading) for reading in ALL_READINGS),
+            tuple(_finding(conditions, interpretation) for interpretation in ALL_INTERPRETATIONS),
         ),
     )
 
 
-def _finding(conditions: Errors, reading: str) -> Finding:
-    label = ALL_READINGS[reading].label
+def _finding(conditions: Errors, interpretation: str) -> Finding:
+    label = ALL_INTERPRETATIONS[interpretation].label
     ratios = {name: _ratio(errors, label) for name, errors in conditions.items()}
     behind = {name: ratio for name, ratio in ratios.items() if ratio > FACTOR}
     told = "; ".join(f"{name} {ratio:.2f}" for name, ratio in behind.items())
     return Finding(
-        reading,
+        interpretation,
         Holds.share(1 - len(behind) / len(ratios), yes=1.0),
         f"within {FACTOR:g} times in {len(ratios) - len(behind)} of {len(ratios)} conditions"
         + (f"; beyond it: {told} times" if behind else ""),

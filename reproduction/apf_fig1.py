@@ -10,8 +10,8 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from reproduction.apf_systems import (
-    READINGS,
-    READINGS_TOLD,
+    INTERPRETATIONS,
+    INTERPRETATIONS_TOLD,
     SETTING,
     artificial_video,
     with_sigma,
@@ -40,20 +40,22 @@ Grid = npt.NDArray[np.float64]
 
 
 def cells(size: Size) -> list[RunCell]:
-    """Run every reading at every speed with every sigma and seed."""
+    """Run every interpretation at every speed with every sigma and seed."""
     return [_cell(*point, seed) for point in _points(size) for seed in size.seeds]
 
 
 def report(results: Results, size: Size) -> Report:
     """Draw the errors as grey levels, and look for the best sigma of each speed."""
     rows = tuple(
-        (reading, speed, sigma, seed, _rmse(results, (reading, speed, sigma), seed))
-        for reading, speed, sigma in _points(size)
+        (interpretation, speed, sigma, seed, _rmse(results, (interpretation, speed, sigma), seed))
+        for interpretation, speed, sigma in _points(size)
         for seed in size.seeds
     )
-    grids = {reading: _grid(results, reading, size) for reading in READINGS}
+    grids = {
+        interpretation: _grid(results, interpretation, size) for interpretation in INTERPRETATIONS
+    }
     return Report(
-        DataTable(("reading", "speed", "sigma", "seed", "rmse_px"), rows),
+        DataTable(("interpretation", "speed", "sigma", "seed", "rmse_px"), rows),
         _figure(grids, size),
         _verdict(grids, size),
     )
@@ -61,24 +63,29 @@ def report(results: Results, size: Size) -> Report:
 
 def _points(size: Size) -> list[tuple[str, int, int]]:
     speeds, sigmas = size.of(*_SPEEDS), size.of(*_SIGMAS)
-    return [(reading, speed, sigma) for reading in READINGS for speed in speeds for sigma in sigmas]
+    return [
+        (interpretation, speed, sigma)
+        for interpretation in INTERPRETATIONS
+        for speed in speeds
+        for sigma in sigmas
+    ]
 
 
-def _cell(reading: str, speed: int, sigma: int, seed: int) -> RunCell:
+def _cell(interpretation: str, speed: int, sigma: int, seed: int) -> RunCell:
     scene = artificial_video(0, speed)
-    return RunCell(scene, with_sigma(READINGS[reading], float(sigma)), seed)
+    return RunCell(scene, with_sigma(INTERPRETATIONS[interpretation], float(sigma)), seed)
 
 
 def _rmse(results: Results, point: tuple[str, int, int], seed: int) -> float:
     return float(results[_cell(*point, seed)]["metrics"]["rmse_px"])
 
 
-def _grid(results: Results, reading: str, size: Size) -> Grid:
+def _grid(results: Results, interpretation: str, size: Size) -> Grid:
     """RMSE by speed, sigma and seed."""
     return np.array(
         [
             [
-                [_rmse(results, (reading, speed, sigma), seed) for seed in size.seeds]
+                [_rmse(results, (interpretation, speed, sigma), seed) for seed in size.seeds]
                 for sigma in size.of(*_SIGMAS)
             ]
             for speed in size.of(*_SPEEDS)
@@ -90,7 +97,7 @@ def _figure(grids: Mapping[str, Grid], size: Size) -> Figure:
     speeds, sigmas = np.array(size.of(*_SPEEDS)), np.array(size.of(*_SIGMAS))
     figure = Figure(figsize=(11, 4.4), layout="constrained")
     axes = figure.subplots(1, len(grids), sharey=True)
-    for ax, (reading, grid) in zip(axes, grids.items(), strict=True):
+    for ax, (interpretation, grid) in zip(axes, grids.items(), strict=True):
         means = grid.mean(axis=2)
         image = ax.pcolormesh(
             speeds, sigmas, means.T, shading="nearest", cmap="gray_r", norm=LogNorm(1, 300)
@@ -102,7 +109,7 @@ def _figure(grids: Mapping[str, Grid], size: Size) -> Figure:
             mec="black", label="least error at this speed",
         )  # fmt: skip
         ax.contour(speeds, sigmas, means.T, [CLOSE_PX], colors="black", linewidths=1.2)
-        ax.set(title=reading, xlabel="speed, px/frame", xticks=speeds)
+        ax.set(title=interpretation, xlabel="speed, px/frame", xticks=speeds)
     axes[0].set(ylabel="sigma, px/frame")
     axes[0].set_yticks(range(0, sigmas[-1] + 1, 2))
     axes[0].set_ylim(sigmas[0] - 0.5, sigmas[-1] + 0.5)
@@ -130,25 +137,25 @@ def _verdict(grids: Mapping[str, Grid], size: Size) -> Verdict:
         ),
         f"{SETTING} No bar; speeds from {speeds[0]} to {speeds[-1]} and sigma from {sigmas[0]} to "
         f"{sigmas[-1]} px/frame, {len(size.seeds)} seeds; grey levels are means over the seeds. "
-        f"{READINGS_TOLD}",
+        f"{INTERPRETATIONS_TOLD}",
     )
 
 
-def _least(reading: str, grid: Grid, size: Size) -> Finding:
+def _least(interpretation: str, grid: Grid, size: Size) -> Finding:
     speeds, sigmas = np.array(size.of(*_SPEEDS), float), np.array(size.of(*_SIGMAS), float)
     means = grid.mean(axis=2)
     best = sigmas[means.argmin(axis=1)]
     holding = np.all(grid < CLOSE_PX, axis=2)
     if not np.any(holding):
         told = f"no sigma follows the vehicle (least mean RMSE: {means.min():.0f} px)"
-        return Finding(reading, Holds.NO, told)
+        return Finding(interpretation, Holds.NO, told)
     slope = float(speeds @ best / (speeds @ speeds))
     held = np.any(holding, axis=1)
     first = sigmas[holding.argmax(axis=1)]
     boundary = float(speeds[held] @ first[held] / (speeds[held] @ speeds[held]))
     low, high = _SLOPES
     return Finding(
-        reading,
+        interpretation,
         Holds.of(low <= slope <= high, low <= boundary <= high),
         f"best sigma = {slope:.2f} speed (fitted; at each speed: "
         f"{', '.join(f'{v:g}: {s:g}' for v, s in zip(speeds, best, strict=True))}); "
@@ -157,14 +164,14 @@ def _least(reading: str, grid: Grid, size: Size) -> Finding:
     )
 
 
-def _above(reading: str, grid: Grid, size: Size) -> Finding:
+def _above(interpretation: str, grid: Grid, size: Size) -> Finding:
     speeds, sigmas = np.array(size.of(*_SPEEDS)), np.array(size.of(*_SIGMAS))
     above = sigmas[np.newaxis] >= speeds[:, np.newaxis] / 2
     inside, outside = grid[above], grid[~above]
     near = float((inside < CLOSE_PX).mean())
     below = float((outside < CLOSE_PX).mean()) if outside.size else 0.0
     return Finding(
-        reading,
+        interpretation,
         Holds.share(near, 0.95, 0.75),
         f"{near:.0%} of the runs with sigma at or above half the speed have an RMSE below 15 px "
         f"(median {np.median(inside):.1f} px), {below:.0%} of those below it",

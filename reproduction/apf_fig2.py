@@ -60,7 +60,7 @@ def report(results: Results, size: Size) -> Report:
                     "section IV, figure 2",
                     (
                         Finding(
-                            "our reading",
+                            "our interpretation",
                             Holds.of(hidden > 0),
                             f"less than a tenth of the {VEHICLE_WIDTH:g} px vehicle is seen in "
                             f"{hidden} of {len(truths)} frames, and the bar covers a part of it or "

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reproduction.apf_systems import (
-    READINGS,
-    READINGS_TOLD,
+    INTERPRETATIONS,
+    INTERPRETATIONS_TOLD,
     SETTING,
     SPEED,
     artificial_video,
@@ -52,11 +52,11 @@ _MONOTONE = 0.9
 
 
 def cells(size: Size) -> list[RunCell]:
-    """Run every reading on every width with every seed."""
+    """Run every interpretation on every width with every seed."""
     return [
-        _cell(reading, width, seed)
+        _cell(interpretation, width, seed)
         for width in size.of(*_WIDTHS)
-        for reading in READINGS
+        for interpretation in INTERPRETATIONS
         for seed in size.seeds
     ]
 
@@ -69,8 +69,8 @@ def report(results: Results, size: Size) -> Report:
         for width, of_width in truths.items()
     }
     runs = {
-        (reading, width, seed): results[_cell(reading, width, seed)]
-        for reading in READINGS
+        (interpretation, width, seed): results[_cell(interpretation, width, seed)]
+        for interpretation in INTERPRETATIONS
         for width in size.of(*_WIDTHS)
         for seed in size.seeds
     }
@@ -79,13 +79,13 @@ def report(results: Results, size: Size) -> Report:
     return Report(_data(runs), _figure(runs, spans, size), _verdict(table))
 
 
-def _cell(reading: str, width: int, seed: int) -> RunCell:
-    system = with_sigma(READINGS[reading], SPEED)
+def _cell(interpretation: str, width: int, seed: int) -> RunCell:
+    system = with_sigma(INTERPRETATIONS[interpretation], SPEED)
     return RunCell(artificial_video(width), system, seed, _RECORD)
 
 
 class _Runs:
-    """What the claims ask about, of every run."""
+    """The quantities that the claims are about, of every run."""
 
     def __init__(
         self,
@@ -96,14 +96,18 @@ class _Runs:
         self._runs, self._ends = runs, ends
         self.widths, self.seeds = size.of(*_WIDTHS), size.seeds
 
-    def of(self, reading: str, what: Callable[[int, Result], Any]) -> list[Any]:
-        """Apply `what` to width and result of all runs under a reading."""
-        return [what(width, run) for (name, width, _), run in self._runs.items() if name == reading]
+    def of(self, interpretation: str, what: Callable[[int, Result], Any]) -> list[Any]:
+        """Apply `what` to width and result of all runs under a interpretation."""
+        return [
+            what(width, run)
+            for (name, width, _), run in self._runs.items()
+            if name == interpretation
+        ]
 
-    def by_width(self, reading: str, what: Callable[[Result], float]) -> list[float]:
+    def by_width(self, interpretation: str, what: Callable[[Result], float]) -> list[float]:
         """Take the median over the seeds for each width."""
         return [
-            median(what(self._runs[reading, width, seed]) for seed in self.seeds)
+            median(what(self._runs[interpretation, width, seed]) for seed in self.seeds)
             for width in self.widths
         ]
 
@@ -134,7 +138,9 @@ def _data(runs: dict[tuple[str, int, int], Result]) -> DataTable:
         trace = run["trace"]
         columns = zip(trace["pi"], trace["regime"], trace["x"], trace["y"], strict=True)
         rows += [(*point, frame, *values) for frame, values in enumerate(columns, start=1)]
-    return DataTable(("reading", "width", "seed", "frame", "pi", "regime", "x", "y"), tuple(rows))
+    return DataTable(
+        ("interpretation", "width", "seed", "frame", "pi", "regime", "x", "y"), tuple(rows)
+    )
 
 
 def _figure(
@@ -144,17 +150,19 @@ def _figure(
 ) -> Figure:
     widths, seed = size.of(*_WIDTHS), size.seeds[0]
     figure = Figure(figsize=(11, 4.4), layout="constrained")
-    axes = figure.subplots(1, len(READINGS), sharey=True)
-    for ax, reading in zip(axes, READINGS, strict=True):
+    axes = figure.subplots(1, len(INTERPRETATIONS), sharey=True)
+    for ax, interpretation in zip(axes, INTERPRETATIONS, strict=True):
         # The first frame has no similarity yet: it is the reference.
-        levels = np.array([runs[reading, width, seed]["trace"]["pi"][1:] for width in widths])
+        levels = np.array(
+            [runs[interpretation, width, seed]["trace"]["pi"][1:] for width in widths]
+        )
         frames = np.arange(2, levels.shape[1] + 2)
         image = ax.pcolormesh(
             frames, widths, levels, shading="nearest", cmap="gray", vmin=0, vmax=1,
             rasterized=True,
         )  # fmt: skip
         _outline(ax, spans)
-        ax.set(title=reading, xlabel="frame")
+        ax.set(title=interpretation, xlabel="frame")
     axes[0].set(ylabel="width of the occlusion, px")
     figure.colorbar(image, ax=axes, label="Pi")
     handles, labels = axes[0].get_legend_handles_labels()
@@ -174,7 +182,9 @@ def _outline(axes: Axes, spans: dict[int, tuple[int, int] | None]) -> None:
 
 def _verdict(table: _Runs) -> Verdict:
     def claim(words: str, judge: Callable[[_Runs, str], Finding]) -> Claim:
-        return Claim(words, _PLACE, tuple(judge(table, reading) for reading in READINGS))
+        return Claim(
+            words, _PLACE, tuple(judge(table, interpretation) for interpretation in INTERPRETATIONS)
+        )
 
     return Verdict(
         (
@@ -186,50 +196,50 @@ def _verdict(table: _Runs) -> Verdict:
         f"{SETTING} The vehicle passes at {SPEED:g} px/frame, sigma is the same number; "
         f"{len(table.widths)} widths, "
         f"{len(table.seeds)} seeds. Grey levels are those of the first seed. "
-        f"{READINGS_TOLD}",
+        f"{INTERPRETATIONS_TOLD}",
     )
 
 
-def _tracked(table: _Runs, reading: str) -> Finding:
-    errors = table.of(reading, table.end_error)
+def _tracked(table: _Runs, interpretation: str) -> Finding:
+    errors = table.of(interpretation, table.end_error)
     hits = [error < CLOSE_PX for error in errors]
-    wide = [width for width, hit in zip(table.of(reading, lambda w, _: w), hits, strict=True)
+    wide = [width for width, hit in zip(table.of(interpretation, lambda w, _: w), hits, strict=True)
             if not hit]  # fmt: skip
     failing = f"; misses from {min(wide)} px on" if wide and min(wide) else ""
     return Finding(
-        reading,
+        interpretation,
         Holds.share(share(hits)),
         f"{counted(hits)} runs are within {CLOSE_PX:g} px over the last {_LAST} frames{failing}; "
         f"error there {median_and_range(errors)} px",
     )
 
 
-def _longer(table: _Runs, reading: str) -> Finding:
-    frames = table.by_width(reading, _occluded_frames)
+def _longer(table: _Runs, interpretation: str) -> Finding:
+    frames = table.by_width(interpretation, _occluded_frames)
     rank = rank_correlation(table.widths, frames)
     return Finding(
-        reading,
+        interpretation,
         Holds.of(rank >= _MONOTONE, rank >= 0.5),
         f"from {frames[0]:g} frames without a bar to {frames[-1]:g} at {table.widths[-1]} px "
         f"(medians); rank correlation {rank:.2f}",
     )
 
 
-def _deeper(table: _Runs, reading: str) -> Finding:
-    least = table.by_width(reading, _least_pi)
+def _deeper(table: _Runs, interpretation: str) -> Finding:
+    least = table.by_width(interpretation, _least_pi)
     rank = rank_correlation(table.widths, least)
     return Finding(
-        reading,
+        interpretation,
         Holds.of(rank <= -_MONOTONE, rank <= -0.5),
         f"least Pi from {least[0]:.2f} without a bar to {least[-1]:.2f} at {table.widths[-1]} px "
         f"(medians); rank correlation {rank:.2f}",
     )
 
 
-def _resumed(table: _Runs, reading: str) -> Finding:
-    hits = table.of(reading, _has_resumed)
+def _resumed(table: _Runs, interpretation: str) -> Finding:
+    hits = table.of(interpretation, _has_resumed)
     return Finding(
-        reading,
+        interpretation,
         Holds.share(share(hits)),
         f"in {counted(hits)} runs at least half of the last {_LAST} frames are regular",
     )

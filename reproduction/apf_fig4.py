@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reproduction.apf_systems import (
-    READINGS,
-    READINGS_TOLD,
+    INTERPRETATIONS,
+    INTERPRETATIONS_TOLD,
     SETTING,
     SPEED,
     artificial_video,
@@ -42,11 +42,11 @@ _SLACK = 3
 
 
 def cells(size: Size) -> list[RunCell]:
-    """Run every reading on both widths with every seed."""
+    """Run every interpretation on both widths with every seed."""
     return [
-        _cell(reading, width, seed)
+        _cell(interpretation, width, seed)
         for width in _WIDTHS
-        for reading in READINGS
+        for interpretation in INTERPRETATIONS
         for seed in size.seeds
     ]
 
@@ -54,36 +54,36 @@ def cells(size: Size) -> list[RunCell]:
 def report(results: Results, size: Size) -> Report:
     """Draw the first seed's similarities, and judge all seeds."""
     rows: list[tuple[Entry, ...]] = []
-    for reading in READINGS:
+    for interpretation in INTERPRETATIONS:
         for width in _WIDTHS:
             for seed in size.seeds:
-                trace = results[_cell(reading, width, seed)]["trace"]
+                trace = results[_cell(interpretation, width, seed)]["trace"]
                 columns = zip(trace["pi"], trace["pi_up"], trace["regime"], strict=True)
                 rows += [
-                    (reading, width, seed, frame, *values)
+                    (interpretation, width, seed, frame, *values)
                     for frame, values in enumerate(columns, start=1)
                 ]
-    names = ("reading", "width", "seed", "frame", "pi", "pi_up", "regime")
+    names = ("interpretation", "width", "seed", "frame", "pi", "pi_up", "regime")
     return Report(DataTable(names, tuple(rows)), _figure(results, size), _verdict(results, size))
 
 
-def _cell(reading: str, width: int, seed: int) -> RunCell:
-    system = with_sigma(READINGS[reading], SPEED)
+def _cell(interpretation: str, width: int, seed: int) -> RunCell:
+    system = with_sigma(INTERPRETATIONS[interpretation], SPEED)
     return RunCell(artificial_video(width), system, seed, _RECORD)
 
 
 def _figure(results: Results, size: Size) -> Figure:
     figure = Figure(figsize=(11, 5.2), layout="constrained")
-    axes = figure.subplots(2, len(READINGS), sharex=True, sharey=True)
-    for column, reading in enumerate(READINGS):
+    axes = figure.subplots(2, len(INTERPRETATIONS), sharex=True, sharey=True)
+    for column, interpretation in enumerate(INTERPRETATIONS):
         for row, (scalar, name) in enumerate(_SHOWN.items()):
             traces = {
-                width: results[_cell(reading, width, size.seeds[0])]["trace"][scalar]
+                width: results[_cell(interpretation, width, size.seeds[0])]["trace"][scalar]
                 for width in _WIDTHS
             }
             _draw(axes[row, column], traces)
             axes[row, 0].set(ylabel=name)
-        axes[0, column].set(title=reading)
+        axes[0, column].set(title=interpretation)
         axes[1, column].set(xlabel="frame")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
@@ -106,8 +106,8 @@ def _draw(axes: Axes, traces: dict[int, list[float | None]]) -> None:
 
 
 def _verdict(results: Results, size: Size) -> Verdict:
-    def runs(reading: str, width: int) -> list[Result]:
-        return [results[_cell(reading, width, seed)] for seed in size.seeds]
+    def runs(interpretation: str, width: int) -> list[Result]:
+        return [results[_cell(interpretation, width, seed)] for seed in size.seeds]
 
     narrow, wide = _WIDTHS
     return Verdict(
@@ -116,22 +116,28 @@ def _verdict(results: Results, size: Size) -> Verdict:
                 f"with {narrow} px the similarities stay above the threshold, and occlusion mode "
                 "is not entered",
                 _PLACE,
-                tuple(_ignored(reading, runs(reading, narrow)) for reading in READINGS),
+                tuple(
+                    _ignored(interpretation, runs(interpretation, narrow))
+                    for interpretation in INTERPRETATIONS
+                ),
             ),
             Claim(
                 f"with {wide} px the similarities fall below the threshold, and the occlusion is "
                 "detected",
                 _PLACE,
-                tuple(_detected(reading, runs(reading, wide)) for reading in READINGS),
+                tuple(
+                    _detected(interpretation, runs(interpretation, wide))
+                    for interpretation in INTERPRETATIONS
+                ),
             ),
         ),
         f"{SETTING} It passes at {SPEED:g} px/frame, sigma is the same number; {len(size.seeds)} "
         "seeds. Curves are those of the first seed. "
-        f"{READINGS_TOLD}",
+        f"{INTERPRETATIONS_TOLD}",
     )
 
 
-def _ignored(reading: str, runs: Sequence[Result]) -> Finding:
+def _ignored(interpretation: str, runs: Sequence[Result]) -> Finding:
     least = [_least(run, "pi") for run in runs]
     least_up = [_least(run, "pi_up") for run in runs]
     never = [sum(_occluded(run)) == 0 for run in runs]
@@ -140,7 +146,7 @@ def _ignored(reading: str, runs: Sequence[Result]) -> Finding:
     caused = [any(_occluded(run)[near_bar]) for run in runs]
     frames = [sum(_occluded(run)) for run in runs]
     return Finding(
-        reading,
+        interpretation,
         Holds.of(all(never), not any(caused)),
         f"least Pi {median_and_range(least, 2)}, least Pi_up {median_and_range(least_up, 2)}; "
         f"above {_TAU:g} throughout in {counted(above)} runs; {median_and_range(frames, 0)} "
@@ -148,7 +154,7 @@ def _ignored(reading: str, runs: Sequence[Result]) -> Finding:
     )
 
 
-def _detected(reading: str, runs: Sequence[Result]) -> Finding:
+def _detected(interpretation: str, runs: Sequence[Result]) -> Finding:
     least, least_up = ([_least(run, name) for run in runs] for name in _SHOWN)
     fell = [min(pair) < _TAU for pair in zip(least, least_up, strict=True)]
     span = _span(_WIDTHS[-1])
@@ -160,7 +166,7 @@ def _detected(reading: str, runs: Sequence[Result]) -> Finding:
         for fall, enter, frames in zip(fell, entered, before, strict=True)
     ]
     return Finding(
-        reading,
+        interpretation,
         Holds.share(share(hits)),
         f"least Pi {median_and_range(least, 2)}, least Pi_up {median_and_range(least_up, 2)}; "
         f"occlusion mode at the bar in {counted(entered)} runs, before it in "

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
-from reproduction.apf_systems import APF, READINGS
+from reproduction.apf_systems import APF, INTERPRETATIONS
 from reproduction.cells import Result, RunCell
 from reproduction.experiment import (
     Claim,
@@ -38,15 +38,15 @@ _ROWS_AROUND = 60
 
 
 def cells(size: Size) -> list[RunCell]:
-    """Run every reading of the paper's tracker with every seed."""
-    return [video3.cell(system, seed) for system in READINGS.values() for seed in size.seeds]
+    """Run every interpretation of the paper's tracker with every seed."""
+    return [video3.cell(system, seed) for system in INTERPRETATIONS.values() for seed in size.seeds]
 
 
 def report(results: Results, size: Size) -> Report:
     """Show the first seed's path over four frames, and judge all seeds."""
     runs = {
         system.label: [video3.run_scores(results, system, seed) for seed in size.seeds]
-        for system in READINGS.values()
+        for system in INTERPRETATIONS.values()
     }
     return Report(
         video3.data(runs, size),
@@ -116,9 +116,9 @@ def _draw(axes: Axes, frame: Frame, scored: Scores, until: int) -> None:
 def _verdict(results: Results, runs: dict[str, list[Scores]], size: Size) -> Verdict:
     def claim(words: str, judge: _Judge) -> Claim:
         found = []
-        for reading, system in READINGS.items():
+        for interpretation, system in INTERPRETATIONS.items():
             raw = [results[video3.cell(system, seed)] for seed in size.seeds]
-            found.append(judge(reading, raw, runs[system.label]))
+            found.append(judge(interpretation, raw, runs[system.label]))
         return Claim(words, _PLACE, tuple(found))
 
     return Verdict(
@@ -132,32 +132,32 @@ def _verdict(results: Results, runs: dict[str, list[Scores]], size: Size) -> Ver
     )
 
 
-def _followed(reading: str, raw: Sequence[Result], runs: Sequence[Scores]) -> Finding:
+def _followed(interpretation: str, raw: Sequence[Result], runs: Sequence[Scores]) -> Finding:
     hits = video3.recoveries(runs)
     rmse = [run["metrics"]["rmse_px"] for run in raw]
     return Finding(
-        reading,
+        interpretation,
         Holds.share(share(hits), partly=0.25),
         f"{counted(hits)} total occlusions recovered from; RMSE {median_and_range(rmse)} px",
     )
 
 
-def _regular(reading: str, raw: Sequence[Result], runs: Sequence[Scores]) -> Finding:
+def _regular(interpretation: str, raw: Sequence[Result], runs: Sequence[Scores]) -> Finding:
     shares = [_share_in(run, scored, Occlusion.NONE, "regular")
               for run, scored in zip(raw, runs, strict=True)]  # fmt: skip
-    return _by_share(reading, shares, "regular in {} % of the clear frames")
+    return _by_share(interpretation, shares, "regular in {} % of the clear frames")
 
 
-def _occluded(reading: str, raw: Sequence[Result], runs: Sequence[Scores]) -> Finding:
+def _occluded(interpretation: str, raw: Sequence[Result], runs: Sequence[Scores]) -> Finding:
     shares = [_share_in(run, scored, Occlusion.TOTAL, "occlusion")
               for run, scored in zip(raw, runs, strict=True)]  # fmt: skip
-    return _by_share(reading, shares, "occlusion mode in {} % of the hidden frames")
+    return _by_share(interpretation, shares, "occlusion mode in {} % of the hidden frames")
 
 
-def _by_share(reading: str, shares: Sequence[float], sentence: str) -> Finding:
+def _by_share(interpretation: str, shares: Sequence[float], sentence: str) -> Finding:
     least = min(shares)
     numbers = sentence.format(median_and_range([100 * value for value in shares], 0))
-    return Finding(reading, Holds.of(least >= 0.8, max(shares) >= 0.5), numbers)
+    return Finding(interpretation, Holds.of(least >= 0.8, max(shares) >= 0.5), numbers)
 
 
 def _share_in(run: Result, scored: Scores, occlusion: Occlusion, regime: str) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from statistics import median
 
 from reproduction import apf_video3 as video3
-from reproduction.apf_systems import READINGS, RIVALS, SIX
+from reproduction.apf_systems import INTERPRETATIONS, RIVALS, SIX
 from reproduction.experiment import (
     Claim,
     DataTable,
@@ -61,7 +61,8 @@ def _table(runs: dict[str, list[Scores]]) -> DataTable:
 
 def _verdict(runs: dict[str, list[Scores]], size: Size) -> Verdict:
     findings = tuple(
-        _finding(reading, runs[system.label], runs) for reading, system in READINGS.items()
+        _finding(interpretation, runs[system.label], runs)
+        for interpretation, system in INTERPRETATIONS.items()
     )
     return Verdict(
         (
@@ -76,7 +77,7 @@ def _verdict(runs: dict[str, list[Scores]], size: Size) -> Verdict:
     )
 
 
-def _finding(reading: str, own: Sequence[Scores], runs: dict[str, list[Scores]]) -> Finding:
+def _finding(interpretation: str, own: Sequence[Scores], runs: dict[str, list[Scores]]) -> Finding:
     ours = _mean_errors(own)
     rivals = {rival.label: _mean_errors(runs[rival.label]) for rival in RIVALS}
     smaller, words = [], []
@@ -87,7 +88,7 @@ def _finding(reading: str, own: Sequence[Scores], runs: dict[str, list[Scores]])
             f"{when}: {median_and_range(ours[index])} px against {best}'s "
             f"{median_and_range(rivals[best][index])} px"
         )
-    return Finding(reading, Holds.of(all(smaller), any(smaller)), "; ".join(words))
+    return Finding(interpretation, Holds.of(all(smaller), any(smaller)), "; ".join(words))
 
 
 EXPERIMENT = Experiment(

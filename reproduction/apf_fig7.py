@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
-from reproduction.apf_systems import READINGS, RIVALS, SIX
+from reproduction.apf_systems import INTERPRETATIONS, RIVALS, SIX
 from reproduction.experiment import (
     Claim,
     Experiment,
@@ -47,7 +47,10 @@ def _figure(runs: dict[str, Scores]) -> Figure:
 
 
 def _verdict(runs: dict[str, list[Scores]], size: Size) -> Verdict:
-    own = {reading: video3.recoveries(runs[system.label]) for reading, system in READINGS.items()}
+    own = {
+        interpretation: video3.recoveries(runs[system.label])
+        for interpretation, system in INTERPRETATIONS.items()
+    }
     others = {rival.label: video3.recoveries(runs[rival.label]) for rival in RIVALS}
     lost = [not hit for hits in others.values() for hit in hits]
     told = "; ".join(f"{label} {counted(hits)}" for label, hits in others.items())
@@ -58,11 +61,11 @@ def _verdict(runs: dict[str, list[Scores]], size: Size) -> Verdict:
                 _PLACE,
                 tuple(
                     Finding(
-                        reading,
+                        interpretation,
                         Holds.share(share(hits), partly=0.25),
                         f"{counted(hits)} total occlusions recovered from",
                     )
-                    for reading, hits in own.items()
+                    for interpretation, hits in own.items()
                 ),
             ),
             Claim(

@@ -34,20 +34,21 @@ RIVALS = (
     System.of("PFCL", "pfcl"),
     System.of("MS", "ms"),
 )
-"""In the order of the paper's tables."""
+"""Rivals in the order of the paper's tables."""
 _FIXED = {"occlusion.rule": "fixed"}
 FIXED = System.of("APF, tau 0.8", "apf", {**_FIXED, "occlusion.tau": 0.8})
 LOWER = System.of("APF, tau 0.7", "apf", {**_FIXED, "occlusion.tau": 0.7})
 PRINTED = System.of("APF as printed", "apf", {"as_printed": True})
-READINGS = {"our reading": APF, "ours with tau 0.8": FIXED, "as printed": PRINTED}
-ALL_READINGS = {
-    "our reading": APF,
+INTERPRETATIONS = {"our interpretation": APF, "ours with tau 0.8": FIXED, "as printed": PRINTED}
+ALL_INTERPRETATIONS = {
+    "our interpretation": APF,
     "ours with tau 0.8": FIXED,
     "ours with tau 0.7": LOWER,
     "as printed": PRINTED,
 }
-READINGS_TOLD = (
-    "Our reading (the defaults of `apf`) holds the similarities against their own running level; "
+INTERPRETATIONS_TOLD = (
+    "Our interpretation (the defaults of `apf`) holds the similarities against their own "
+    "running level; "
     "with tau they are held against that number, as in the paper; as printed follows the paper to "
     "the letter in everything."
 )
@@ -60,7 +61,7 @@ SIGMA_RULE = (
     f"One rule sets sigma for every tracker that has one: {SPEEDS_PER_SIGMA:g} times the vehicle's "
     "nominal speed (the paper relates sigma to the speed), kept within the paper's interval from "
     f"{LEAST_SIGMA:g} to {LARGEST_SIGMA:g} px/frame. Everything else is each variant's default. "
-    + READINGS_TOLD
+    + INTERPRETATIONS_TOLD
 )
 _SIGMA = {"apf": "motion.sigma_w", "ms": None}
 

@@ -17,7 +17,7 @@ from reproduction.apf_conditions import (
     condition_table,
 )
 from reproduction.apf_systems import (
-    ALL_READINGS,
+    ALL_INTERPRETATIONS,
     APF,
     RIVALS,
     SIGMA_RULE,
@@ -53,14 +53,14 @@ _QUICK_CONDITIONS = "clear", "rough, turn"
 _AT_MOST = 0.5
 """Share of the best rival's error that the paper's table stays well below (17.32 of 73.69)."""
 _PAPER = {"PF": 74.57, "SAPF": 75.30, "HPFMS": 74.20, "PFCL": 78.81, "MS": 73.69, "APF": 17.32}
-_SYSTEMS = (*SIX, *(system for system in ALL_READINGS.values() if system != APF))
+_SYSTEMS = (*SIX, *(system for system in ALL_INTERPRETATIONS.values() if system != APF))
 
 Errors: TypeAlias = Mapping[str, Mapping[str, Sequence[float]]]
 """RMSE of each seed, by scene and by tracker."""
 
 
 def cells(size: Size) -> list[RunCell]:
-    """Run all trackers, and every reading of the paper's own, on every video and condition."""
+    """Run all trackers, APF under every interpretation, on every video and condition."""
     return [
         _cell(choice, system, seed)
         for choice in _choices(size).values()
@@ -75,7 +75,8 @@ def report(results: Results, size: Size) -> Report:
     videos = {name: errors[name] for name in _videos(size)}
     conditions = {name: errors[name] for name in _conditions(size)}
     hits = {
-        name: _recoveries(results, videos, size, system) for name, system in ALL_READINGS.items()
+        name: _recoveries(results, videos, size, system)
+        for name, system in ALL_INTERPRETATIONS.items()
     }
     others = {rival.label: _recoveries(results, videos, size, rival) for rival in RIVALS}
     tables = {
@@ -193,20 +194,21 @@ def _claims(
         Claim(
             "over all videos APF has the smallest average RMSE",
             _PLACE,
-            tuple(_first(videos, groups["average"], name, 1.0) for name in ALL_READINGS),
+            tuple(_first(videos, groups["average"], name, 1.0) for name in ALL_INTERPRETATIONS),
         ),
         Claim(
             "on the videos with total occlusions it is far ahead: at most half of the best rival's "
             "average (in the paper about a quarter)",
             _PLACE,
             tuple(
-                _first(videos, groups["total occlusion"], name, _AT_MOST) for name in ALL_READINGS
+                _first(videos, groups["total occlusion"], name, _AT_MOST)
+                for name in ALL_INTERPRETATIONS
             ),
         ),
         Claim(
             "it is ahead on every video with a partial or total occlusion",
             _PLACE,
-            tuple(_everywhere(videos, name) for name in ALL_READINGS),
+            tuple(_everywhere(videos, name) for name in ALL_INTERPRETATIONS),
         ),
         Claim(
             "after the occlusion APF resumes tracking, the others do not",
@@ -232,20 +234,20 @@ def _best(videos: Errors, names: Sequence[str]) -> tuple[str, list[float]]:
     return label, averages[label]
 
 
-def _first(videos: Errors, names: Sequence[str], reading: str, at_most: float) -> Finding:
-    own = _averages(videos, names, ALL_READINGS[reading].label)
+def _first(videos: Errors, names: Sequence[str], interpretation: str, at_most: float) -> Finding:
+    own = _averages(videos, names, ALL_INTERPRETATIONS[interpretation].label)
     label, best = _best(videos, names)
     ratio = fmean(own) / fmean(best)
     return Finding(
-        reading,
+        interpretation,
         Holds.of(ratio <= at_most, ratio < 1),
         f"{mean_and_spread(own)} px against {mean_and_spread(best)} px of {label}, the best rival: "
         f"{ratio:.2f} times; by seed {median_and_range(own)} px",
     )
 
 
-def _everywhere(videos: Errors, reading: str) -> Finding:
-    label = ALL_READINGS[reading].label
+def _everywhere(videos: Errors, interpretation: str) -> Finding:
+    label = ALL_INTERPRETATIONS[interpretation].label
     occluded = [name for name in videos if VIDEOS[name].occlusion != "none"]
     ahead = {
         name: median(videos[name][label])
@@ -256,7 +258,7 @@ def _everywhere(videos: Errors, reading: str) -> Finding:
     listed = ", ".join(name.removeprefix("video") for name in behind)
     told = f"; behind on {listed}" if 0 < len(behind) < len(occluded) else ""
     return Finding(
-        reading,
+        interpretation,
         Holds.share(share(list(ahead.values()))),
         f"smallest median RMSE on {counted(list(ahead.values()))} of them{told}",
     )

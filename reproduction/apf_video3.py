@@ -1,4 +1,4 @@
-"""What figures 5, 6 and 7 of the first paper share: all six trackers on `video03`."""
+"""The common part of figures 5, 6 and 7 of the first paper: all six trackers on `video03`."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def cell(system: System, seed: int) -> RunCell:
 
 
 def cells(size: Size) -> list[RunCell]:
-    """Run all trackers, and every reading of the paper's own, with every seed."""
+    """Run all trackers, and every interpretation of the paper's own, with every seed."""
     return [cell(system, seed) for system in SYSTEMS for seed in size.seeds]
 
 
@@ -67,7 +67,7 @@ def data(runs: dict[str, list[Scores]], size: Size) -> DataTable:
 
 
 def recoveries(of_seeds: Sequence[Scores]) -> list[bool]:
-    """Tell for every total occlusion of every run that can be judged whether it recovered."""
+    """Return for every judged total occlusion of every run whether it recovered."""
     found = [verdict for scored in of_seeds for verdict in measure(scored).recovered]
     return [verdict for verdict in found if verdict is not None]
 

@@ -29,7 +29,7 @@ def draw_cases(axes: Axes, values: Values, shades: Mapping[str, str]) -> None:
     axes : Axes
         Gets scenes along x.
     values : mapping
-        By scene, and by the name in the legend.
+        Values by scene, and by the name in the legend.
     shades : mapping of str to str
         The ground of each scene, a grey of matplotlib.
     """

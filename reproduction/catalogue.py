@@ -1,4 +1,4 @@
-"""All experiments by name, in the order of the papers."""
+"""The experiments by name, in the order of the papers."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ PAPERS: Mapping[str, tuple[Experiment, ...]] = MappingProxyType(
 EXPERIMENTS: Mapping[str, Experiment] = MappingProxyType(
     {experiment.name: experiment for of_paper in PAPERS.values() for experiment in of_paper}
 )
-"""By name."""
+"""Experiments by name."""
 ALL = "all"
 
 

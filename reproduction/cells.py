@@ -1,4 +1,4 @@
-"""What is run: a scene, a tracker on it, and what is kept of the run.
+"""Cells: a scene, a tracker on it, and the recorded scalars of the run.
 
 A cell is the smallest piece of an experiment that has a result. It says everything that its result
 depends on, so that the result can be kept and found again.
@@ -26,7 +26,7 @@ from vehicle_pf_tracker.trackers.session import Session
 Settings: TypeAlias = tuple[tuple[str, Value], ...]
 """Names and values, in a form that can be a key."""
 Result: TypeAlias = dict[str, Any]
-"""What came out of a cell, as plain values that JSON knows."""
+"""Result of a cell, as plain values for JSON."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class Probe(Protocol):
 
 
 class Cell(Protocol):
-    """What experiments are made of; `RunCell` is the usual one. Cells are keys of dictionaries."""
+    """Unit of an experiment; `RunCell` is the usual one. Cells are keys of dictionaries."""
 
     @property
     def scene(self) -> SceneChoice:
@@ -109,7 +109,7 @@ class Cell(Protocol):
 
     @property
     def label(self) -> str:
-        """What to call it while it runs."""
+        """Name of the cell while it runs."""
         ...
 
     @property
@@ -119,11 +119,11 @@ class Cell(Protocol):
 
     @property
     def alone(self) -> bool:
-        """Whether nothing else may run beside it, as where time is measured."""
+        """True if nothing else may run beside it, as where time is measured."""
         ...
 
     def facts(self) -> dict[str, Any]:
-        """Everything that the result depends on, besides the code."""
+        """Return everything that the result depends on, besides the code."""
         ...
 
     def start(self) -> Probe:
@@ -206,7 +206,7 @@ def start_session(system: System, seed: int, first: SceneFrame) -> Session:
 
 
 PATH = ("x", "y", "width", "height", "mode")
-"""What a cell has to record for `scores`."""
+"""Scalars that a cell has to record for `scores`."""
 
 
 def scores(cell: RunCell, result: Result) -> Scores:
@@ -217,7 +217,7 @@ def scores(cell: RunCell, result: Result) -> Scores:
     cell : RunCell
         Records `PATH` at least.
     result : Result
-        What came out of it.
+        Result of the cell.
     """
     truths = _truths(cell.scene)
     columns = (result["trace"][name] for name in PATH)

@@ -46,7 +46,7 @@ def _shown(entry: Entry, decimals: int) -> str:
 
 
 class Holds(str, Enum):
-    """Whether a claim holds."""
+    """Verdict on a claim."""
 
     YES = "yes"
     PARTLY = "partly"
@@ -73,26 +73,26 @@ class Holds(str, Enum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What came out under one reading of the paper.
+    """Result under one interpretation of the paper.
 
     Attributes
     ----------
-    reading : str
-        Name of the reading.
+    interpretation : str
+        Name of the interpretation.
     holds : Holds
-        Whether the claim holds under it.
+        Verdict under this interpretation.
     numbers : str
         The numbers that say so, with their spread.
     """
 
-    reading: str
+    interpretation: str
     holds: Holds
     numbers: str
 
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """One claim in our words, its place in the paper, and the findings, our reading first."""
+    """One claim in our words, its place in the paper, and the findings, ours first."""
 
     claim: str
     place: str
@@ -108,9 +108,9 @@ class Verdict:
     claims : tuple of Claim
         Each is judged on its own.
     setting : str
-        How the experiment was made, and what had to be chosen where the paper is silent.
+        Set-up of the experiment, and choices where the paper is silent.
     remarks : tuple of str
-        What else there is to know, a sentence or two each.
+        Further remarks, a sentence or two each.
     """
 
     claims: tuple[Claim, ...]
@@ -119,19 +119,22 @@ class Verdict:
 
     @property
     def holds(self) -> Holds:
-        """Whether all claims hold under our reading."""
+        """Joint verdict on all claims under our interpretation."""
         return Holds.all(claim.findings[0].holds for claim in self.claims)
 
     def to_json(self) -> dict[str, Any]:
-        """Everything as plain values."""
+        """Return plain values for JSON."""
         return {"holds": self.holds.value, **asdict(self)}
 
     def to_markdown(self) -> str:
-        """Everything as text, a table per claim."""
+        """Return the text, with a table per claim."""
         parts = [f"**Verdict: {self.holds.value}.**", self.setting]
         for claim in self.claims:
-            rows = ["| reading | holds | what came out |", "|---|---|---|"]
-            rows += [f"| {f.reading} | **{f.holds.value}** | {f.numbers} |" for f in claim.findings]
+            rows = ["| interpretation | holds | what came out |", "|---|---|---|"]
+            rows += [
+                f"| {f.interpretation} | **{f.holds.value}** | {f.numbers} |"
+                for f in claim.findings
+            ]
             parts += [f"Claim ({claim.place}): {claim.claim}", "\n".join(rows)]
         return "\n\n".join([*parts, *self.remarks]) + "\n"
 
@@ -144,14 +147,14 @@ SEEDS, QUICK_SEEDS = 10, 2
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """How large an experiment is made.
+    """Size of an experiment.
 
     Attributes
     ----------
     seeds : range
-        Those of the runs. Verdicts come from 0 to 9; whoever tunes takes others, from 100 on.
+        Seeds of the runs. Verdicts come from 0 to 9; tuning uses others, from 100 on.
     quick : bool
-        Whether coarse grids are enough, to see that everything works.
+        True for coarse grids, a check that everything works.
     """
 
     seeds: range = range(SEEDS)
@@ -164,16 +167,16 @@ class Size:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What an experiment shows.
+    """Report of an experiment.
 
     Attributes
     ----------
     data : DataTable
-        All cells.
+        Values of all cells.
     figure : Figure
         Like the paper's.
     verdict : Verdict
-        Whether the claims hold.
+        Verdicts on the claims.
     tables : mapping of str to DataTable
         Summaries to be read, by title.
     """
@@ -191,9 +194,9 @@ class Experiment:
     Attributes
     ----------
     name : str
-        By which it is asked for.
+        Name on the command line.
     title : str
-        What it is, in one line, with its place in the paper.
+        Content in one line, with its place in the paper.
     cells : callable
         Gives the cells for a size.
     report : callable

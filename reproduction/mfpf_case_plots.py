@@ -13,7 +13,7 @@ from reproduction.experiment import Size
 
 _COLUMNS = 2
 _WIDTH, _LEGEND_HEIGHT = 11.0, 0.5
-"""In inches."""
+"""Size of the figure, inches."""
 
 
 def draw_by_case(
@@ -33,11 +33,11 @@ def draw_by_case(
     draw : callable
         Draws one case, with labels for the legend below all.
     value : str
-        What stands at the y axes.
+        Label of the y axes.
     height : float
-        Of one plot, in inches.
+        Height of one plot, inches.
     one_scale : bool
-        Whether all have the same y axis.
+        True if all share one y axis.
     """
     names = mfpf.cases(size)
     rows = -(-len(names) // _COLUMNS)

@@ -21,7 +21,7 @@ from reproduction.experiment import (
     Verdict,
 )
 from reproduction.mfpf_case_plots import draw_by_case
-from reproduction.mfpf_systems import FOUR, MFPF, READINGS, SINGLES
+from reproduction.mfpf_systems import FOUR, INTERPRETATIONS, MFPF, SINGLES
 from vehicle_pf_tracker.evaluation.plots import draw_errors
 
 _PLACE = "section V, figures 5b to 15b"
@@ -30,21 +30,30 @@ _PLACE = "section V, figures 5b to 15b"
 def report(results: Results, size: Size) -> Report:
     """Draw the first seed's errors, and judge all seeds."""
     rows: list[tuple[Entry, ...]] = [
-        (reading, case, system.label, seed, f.row.frame, f.error, f.truth.occlusion.name.lower())
-        for reading in READINGS
+        (
+            interpretation,
+            case,
+            system.label,
+            seed,
+            f.row.frame,
+            f.error,
+            f.truth.occlusion.name.lower(),
+        )
+        for interpretation in INTERPRETATIONS
         for case in mfpf.cases(size)
         for system in FOUR
         for seed in size.seeds
-        for f in mfpf.run_scores(results, case, system, seed, reading).frames
+        for f in mfpf.run_scores(results, case, system, seed, interpretation).frames
         if f.truth is not None
     ]
-    columns = ("reading", "case", "filter", "seed", "frame", "error_px", "occlusion")
+    columns = ("interpretation", "case", "filter", "seed", "frame", "error_px", "occlusion")
     return Report(
         DataTable(columns, tuple(rows)),
         _figure(results, size),
         Verdict(
             _claims(results, size),
-            f"{mfpf.setting(size)} Curves are those of the first seed under our reading, on a "
+            f"{mfpf.setting(size)} Curves are those of the first seed under our interpretation, "
+            f"on a "
             "logarithmic scale.",
         ),
     )
@@ -68,53 +77,55 @@ def _claims(results: Results, size: Size) -> tuple[Claim, ...]:
             "in the shadows of case 3 MFPF's error varies the least of all four, the edge filter's "
             "the most",
             "section V-C, figure 9b",
-            tuple(_steadiest(results, size, reading) for reading in READINGS),
+            tuple(_steadiest(results, size, interpretation) for interpretation in INTERPRETATIONS),
         ),
         Claim(
             "MFPF is not the best in every frame: in a part of the sequence single features are "
             "ahead, though not on the whole",
             "section V-A and VI",
-            tuple(_in_parts(results, size, reading) for reading in READINGS),
+            tuple(_in_parts(results, size, interpretation) for interpretation in INTERPRETATIONS),
         ),
     )
 
 
-def _errors(results: Results, case: str, label: str, seed: int, reading: str) -> list[float]:
+def _errors(results: Results, case: str, label: str, seed: int, interpretation: str) -> list[float]:
     (system,) = (s for s in FOUR if s.label == label)
-    frames = mfpf.run_scores(results, case, system, seed, reading).frames
+    frames = mfpf.run_scores(results, case, system, seed, interpretation).frames
     return [frame.error for frame in frames if frame.error is not None]
 
 
-def _steadiest(results: Results, size: Size, reading: str) -> Finding:
+def _steadiest(results: Results, size: Size, interpretation: str) -> Finding:
     case = size.of("case3", mfpf.cases(size)[0])
     spreads = {
         system.label: fmean(
-            pstdev(_errors(results, case, system.label, seed, reading)) for seed in size.seeds
+            pstdev(_errors(results, case, system.label, seed, interpretation))
+            for seed in size.seeds
         )
         for system in FOUR
     }
     least, most = min(spreads, key=spreads.__getitem__), max(spreads, key=spreads.__getitem__)
     told = ", ".join(f"{label} {value:.1f}" for label, value in spreads.items())
     return Finding(
-        reading, Holds.of((least, most) == (MFPF.label, "Edge"), least == MFPF.label),
+        interpretation, Holds.of((least, most) == (MFPF.label, "Edge"), least == MFPF.label),
         f"standard deviation of the error over the frames, mean of the seeds: {told} px",
     )  # fmt: skip
 
 
-def _in_parts(results: Results, size: Size, reading: str) -> Finding:
+def _in_parts(results: Results, size: Size, interpretation: str) -> Finding:
     shares, on_the_whole = [], []
     for case in mfpf.cases(size):
         for seed in size.seeds:
-            errors = {s.label: _errors(results, case, s.label, seed, reading) for s in FOUR}
+            errors = {s.label: _errors(results, case, s.label, seed, interpretation) for s in FOUR}
             own = errors.pop(MFPF.label)
             best = [min(of) for of in zip(*errors.values(), strict=True)]
             shares.append(fmean(a <= b for a, b in zip(own, best, strict=True)))
         totals = {
-            s.label: fmean(mfpf.per_seed(results, size, case, s, reading, "rmse_px")) for s in FOUR
+            s.label: fmean(mfpf.per_seed(results, size, case, s, interpretation, "rmse_px"))
+            for s in FOUR
         }
         on_the_whole.append(totals.pop(MFPF.label) <= min(totals.values()))
     return Finding(
-        reading,
+        interpretation,
         Holds.of(fmean(shares) < 1 and all(on_the_whole), fmean(shares) < 1),
         f"ahead of all single features in {100 * fmean(shares):.0f} % of the frames; on the whole "
         f"in {sum(on_the_whole)} of {len(on_the_whole)} cases",

@@ -25,9 +25,9 @@ from reproduction.experiment import (
 )
 from reproduction.mfpf_systems import (
     FEATURES,
+    INTERPRETATIONS,
     MFPF,
     OURS,
-    READINGS,
     read_as,
     read_label,
 )
@@ -45,7 +45,7 @@ from vehicle_pf_tracker.trackers.target import Target
 
 _PLACE = "section III-D, figure 1"
 _SCENES = {"shadow": "case3", "partial": "case2", "full": "case4"}
-"""Where each disturbance is at its purest."""
+"""Frames in which each disturbance is purest."""
 _TITLES = {
     "initial": "initial", "shadow": "in shadow", "partial": "partly hidden", "full": "fully hidden",
 }  # fmt: skip
@@ -57,14 +57,14 @@ _INFORMATIVE = 0.6
 
 @dataclass(frozen=True, slots=True)
 class HistogramCell:
-    """The features of the true window of every frame, under one reading.
+    """The features of the true window of every frame, under one interpretation.
 
     Its result has `distance`: for each feature the Hellinger distance of every frame's histogram
     from the first one's, and `visible`: the share of the vehicle that is seen.
     """
 
     scene: SceneChoice
-    reading: str
+    interpretation: str
 
     @property
     def label(self) -> str:
@@ -83,16 +83,16 @@ class HistogramCell:
 
     def facts(self) -> dict[str, Any]:
         """Give scene and features."""
-        return {"scene": asdict(self.scene), "features": repr(features(self.reading))}
+        return {"scene": asdict(self.scene), "features": repr(features(self.interpretation))}
 
     def start(self) -> Probe:
         """Begin to measure."""
-        return _Histograms(self.reading)
+        return _Histograms(self.interpretation)
 
 
 class _Histograms:
-    def __init__(self, reading: str) -> None:
-        self._features = features(reading)
+    def __init__(self, interpretation: str) -> None:
+        self._features = features(interpretation)
         self._target: Target | None = None
         self._first: dict[str, Any] = {}
         self._distance: dict[str, list[float]] = {name: [] for name in FEATURES}
@@ -113,9 +113,9 @@ class _Histograms:
         return {"distance": self._distance, "visible": self._visible}
 
 
-def features(reading: str) -> dict[str, WindowFeature]:
-    """Make the three features as `mfpf` has them under a reading."""
-    settings: MfpfParameters = read_as(MFPF, reading).parameters(0).effective()
+def features(interpretation: str) -> dict[str, WindowFeature]:
+    """Make the three features as `mfpf` has them under a interpretation."""
+    settings: MfpfParameters = read_as(MFPF, interpretation).parameters(0).effective()
     return {
         "color": RgbMarginals(),
         "edge": edge_feature(settings.edges),
@@ -132,43 +132,46 @@ def histograms(made: dict[str, WindowFeature], target: Target, shown: SceneFrame
 def cells(size: Size) -> list[HistogramCell]:
     """Measure along the cases with a shadow, a partial and a full occlusion."""
     return [
-        HistogramCell(SceneChoice.of(case).seeded(seed), reading)
+        HistogramCell(SceneChoice.of(case).seeded(seed), interpretation)
         for case in _SCENES.values()
         for seed in size.seeds
-        for reading in READINGS
+        for interpretation in INTERPRETATIONS
     ]
 
 
 def report(results: Results, size: Size) -> Report:
     """Draw the first seed's histograms, and judge all seeds."""
     rows: list[tuple[Entry, ...]] = [
-        (reading, situation, seed, FEATURES[name], distance)
-        for reading in READINGS
+        (interpretation, situation, seed, FEATURES[name], distance)
+        for interpretation in INTERPRETATIONS
         for situation in _SCENES
         for seed in size.seeds
-        for name, distance in _distances(results, situation, seed, reading).items()
+        for name, distance in _distances(results, situation, seed, interpretation).items()
     ]
     found = {
-        reading: {
+        interpretation: {
             situation: {
-                name: [_distances(results, situation, seed, reading)[name] for seed in size.seeds]
+                name: [
+                    _distances(results, situation, seed, interpretation)[name]
+                    for seed in size.seeds
+                ]
                 for name in FEATURES
             }
             for situation in _SCENES
         }
-        for reading in READINGS
+        for interpretation in INTERPRETATIONS
     }
     table = DataTable(
-        ("", *(read_label(label, reading)
-               for reading in READINGS for label in FEATURES.values())),
+        ("", *(read_label(label, interpretation)
+               for interpretation in INTERPRETATIONS for label in FEATURES.values())),
         tuple(
-            (_TITLES[situation], *(mean_and_spread(found[reading][situation][name], 2)
-                                   for reading in READINGS for name in FEATURES))
+            (_TITLES[situation], *(mean_and_spread(found[interpretation][situation][name], 2)
+                                   for interpretation in INTERPRETATIONS for name in FEATURES))
             for situation in _SCENES
         ),
     )  # fmt: skip
     return Report(
-        DataTable(("reading", "situation", "seed", "feature", "distance"), tuple(rows)),
+        DataTable(("interpretation", "situation", "seed", "feature", "distance"), tuple(rows)),
         _figure(size),
         Verdict(_claims(found), _setting(size)),
         {"Hellinger distance from the first frame's histogram, mean ± standard deviation over the "
@@ -183,7 +186,7 @@ def _setting(size: Size) -> str:
         f"first in colour, to have those in shadow); partly hidden: those of "
         f"`{_SCENES['partial']}` with less than {100 * _HALF:.0f} % of the vehicle in sight; fully "
         f"hidden: those of `{_SCENES['full']}`. The picture shows the first seed under our "
-        "reading: first frame, then the furthest of each kind."
+        "interpretation: first frame, then the furthest of each kind."
     )
 
 
@@ -197,11 +200,13 @@ def _chosen(result: Result, situation: str) -> list[int]:
     return [index for index, share in enumerate(visible) if share < limit]
 
 
-def _distances(results: Results, situation: str, seed: int, reading: str) -> dict[str, float]:
+def _distances(
+    results: Results, situation: str, seed: int, interpretation: str
+) -> dict[str, float]:
     choice = SceneChoice.of(_SCENES[situation]).seeded(seed)
-    # Frames are chosen alike for both readings.
+    # Frames are chosen alike for both interpretations.
     chosen = _chosen(results[HistogramCell(choice, OURS)], situation)
-    result = results[HistogramCell(choice, reading)]
+    result = results[HistogramCell(choice, interpretation)]
     return {name: fmean(result["distance"][name][index] for index in chosen) for name in FEATURES}
 
 
@@ -211,17 +216,17 @@ def _claims(found: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[Claim,
             "in shadow and under a partial occlusion the edge histogram changes the least, colour "
             "the most, texture is in between",
             _PLACE,
-            tuple(_order(reading, of) for reading, of in found.items()),
+            tuple(_order(interpretation, of) for interpretation, of in found.items()),
         ),
         Claim(
             "under a full occlusion no histogram is informative",
             _PLACE,
-            tuple(_empty(reading, of) for reading, of in found.items()),
+            tuple(_empty(interpretation, of) for interpretation, of in found.items()),
         ),
     )
 
 
-def _order(reading: str, of: dict[str, dict[str, list[float]]]) -> Finding:
+def _order(interpretation: str, of: dict[str, dict[str, list[float]]]) -> Finding:
     holds, told = [], []
     for situation in ("shadow", "partial"):
         means = {name: fmean(values) for name, values in of[situation].items()}
@@ -229,15 +234,15 @@ def _order(reading: str, of: dict[str, dict[str, list[float]]]) -> Finding:
         holds.append(Holds.of(order == ["edge", "texture", "color"], order[0] == "edge"))
         values = " < ".join(f"{FEATURES[name]} {means[name]:.2f}" for name in order)
         told.append(f"{_TITLES[situation]}: {values}")
-    return Finding(reading, Holds.all(holds), f"mean distances, {'; '.join(told)}")
+    return Finding(interpretation, Holds.all(holds), f"mean distances, {'; '.join(told)}")
 
 
-def _empty(reading: str, of: dict[str, dict[str, list[float]]]) -> Finding:
+def _empty(interpretation: str, of: dict[str, dict[str, list[float]]]) -> Finding:
     means = {name: fmean(values) for name, values in of["full"].items()}
     empty = [value >= _INFORMATIVE for value in means.values()]
     told = ", ".join(f"{FEATURES[name]} {value:.2f}" for name, value in means.items())
     return Finding(
-        reading, Holds.of(all(empty), any(empty)),
+        interpretation, Holds.of(all(empty), any(empty)),
         f"distances (at least {_INFORMATIVE:g} counts as not informative): {told}",
     )  # fmt: skip
 

@@ -22,7 +22,7 @@ from reproduction.paper_scenes import CASES
 
 @dataclass(frozen=True, slots=True)
 class ShareWords:
-    """What the percentages are called: above the table, in the data's columns, at the axis."""
+    """Names of the percentages: above the table, in the data's columns, at the axis."""
 
     title: str
     of: str
@@ -37,16 +37,16 @@ def share_report(
     told: ShareWords,
     claims: Sequence[Claim],
 ) -> Report:
-    """Show percentages by reading, case and filter, for each seed, and what was claimed of them."""
+    """Table the percentages by interpretation, case and filter, and the paper's claims."""
     rows: list[tuple[Entry, ...]] = [
-        (reading, case, label, seed, value)
-        for reading, found in shares.items()
+        (interpretation, case, label, seed, value)
+        for interpretation, found in shares.items()
         for case, of_case in found.items()
         for label, values in of_case.items()
         for seed, value in zip(size.seeds, values, strict=True)
     ]
     return Report(
-        DataTable(("reading", "case", told.of, "seed", told.column), tuple(rows)),
+        DataTable(("interpretation", "case", told.of, "seed", told.column), tuple(rows)),
         _share_figure(shares[OURS], told.axis),
         Verdict(tuple(claims), mfpf.setting(size)),
         {told.title: _share_table(shares, paper)},
@@ -54,14 +54,14 @@ def share_report(
 
 
 def _share_table(shares: Mapping[str, Values], paper: Mapping[str, Sequence[float]]) -> DataTable:
-    """Put every reading's percentages, and the paper's for its six cases, below each other."""
+    """Table every interpretation's percentages with the paper's for its six cases."""
     cases = list(next(iter(shares.values())))
     rows = [
         (
-            mfpf.read_label(label, reading),
+            mfpf.read_label(label, interpretation),
             *(mean_and_spread(of_case[label]) for of_case in found.values()),
         )
-        for reading, found in shares.items()
+        for interpretation, found in shares.items()
         for label in paper
     ]
     rows += [

@@ -22,7 +22,7 @@ from reproduction.experiment import (
     Verdict,
 )
 from reproduction.mfpf_case_plots import draw_by_case
-from reproduction.mfpf_systems import FEATURES, MFPF, OURS, READINGS
+from reproduction.mfpf_systems import FEATURES, INTERPRETATIONS, MFPF, OURS
 from reproduction.numbers import mean_and_spread
 from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
 
@@ -32,11 +32,11 @@ _PLACE = "section V, figures 5a to 15a"
 def report(results: Results, size: Size) -> Report:
     """Draw the first seed's similarities, and judge all seeds."""
     rows: list[tuple[Entry, ...]] = []
-    for reading in READINGS:
+    for interpretation in INTERPRETATIONS:
         for case in mfpf.cases(size):
             for seed in size.seeds:
-                rows += _rows(results, case, seed, reading)
-    columns = ("reading", "case", "seed", "frame",
+                rows += _rows(results, case, seed, interpretation)
+    columns = ("interpretation", "case", "seed", "frame",
                *(f"{value}_{name}" for value in ("as", "used") for name in FEATURES),
                "regime")  # fmt: skip
     return Report(
@@ -44,19 +44,20 @@ def report(results: Results, size: Size) -> Report:
         _figure(results, size),
         Verdict(
             _claims(results, size),
-            f"{mfpf.setting(size)} Curves are those of the first seed under our reading; thin "
+            f"{mfpf.setting(size)} Curves are those of the first seed under our interpretation; "
+            f"thin "
             "level lines in the style of a curve are its threshold. Marks at the foot of each plot "
             "are frames in prediction mode.",
         ),
     )
 
 
-def _rows(results: Results, case: str, seed: int, reading: str) -> list[tuple[Entry, ...]]:
-    trace = mfpf.trace(results, case, MFPF, seed, reading)
+def _rows(results: Results, case: str, seed: int, interpretation: str) -> list[tuple[Entry, ...]]:
+    trace = mfpf.trace(results, case, MFPF, seed, interpretation)
     names = [f"{value}_{name}" for value in ("as", "used") for name in FEATURES]
     columns = zip(*(trace[name] for name in names), trace["regime"], strict=True)
     return [
-        (reading, case, seed, frame, *values)
+        (interpretation, case, seed, frame, *values)
         for frame, values in enumerate(columns, start=1)
         if values[0] is not None
     ]
@@ -92,55 +93,60 @@ def _claims(results: Results, size: Size) -> tuple[Claim, ...]:
             "in cases 2 and 3 (a long partial occlusion, shadows) all features stay above their "
             "thresholds",
             "section V-B and V-C, figures 7a and 9a",
-            tuple(_stays(results, size, reading) for reading in READINGS),
+            tuple(_stays(results, size, interpretation) for interpretation in INTERPRETATIONS),
         ),
         Claim(
             "of the three, RGB is hit the most by the trees of case 1",
             "section V-A, figure 5a",
-            tuple(_lowest(results, size, reading, "case1", "color") for reading in READINGS),
+            tuple(
+                _lowest(results, size, interpretation, "case1", "color")
+                for interpretation in INTERPRETATIONS
+            ),
         ),
         Claim(
             "the edge feature is the first to come back after the full occlusions of cases 4 to 6",
             "section V-D and V-E, figures 11a and 13a",
-            tuple(_first_back(results, size, reading) for reading in READINGS),
+            tuple(_first_back(results, size, interpretation) for interpretation in INTERPRETATIONS),
         ),
     )
 
 
-def _used(results: Results, size: Size, case: str, reading: str) -> Mapping[str, Sequence[float]]:
+def _used(
+    results: Results, size: Size, case: str, interpretation: str
+) -> Mapping[str, Sequence[float]]:
     """Share of the frames in which a feature is in use, for each seed."""
     return {
         name: [
-            fmean(mfpf.trace(results, case, MFPF, seed, reading)[f"used_{name}"][1:])
+            fmean(mfpf.trace(results, case, MFPF, seed, interpretation)[f"used_{name}"][1:])
             for seed in size.seeds
         ]
         for name in FEATURES
     }
 
 
-def _stays(results: Results, size: Size, reading: str) -> Finding:
+def _stays(results: Results, size: Size, interpretation: str) -> Finding:
     told, least = [], []
     for case in ("case2", "case3"):
         if case not in mfpf.cases(size):
             continue
-        used = _used(results, size, case, reading)
+        used = _used(results, size, case, interpretation)
         least.append(min(fmean(values) for values in used.values()))
         told.append(f"{case}: " + ", ".join(
             f"{FEATURES[name]} {mean_and_spread([100 * v for v in values], 0)}"
             for name, values in used.items()
         ))  # fmt: skip
     return Finding(
-        reading, Holds.of(min(least) >= 0.95, min(least) >= 0.5),
+        interpretation, Holds.of(min(least) >= 0.95, min(least) >= 0.5),
         f"percent of the frames in use, {'; '.join(told)}",
     )  # fmt: skip
 
 
-def _lowest(results: Results, size: Size, reading: str, case: str, feature: str) -> Finding:
+def _lowest(results: Results, size: Size, interpretation: str, case: str, feature: str) -> Finding:
     if case not in mfpf.cases(size):
-        return Finding(reading, Holds.NO, f"{case} was not run")
+        return Finding(interpretation, Holds.NO, f"{case} was not run")
     losses = {name: [] for name in FEATURES}  # type: dict[str, list[float]]
     for seed in size.seeds:
-        trace = mfpf.trace(results, case, MFPF, seed, reading)
+        trace = mfpf.trace(results, case, MFPF, seed, interpretation)
         for name in FEATURES:
             values = trace[f"as_{name}"][1:]
             losses[name].append(1 - min(values) / values[0])
@@ -150,25 +156,25 @@ def _lowest(results: Results, size: Size, reading: str, case: str, feature: str)
         for name, values in losses.items()
     )
     return Finding(
-        reading, Holds.of(means[feature] == max(means.values())),
+        interpretation, Holds.of(means[feature] == max(means.values())),
         f"largest loss of the average similarity: {told}",
     )  # fmt: skip
 
 
-def _first_back(results: Results, size: Size, reading: str) -> Finding:
+def _first_back(results: Results, size: Size, interpretation: str) -> Finding:
     firsts: list[str] = []
     judged = 0
     for case in mfpf.FULLY_HIDDEN:
         if case not in mfpf.cases(size):
             continue
         for seed in size.seeds:
-            found = _back(results, case, seed, reading)
+            found = _back(results, case, seed, interpretation)
             judged += found is not None
             firsts += found or []
     told = ", ".join(f"{label} {firsts.count(name)}" for name, label in FEATURES.items())
     most = max(FEATURES, key=firsts.count)
     return Finding(
-        reading,
+        interpretation,
         Holds.of(judged > 0 and most == "edge" and firsts.count("edge") >= 0.8 * judged,
                  judged > 0 and most == "edge"),
         f"first after prediction mode, of {judged} runs that were in it at the end of a full "
@@ -176,10 +182,10 @@ def _first_back(results: Results, size: Size, reading: str) -> Finding:
     )  # fmt: skip
 
 
-def _back(results: Results, case: str, seed: int, reading: str) -> list[str] | None:
+def _back(results: Results, case: str, seed: int, interpretation: str) -> list[str] | None:
     """Name the features in use in the first frame after prediction mode; None if it was not on."""
-    trace = mfpf.trace(results, case, MFPF, seed, reading)
-    frames = mfpf.run_scores(results, case, MFPF, seed, reading).frames
+    trace = mfpf.trace(results, case, MFPF, seed, interpretation)
+    frames = mfpf.run_scores(results, case, MFPF, seed, interpretation).frames
     last = max(index for index, frame in enumerate(frames) if frame.hidden)
     if trace["regime"][last] != "prediction":
         return None

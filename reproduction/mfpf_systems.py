@@ -1,4 +1,4 @@
-"""What the second paper's experiments run: four filters, two readings, six cases."""
+"""Systems of the second paper's experiments: four filters, two interpretations, six cases."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MFPF = System.of("MFPF", "mfpf")
 SINGLES = (COLOR, EDGE, TEXTURE)
 FOUR = (*SINGLES, MFPF)
 
-OURS, DEFAULTS, PRINTED = "our reading", "defaults", "as printed"
+OURS, DEFAULTS, PRINTED = "our interpretation", "defaults", "as printed"
 _STEADY: Mapping[str, Value] = MappingProxyType(
     {
         "dispersion.radius": 4.0,
@@ -34,34 +34,34 @@ _STEADY: Mapping[str, Value] = MappingProxyType(
         "reference_weight": 0.8,
     }
 )
-"""For a camera that stands still and vehicles that keep their speed, as in all six cases."""
+"""Settings for a still camera and vehicles at constant speed, as in all six cases."""
 _EDGES: Mapping[str, Value] = MappingProxyType({"edges.threshold": 0.2, "edges.floor": 60.0})
-READINGS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
+INTERPRETATIONS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
     {OURS: _STEADY, DEFAULTS: {}, PRINTED: {"as_printed": True, "dispersion.radius": 4.0}}
 )
-"""Settings that every filter gets, by reading; the paper prints no radius, so it gets ours."""
+"""Settings of every filter by interpretation; the paper prints no radius, so it gets ours."""
 
 CASES = tuple(f"case{number}" for number in range(1, 7))
 QUICK_CASES = "case2", "case6"
 FULLY_HIDDEN = "case4", "case5", "case6"
-"""Those in which the vehicle disappears."""
+"""Cases in which the vehicle disappears."""
 WITHOUT_HIDING = "case1", "case2", "case3"
 
 LAST_FRAMES = 20
-"""Whoever is close throughout these has followed to the end."""
+"""Last frames in which a run must stay close to count as having tracked to the end."""
 
 
-def read_label(label: str, reading: str) -> str:
-    """Name a filter, or a feature, under `reading`; ours goes without saying."""
-    return label if reading == OURS else f"{label}, {reading}"
+def read_label(label: str, interpretation: str) -> str:
+    """Name a filter, or a feature, under `interpretation`; ours goes without saying."""
+    return label if interpretation == OURS else f"{label}, {interpretation}"
 
 
-def read_as(system: System, reading: str) -> System:
-    """Give the settings of `reading` to a filter, under a name of its own."""
-    settings = dict(READINGS[reading])
-    if reading == OURS and system.variant in ("mfpf", "sfpf_edge"):
+def read_as(system: System, interpretation: str) -> System:
+    """Give the settings of `interpretation` to a filter, under a name of its own."""
+    settings = dict(INTERPRETATIONS[interpretation])
+    if interpretation == OURS and system.variant in ("mfpf", "sfpf_edge"):
         settings |= _EDGES
-    return replace(system.but(settings), label=read_label(system.label, reading))
+    return replace(system.but(settings), label=read_label(system.label, interpretation))
 
 
 def cases(size: Size) -> tuple[str, ...]:
@@ -69,57 +69,57 @@ def cases(size: Size) -> tuple[str, ...]:
     return size.of(CASES, QUICK_CASES)
 
 
-def cell(case: str, system: System, seed: int, reading: str = OURS) -> RunCell:
+def cell(case: str, system: System, seed: int, interpretation: str = OURS) -> RunCell:
     """Make the cell of a filter on a case; the seed draws the scene, too."""
     own = [name for name in FEATURES if system.variant in ("mfpf", f"sfpf_{name}")]
     record = (*PATH, "regime", *(f"{value}_{name}" for value in ("as", "used") for name in own))
-    return RunCell(SceneChoice.of(case).seeded(seed), read_as(system, reading), seed, record)
+    return RunCell(SceneChoice.of(case).seeded(seed), read_as(system, interpretation), seed, record)
 
 
 def cells(size: Size) -> list[RunCell]:
-    """Run the four filters on every case, under every reading, with every seed."""
+    """Run the four filters on every case, under every interpretation, with every seed."""
     return [
-        cell(case, system, seed, reading)
+        cell(case, system, seed, interpretation)
         for case in cases(size)
-        for reading in READINGS
+        for interpretation in INTERPRETATIONS
         for system in FOUR
         for seed in size.seeds
     ]
 
 
 def run_scores(
-    results: Results, case: str, system: System, seed: int, reading: str = OURS
+    results: Results, case: str, system: System, seed: int, interpretation: str = OURS
 ) -> Scores:
     """Hold one run against the truth again."""
-    found = cell(case, system, seed, reading)
+    found = cell(case, system, seed, interpretation)
     return scores(found, results[found])
 
 
 def trace(
-    results: Results, case: str, system: System, seed: int, reading: str = OURS
+    results: Results, case: str, system: System, seed: int, interpretation: str = OURS
 ) -> Mapping[str, list[Any]]:
     """Give what was recorded of one run."""
-    recorded: Mapping[str, list[Any]] = results[cell(case, system, seed, reading)]["trace"]
+    recorded: Mapping[str, list[Any]] = results[cell(case, system, seed, interpretation)]["trace"]
     return recorded
 
 
 def metric(
-    results: Results, case: str, system: System, seed: int, reading: str, name: str
+    results: Results, case: str, system: System, seed: int, interpretation: str, name: str
 ) -> float:
     """Give one metric of one run."""
-    return float(results[cell(case, system, seed, reading)]["metrics"][name])
+    return float(results[cell(case, system, seed, interpretation)]["metrics"][name])
 
 
 def per_seed(
-    results: Results, size: Size, case: str, system: System, reading: str, name: str
+    results: Results, size: Size, case: str, system: System, interpretation: str, name: str
 ) -> list[float]:
     """Give one metric of a filter on a case, for each seed."""
-    return [metric(results, case, system, seed, reading, name) for seed in size.seeds]
+    return [metric(results, case, system, seed, interpretation, name) for seed in size.seeds]
 
 
-def threshold(reading: str) -> float:
+def threshold(interpretation: str) -> float:
     """Return the share of its first average similarity below which a feature drops out."""
-    settings: MfpfParameters = read_as(MFPF, reading).parameters(0).effective()
+    settings: MfpfParameters = read_as(MFPF, interpretation).parameters(0).effective()
     return settings.confidence.threshold
 
 
@@ -134,7 +134,8 @@ def setting(size: Size) -> str:
         "Scenes `case1` to `case6` are counterparts of the paper's six cases, made before any "
         f"tracker ran on them. Seeds {size.seeds.start} to {size.seeds.stop - 1}: each draws the "
         "scene anew (colour of the vehicle, traffic, ground, noise) and seeds the filters. Our "
-        "reading gives all four filters and all six cases one set of settings, for a camera that "
+        "interpretation gives all four filters and all six cases one set of settings, for a "
+        "camera that "
         "stands still and vehicles that keep their speed: "
         f"{_in_words({**_STEADY, **_EDGES})}. "
         "It was chosen for MFPF's mean RMS with seeds from 100 on, out of 130 that were tried. "

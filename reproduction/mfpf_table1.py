@@ -28,9 +28,9 @@ from reproduction.experiment import (
 from reproduction.mfpf_systems import (
     DEFAULTS,
     FOUR,
+    INTERPRETATIONS,
     MFPF,
     OURS,
-    READINGS,
     SINGLES,
 )
 from reproduction.numbers import mean_and_spread, share
@@ -65,14 +65,20 @@ Errors = Mapping[str, Mapping[str, Sequence[float]]]
 
 
 def cells(size: Size) -> list[RunCell]:
-    """Run the four filters under every reading, and the other textures."""
+    """Run the four filters under every interpretation, and the other textures."""
     return mfpf.cells(size) + textures.cells(size)
 
 
 def report(results: Results, size: Size) -> Report:
     """Make the tables, and judge them."""
-    errors = {reading: _errors(results, size, reading, FOUR) for reading in READINGS}
-    followed = {reading: _followed(results, size, reading) for reading in READINGS}
+    errors = {
+        interpretation: _errors(results, size, interpretation, FOUR)
+        for interpretation in INTERPRETATIONS
+    }
+    followed = {
+        interpretation: _followed(results, size, interpretation)
+        for interpretation in INTERPRETATIONS
+    }
     tables = {
         "RMS in px, mean ± standard deviation over the seeds:": _rms_table(errors, size),
         f"Runs that end with {mfpf.LAST_FRAMES} frames below {CLOSE_PX:g} px, "
@@ -97,27 +103,29 @@ def _short(case: str) -> str:
 
 
 def _errors(
-    results: Results, size: Size, reading: str, systems: Sequence[System]
+    results: Results, size: Size, interpretation: str, systems: Sequence[System]
 ) -> dict[str, dict[str, list[float]]]:
     return {
         case: {
-            system.label: mfpf.per_seed(results, size, case, system, reading, "rmse_px")
+            system.label: mfpf.per_seed(results, size, case, system, interpretation, "rmse_px")
             for system in systems
         }
         for case in mfpf.cases(size)
     }
 
 
-def _followed(results: Results, size: Size, reading: str) -> dict[str, dict[str, list[bool]]]:
-    """Tell for each seed whether the run ends close to the vehicle, by case and filter."""
+def _followed(
+    results: Results, size: Size, interpretation: str
+) -> dict[str, dict[str, list[bool]]]:
+    """Return for each seed whether the run ends close to the vehicle, by case and filter."""
     return {
         case: {
             system.label: [
                 all(
                     frame.error is not None and frame.error < CLOSE_PX
-                    for frame in mfpf.run_scores(results, case, system, seed, reading).frames[
-                        -mfpf.LAST_FRAMES :
-                    ]
+                    for frame in mfpf.run_scores(
+                        results, case, system, seed, interpretation
+                    ).frames[-mfpf.LAST_FRAMES :]
                 )
                 for seed in size.seeds
             ]
@@ -128,32 +136,46 @@ def _followed(results: Results, size: Size, reading: str) -> dict[str, dict[str,
 
 
 def _data(results: Results, size: Size) -> DataTable:
-    followed = {reading: _followed(results, size, reading) for reading in READINGS}
+    followed = {
+        interpretation: _followed(results, size, interpretation)
+        for interpretation in INTERPRETATIONS
+    }
     rows: list[tuple[Entry, ...]] = []
-    for reading in READINGS:
+    for interpretation in INTERPRETATIONS:
         for case in mfpf.cases(size):
             for system in FOUR:
-                values = mfpf.per_seed(results, size, case, system, reading, "rmse_px")
+                values = mfpf.per_seed(results, size, case, system, interpretation, "rmse_px")
                 rows += [
-                    (reading, case, system.label, "glcm", seed, rms, int(end))
+                    (interpretation, case, system.label, "glcm", seed, rms, int(end))
                     for seed, rms, end in zip(
-                        size.seeds, values, followed[reading][case][system.label], strict=True
+                        size.seeds,
+                        values,
+                        followed[interpretation][case][system.label],
+                        strict=True,
                     )
                 ]
     rows += [
         (OURS, case, label, texture, seed, rms, None)
         for texture, case, label, seed, rms in textures.rows(results, size)
     ]
-    columns = ("reading", "case", "filter", "texture", "seed", "rmse_px", "followed_to_the_end")
+    columns = (
+        "interpretation",
+        "case",
+        "filter",
+        "texture",
+        "seed",
+        "rmse_px",
+        "followed_to_the_end",
+    )
     return DataTable(columns, tuple(rows))
 
 
 def _rms_table(errors: Mapping[str, Errors], size: Size) -> DataTable:
     rows: list[tuple[Entry, ...]] = [
-        (mfpf.read_label(label, reading),
+        (mfpf.read_label(label, interpretation),
          *(mean_and_spread(of_case[label]) for of_case in found.values()),
          mean_and_spread(_over_cases(found, label)))
-        for reading, found in errors.items()
+        for interpretation, found in errors.items()
         for label in _PAPER
     ]  # fmt: skip
     numbers = [int(_short(case)) - 1 for case in mfpf.cases(size)]
@@ -169,9 +191,9 @@ def _followed_table(
     followed: Mapping[str, Mapping[str, Mapping[str, Sequence[bool]]]], size: Size
 ) -> DataTable:
     rows: list[tuple[Entry, ...]] = [
-        (mfpf.read_label(label, reading),
+        (mfpf.read_label(label, interpretation),
          *(sum(of_case[label]) for of_case in found.values()))
-        for reading, found in followed.items()
+        for interpretation, found in followed.items()
         for label in _PAPER
     ]  # fmt: skip
     return DataTable(("filter", *mfpf.cases(size)), tuple(rows))
@@ -191,18 +213,18 @@ def _claims(errors: Mapping[str, Errors]) -> tuple[Claim, ...]:
         Claim(
             "MFPF has the least RMS in all cases",
             _PLACE,
-            tuple(_least(reading, found) for reading, found in errors.items()),
+            tuple(_least(interpretation, found) for interpretation, found in errors.items()),
         ),
         Claim(
             "its RMS is always 10 to 25 % below the least of the single-feature filters (3 to 23 % "
             "by the paper's own table)",
             _PLACE,
-            tuple(_saving(reading, found) for reading, found in errors.items()),
+            tuple(_saving(interpretation, found) for interpretation, found in errors.items()),
         ),
         Claim(
             "no single feature is the best in all cases",
             _PLACE,
-            tuple(_no_single(reading, found) for reading, found in errors.items()),
+            tuple(_no_single(interpretation, found) for interpretation, found in errors.items()),
         ),
     )
 
@@ -222,24 +244,24 @@ def _told(found: Errors) -> str:
     )
 
 
-def _least(reading: str, found: Errors) -> Finding:
+def _least(interpretation: str, found: Errors) -> Finding:
     least = [ratio <= 1 for ratio in _ratios(found).values()]
-    return Finding(reading, Holds.of(all(least), any(least)), f"MFPF's RMS: {_told(found)}")
+    return Finding(interpretation, Holds.of(all(least), any(least)), f"MFPF's RMS: {_told(found)}")
 
 
-def _saving(reading: str, found: Errors) -> Finding:
+def _saving(interpretation: str, found: Errors) -> Finding:
     enough = [ratio <= 1 - _AT_LEAST for ratio in _ratios(found).values()]
     saved = ", ".join(f"{100 * (1 - ratio):.0f}" for ratio in _ratios(found).values())
     return Finding(
-        reading, Holds.of(all(enough), any(enough)),
+        interpretation, Holds.of(all(enough), any(enough)),
         f"below it by {saved} % in the cases in order",
     )  # fmt: skip
 
 
-def _no_single(reading: str, found: Errors) -> Finding:
+def _no_single(interpretation: str, found: Errors) -> Finding:
     best = {case: _best_single(of_case) for case, of_case in found.items()}
     told = ", ".join(f"case {_short(case)} {label}" for case, label in best.items())
-    return Finding(reading, Holds.of(len(set(best.values())) > 1), f"the best: {told}")
+    return Finding(interpretation, Holds.of(len(set(best.values())) > 1), f"the best: {told}")
 
 
 def _further(
@@ -252,7 +274,10 @@ def _further(
             "best single-feature filter",
             _PLACE,
             (
-                *(_over_all(reading, found, found) for reading, found in errors.items()),
+                *(
+                    _over_all(interpretation, found, found)
+                    for interpretation, found in errors.items()
+                ),
                 _over_all(
                     "ours, single features with their defaults", errors[OURS], errors[DEFAULTS]
                 ),
@@ -262,18 +287,18 @@ def _further(
             "(not in the paper in numbers) MFPF follows to the end: in 8 of 10 runs where the "
             "vehicle is never hidden, and otherwise as often as the best single feature",
             "section V, cases 1 to 6",
-            tuple(_to_the_end(reading, found) for reading, found in followed.items()),
+            tuple(_to_the_end(interpretation, found) for interpretation, found in followed.items()),
         ),
     )
 
 
-def _over_all(reading: str, found: Errors, rivals: Errors) -> Finding:
+def _over_all(interpretation: str, found: Errors, rivals: Errors) -> Finding:
     own = _over_cases(found, MFPF.label)
     singles = {single.label: _over_cases(rivals, single.label) for single in SINGLES}
     best = _best_single(singles)
     wins = [a < b for a, b in zip(own, singles[best], strict=True)]
     return Finding(
-        reading,
+        interpretation,
         Holds.of(fmean(own) < fmean(singles[best])),
         f"{mean_and_spread(own)} px against {mean_and_spread(singles[best])} px of {best}: "
         f"{fmean(own) / fmean(singles[best]):.2f} times; below it with {sum(wins)} of "
@@ -281,7 +306,7 @@ def _over_all(reading: str, found: Errors, rivals: Errors) -> Finding:
     )
 
 
-def _to_the_end(reading: str, found: Mapping[str, Mapping[str, Sequence[bool]]]) -> Finding:
+def _to_the_end(interpretation: str, found: Mapping[str, Mapping[str, Sequence[bool]]]) -> Finding:
     enough, told = [], []
     for case, of_case in found.items():
         own = of_case[MFPF.label]
@@ -291,7 +316,7 @@ def _to_the_end(reading: str, found: Mapping[str, Mapping[str, Sequence[bool]]])
         told.append(f"case {_short(case)} {sum(own)} ({best} {sum(of_case[best])})")
     runs = len(next(iter(next(iter(found.values())).values())))
     return Finding(
-        reading,
+        interpretation,
         Holds.of(all(enough), any(enough)),
         f"of {runs} runs: {', '.join(told)}",
     )

@@ -9,7 +9,7 @@ from reproduction import mfpf_systems as mfpf
 from reproduction.case_figure import Values
 from reproduction.experiment import Claim, Experiment, Finding, Holds, Report, Results, Size
 from reproduction.mfpf_share import ShareWords, share_report
-from reproduction.mfpf_systems import FEATURES, MFPF, READINGS
+from reproduction.mfpf_systems import FEATURES, INTERPRETATIONS, MFPF
 from reproduction.numbers import median_and_range
 
 _PLACE = "section V, table II"
@@ -26,10 +26,15 @@ _ALWAYS, _OFTEN = 95.0, 80.0
 def report(results: Results, size: Size) -> Report:
     """Count frames, and judge."""
     shares = {
-        reading: {case: _shares(results, size, case, reading) for case in mfpf.cases(size)}
-        for reading in READINGS
+        interpretation: {
+            case: _shares(results, size, case, interpretation) for case in mfpf.cases(size)
+        }
+        for interpretation in INTERPRETATIONS
     }
-    hidden = {reading: _hidden_shares(results, size, reading) for reading in READINGS}
+    hidden = {
+        interpretation: _hidden_shares(results, size, interpretation)
+        for interpretation in INTERPRETATIONS
+    }
     words = ShareWords(
         "Percent of the frames in which the average similarity is above its threshold, or, for "
         "MFPF, which are not in prediction mode; mean ± standard deviation over the seeds:",
@@ -40,11 +45,11 @@ def report(results: Results, size: Size) -> Report:
     return share_report(shares, _PAPER, size, words, _claims(shares, hidden))
 
 
-def _shares(results: Results, size: Size, case: str, reading: str) -> dict[str, list[float]]:
+def _shares(results: Results, size: Size, case: str, interpretation: str) -> dict[str, list[float]]:
     """Count within MFPF's runs, in which all features look at the same particles."""
     found: dict[str, list[float]] = {}
     for seed in size.seeds:
-        trace = mfpf.trace(results, case, MFPF, seed, reading)
+        trace = mfpf.trace(results, case, MFPF, seed, interpretation)
         for name, label in FEATURES.items():
             found.setdefault(label, []).append(100 * fmean(trace[f"used_{name}"][1:]))
         estimating = [regime == "estimation" for regime in trace["regime"][1:]]
@@ -52,13 +57,13 @@ def _shares(results: Results, size: Size, case: str, reading: str) -> dict[str, 
     return found
 
 
-def _hidden_shares(results: Results, size: Size, reading: str) -> dict[str, list[float]]:
+def _hidden_shares(results: Results, size: Size, interpretation: str) -> dict[str, list[float]]:
     """Percent of the totally hidden frames in prediction mode, by case."""
     found: dict[str, list[float]] = {}
     for case in mfpf.cases(size):
         for seed in size.seeds:
-            regimes = mfpf.trace(results, case, MFPF, seed, reading)["regime"]
-            frames = mfpf.run_scores(results, case, MFPF, seed, reading).frames
+            regimes = mfpf.trace(results, case, MFPF, seed, interpretation)["regime"]
+            frames = mfpf.run_scores(results, case, MFPF, seed, interpretation).frames
             hits = [r == "prediction" for r, f in zip(regimes, frames, strict=True) if f.hidden]
             if hits:
                 found.setdefault(case, []).append(100 * fmean(hits))
@@ -73,25 +78,25 @@ def _claims(
             "without a full occlusion (cases 1 to 3) nearly all frames have all features above "
             "their thresholds (88 % at least), and MFPF never predicts",
             _PLACE,
-            tuple(_open(reading, found) for reading, found in shares.items()),
+            tuple(_open(interpretation, found) for interpretation, found in shares.items()),
         ),
         Claim(
             "MFPF is in prediction mode less often than any single feature is below its threshold "
             "(more than the features' means by case; in the paper by 4 to 20 points in cases 4 "
             "to 6)",
             _PLACE,
-            tuple(_less(reading, found) for reading, found in shares.items()),
+            tuple(_less(interpretation, found) for interpretation, found in shares.items()),
         ),
         Claim(
             "while the vehicle is fully hidden, all features are below their thresholds and MFPF "
             "predicts",
             "section V, figures 11, 13 and 15",
-            tuple(_predicts(reading, found) for reading, found in hidden.items()),
+            tuple(_predicts(interpretation, found) for interpretation, found in hidden.items()),
         ),
     )
 
 
-def _open(reading: str, found: Values) -> Finding:
+def _open(interpretation: str, found: Values) -> Finding:
     without = {case: of for case, of in found.items() if case in mfpf.WITHOUT_HIDING}
     least = [min(fmean(v) for label, v in of.items() if label != MFPF.label)
              for of in without.values()]  # fmt: skip
@@ -103,10 +108,10 @@ def _open(reading: str, found: Values) -> Finding:
     holds = Holds.of(
         min(least) >= _OFTEN and min(own) >= _ALWAYS, max(own) >= _ALWAYS
     )  # fmt: skip
-    return Finding(reading, holds, f"percent of the frames, {told}")
+    return Finding(interpretation, holds, f"percent of the frames, {told}")
 
 
-def _less(reading: str, found: Values) -> Finding:
+def _less(interpretation: str, found: Values) -> Finding:
     margins = {
         case: fmean(of[MFPF.label]) - max(fmean(v) for k, v in of.items() if k != MFPF.label)
         for case, of in found.items()
@@ -114,16 +119,16 @@ def _less(reading: str, found: Values) -> Finding:
     hiding = [margins[case] for case in found if case in mfpf.FULLY_HIDDEN]
     told = ", ".join(f"{case} {margin:.1f}" for case, margin in margins.items())
     return Finding(
-        reading, Holds.of(min(hiding) > 0, max(hiding) > 0),
+        interpretation, Holds.of(min(hiding) > 0, max(hiding) > 0),
         f"points above the best feature: {told}",
     )  # fmt: skip
 
 
-def _predicts(reading: str, found: Mapping[str, Sequence[float]]) -> Finding:
+def _predicts(interpretation: str, found: Mapping[str, Sequence[float]]) -> Finding:
     means = [fmean(values) for values in found.values()]
     told = "; ".join(f"{case} {median_and_range(values, 0)}" for case, values in found.items())
     return Finding(
-        reading, Holds.of(min(means) >= _OFTEN, max(means) >= 100 - _OFTEN),
+        interpretation, Holds.of(min(means) >= _OFTEN, max(means) >= 100 - _OFTEN),
         f"percent of the hidden frames in prediction mode: {told}",
     )  # fmt: skip
 

@@ -11,8 +11,8 @@ from reproduction.experiment import Claim, Experiment, Finding, Holds, Report, R
 from reproduction.mfpf_share import ShareWords, share_report
 from reproduction.mfpf_systems import (
     FOUR,
+    INTERPRETATIONS,
     MFPF,
-    READINGS,
     SINGLES,
 )
 from reproduction.numbers import mean_and_spread
@@ -29,7 +29,9 @@ _PAPER = {
 
 def report(results: Results, size: Size) -> Report:
     """Take the shares, and judge them."""
-    shares = {reading: _shares(results, size, reading) for reading in READINGS}
+    shares = {
+        interpretation: _shares(results, size, interpretation) for interpretation in INTERPRETATIONS
+    }
     words = ShareWords(
         f"Percent of the frames with an error below {CLOSE_PX:g} px, mean ± standard deviation "
         "over the seeds:",
@@ -40,12 +42,14 @@ def report(results: Results, size: Size) -> Report:
     return share_report(shares, _PAPER, size, words, _claims(shares))
 
 
-def _shares(results: Results, size: Size, reading: str) -> dict[str, dict[str, list[float]]]:
+def _shares(results: Results, size: Size, interpretation: str) -> dict[str, dict[str, list[float]]]:
     return {
         case: {
             system.label: [
                 100 * share
-                for share in mfpf.per_seed(results, size, case, system, reading, "p_error_lt_15px")
+                for share in mfpf.per_seed(
+                    results, size, case, system, interpretation, "p_error_lt_15px"
+                )
             ]
             for system in FOUR
         }
@@ -59,18 +63,18 @@ def _claims(shares: Mapping[str, Values]) -> tuple[Claim, ...]:
             "MFPF's error is below 15 px at least as often as any single-feature filter's (in the "
             "paper in five cases of six)",
             _PLACE,
-            tuple(_first(reading, found) for reading, found in shares.items()),
+            tuple(_first(interpretation, found) for interpretation, found in shares.items()),
         ),
         Claim(
             "(what that comes to) over all cases MFPF's share is above the best single-feature "
             "filter's",
             _PLACE,
-            tuple(_over_all(reading, found) for reading, found in shares.items()),
+            tuple(_over_all(interpretation, found) for interpretation, found in shares.items()),
         ),
     )
 
 
-def _first(reading: str, found: Values) -> Finding:
+def _first(interpretation: str, found: Values) -> Finding:
     ahead, told = [], []
     for case, of_case in found.items():
         best = max((s.label for s in SINGLES), key=lambda label: fmean(of_case[label]))
@@ -78,12 +82,12 @@ def _first(reading: str, found: Values) -> Finding:
         ahead.append(own >= fmean(of_case[best]))
         told.append(f"{case} {own:.0f} % ({best} {fmean(of_case[best]):.0f} %)")
     return Finding(
-        reading, Holds.of(sum(ahead) >= len(ahead) - 1, any(ahead)),
+        interpretation, Holds.of(sum(ahead) >= len(ahead) - 1, any(ahead)),
         f"ahead or level in {sum(ahead)} of {len(ahead)} cases: {', '.join(told)}",
     )  # fmt: skip
 
 
-def _over_all(reading: str, found: Values) -> Finding:
+def _over_all(interpretation: str, found: Values) -> Finding:
     means = {
         system.label: [fmean(of) for of in zip(*(c[system.label] for c in found.values()),
                                                strict=True)]
@@ -91,7 +95,7 @@ def _over_all(reading: str, found: Values) -> Finding:
     }  # fmt: skip
     best = max((s.label for s in SINGLES), key=lambda label: fmean(means[label]))
     return Finding(
-        reading,
+        interpretation,
         Holds.of(fmean(means[MFPF.label]) > fmean(means[best])),
         f"{mean_and_spread(means[MFPF.label])} % against {mean_and_spread(means[best])} % of "
         f"{best}",

@@ -1,4 +1,4 @@
-"""Numbers as verdicts tell them, and the few statistics they need."""
+"""Statistics of verdicts, and their format."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from vehicle_pf_tracker.core.array import Array
 
 
 def median_and_range(values: Sequence[float], decimals: int = 1) -> str:
-    """Tell the median, and the least and the largest in brackets."""
+    """Format the median, and the least and the largest in brackets."""
     middle = statistics.median(values)
     least, largest = min(values), max(values)
     return f"{middle:.{decimals}f} ({least:.{decimals}f} to {largest:.{decimals}f})"
 
 
 def mean_and_spread(values: Sequence[float], decimals: int = 1) -> str:
-    """Tell the mean and the standard deviation."""
+    """Format the mean and the standard deviation."""
     return f"{statistics.fmean(values):.{decimals}f} ± {spread(values):.{decimals}f}"
 
 
@@ -28,7 +28,7 @@ def spread(values: Sequence[float]) -> float:
 
 
 def counted(hits: Sequence[bool]) -> str:
-    """Tell how many of how many."""
+    """Format the number of hits of all."""
     return f"{sum(hits)} of {len(hits)}"
 
 

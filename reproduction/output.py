@@ -31,8 +31,8 @@ _HEAD = """# Reproduction of the papers' experiments
 synthetic scenes with exact truth, draws the figures and writes the verdicts. Nothing here is
 written by hand. The papers' own videos are not public, so every scene is a synthetic counterpart.
 Beside each figure, `results/reproduce/<name>/` has all cells as `data.csv`. A claim is judged under
-our reading of the paper, which gives the verdict, and under other readings beside it. "No" is as
-good an answer as "yes".
+our interpretation of the paper, which gives the verdict, and under other interpretations beside it.
+"No" is as good an answer as "yes".
 
 {overview}
 """
@@ -68,7 +68,7 @@ def write_document(
     Parameters
     ----------
     folder, results : Path
-        Of the page, and of the experiments' own folders.
+        Folders of the page, and of the experiments' own folders.
     papers : mapping of str to sequence of Experiment
         The experiments by paper, whose name heads their sections.
     command : str

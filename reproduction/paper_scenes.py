@@ -46,7 +46,7 @@ Build: TypeAlias = Callable[[DriveParameters, int], Scene]
 
 @dataclass(frozen=True, slots=True)
 class NoParameters:
-    """Nothing can be chosen but the seed."""
+    """No parameters: only the seed varies."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,10 +58,10 @@ class FixedScene:
     name : str
         Name in the catalogue.
     occlusion : {"partial and total", "total", "partial", "none"}
-        How the vehicle is hidden. Every total occlusion begins and ends partial; "partial" stands
+        Kind of occlusion. Every total occlusion begins and ends partial; "partial" stands
         for one of its own.
     what : str
-        What happens.
+        Content of the scene.
     parameters : DriveParameters
         The vehicle, the image and the road.
     build : callable

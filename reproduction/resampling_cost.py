@@ -1,4 +1,4 @@
-"""What the third paper says of time: adaptive resampling does not take more of it."""
+"""The third paper's claim about time: adaptive resampling does not take more of it."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from reproduction.experiment import (
     Verdict,
 )
 from reproduction.numbers import median_and_range
-from reproduction.resampling_systems import READINGS
+from reproduction.resampling_systems import INTERPRETATIONS
 from reproduction.timing_cell import TimingCell
 
-_SYSTEMS = tuple(dict.fromkeys(system for pair in READINGS.values() for system in pair))
+_SYSTEMS = tuple(dict.fromkeys(system for pair in INTERPRETATIONS.values() for system in pair))
 _SEEDS, _QUICK_SEEDS = 3, 1
 """Runs that are timed: each frame of each is a measurement."""
 
@@ -43,11 +43,11 @@ def report(results: Results, size: Size) -> Report:
         for system in _SYSTEMS
     }
     ratios = {
-        reading: [
+        interpretation: [
             own / other
             for other, own in zip(*(means[system.label] for system in pair), strict=True)
         ]
-        for reading, pair in READINGS.items()
+        for interpretation, pair in INTERPRETATIONS.items()
     }
     rows = tuple(
         (system.label, seed, frame, step)
@@ -56,11 +56,11 @@ def report(results: Results, size: Size) -> Report:
         for frame, step in enumerate(times[seed][system.label], start=2)
     )
     table = DataTable(
-        ("reading", "conventional, ms per frame", "adaptive, ms per frame", "ratio"),
+        ("interpretation", "conventional, ms per frame", "adaptive, ms per frame", "ratio"),
         tuple(
-            (reading, *(median_and_range(means[system.label], 2) for system in pair),
-             median_and_range(ratios[reading], 2))
-            for reading, pair in READINGS.items()
+            (interpretation, *(median_and_range(means[system.label], 2) for system in pair),
+             median_and_range(ratios[interpretation], 2))
+            for interpretation, pair in INTERPRETATIONS.items()
         ),
     )  # fmt: skip
     return Report(
@@ -82,18 +82,18 @@ def _cell(seed: int) -> TimingCell:
 def _figure(means: dict[str, list[float]]) -> Figure:
     figure = Figure(figsize=(10, 4.4), layout="constrained")
     axes = figure.add_subplot()
-    places = np.arange(len(READINGS))
+    places = np.arange(len(INTERPRETATIONS))
     looks = ("0.75", "//"), ("#0072B2", "")
     for which, (name, (colour, hatch)) in enumerate(
         zip(("conventional", "adaptive"), looks, strict=True)
     ):
-        found = [means[pair[which].label] for pair in READINGS.values()]
+        found = [means[pair[which].label] for pair in INTERPRETATIONS.values()]
         at = places + (which - 0.5) * 0.4
         axes.bar(
             at, [median(f) for f in found], 0.38, ec="black", label=name, color=colour, hatch=hatch
         )
         axes.vlines(at, [min(f) for f in found], [max(f) for f in found], color="black", lw=1.5)
-    axes.set_xticks(places, [textwrap.fill(name, 14) for name in READINGS])
+    axes.set_xticks(places, [textwrap.fill(name, 14) for name in INTERPRETATIONS])
     axes.set(ylabel="processor time, ms per frame")
     axes.legend(frameon=False)
     return figure
@@ -107,11 +107,11 @@ def _verdict(ratios: dict[str, list[float]], size: Size) -> Verdict:
                 "abstract and section VI",
                 tuple(
                     Finding(
-                        reading,
+                        interpretation,
                         Holds.of(max(found) <= 1, median(found) <= 1),
                         f"{median_and_range(found, 2)} times the conventional filter's time",
                     )
-                    for reading, found in ratios.items()
+                    for interpretation, found in ratios.items()
                 ),
             ),
         ),

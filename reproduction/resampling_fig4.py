@@ -23,8 +23,8 @@ from reproduction.resampling_systems import (
     ADAPTIVE,
     BOTH,
     CONVENTIONAL,
+    INTERPRETATIONS,
     PHASES,
-    READINGS,
 )
 from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
 
@@ -42,12 +42,17 @@ Errors = dict[str, dict[str, list[float]]]
 
 def report(results: Results, size: Size) -> Report:
     """Draw all seeds' errors, and judge."""
-    errors = {reading: _errors(results, size, reading) for reading in READINGS}
+    errors = {
+        interpretation: _errors(results, size, interpretation) for interpretation in INTERPRETATIONS
+    }
     table = DataTable(
         ("filter", *PHASES, "all"),
         tuple(
-            (f"{variant}, {reading}", *(median_and_range(of[name]) for name in (*PHASES, "all")))
-            for reading, found in errors.items()
+            (
+                f"{variant}, {interpretation}",
+                *(median_and_range(of[name]) for name in (*PHASES, "all")),
+            )
+            for interpretation, found in errors.items()
             for variant, of in found.items()
         ),
     )
@@ -63,9 +68,9 @@ def report(results: Results, size: Size) -> Report:
     )
 
 
-def _errors(results: Results, size: Size, reading: str) -> Errors:
+def _errors(results: Results, size: Size, interpretation: str) -> Errors:
     found: Errors = {}
-    for system in READINGS[reading]:
+    for system in INTERPRETATIONS[interpretation]:
         of: dict[str, list[float]] = {name: [] for name in (*PHASES, "all")}
         for seed in size.seeds:
             scored = resampling.run_scores(results, system, seed)
@@ -102,30 +107,35 @@ def _claims(errors: dict[str, Errors]) -> tuple[Claim, ...]:
         Claim(
             "before the occlusion both filters follow the vehicle",
             f"{_PLACE}, case I",
-            tuple(_both_low(reading, found, "before") for reading, found in errors.items()),
+            tuple(
+                _both_low(interpretation, found, "before")
+                for interpretation, found in errors.items()
+            ),
         ),
         Claim(
             "while it is partly hidden both have almost the same, low error",
             f"{_PLACE}, case II",
-            tuple(_alike(reading, found) for reading, found in errors.items()),
+            tuple(_alike(interpretation, found) for interpretation, found in errors.items()),
         ),
         Claim(
             "while it is hidden the conventional filter's error is much higher than the adaptive "
             "one's",
             f"{_PLACE}, case III",
-            tuple(_worse(reading, found, "full") for reading, found in errors.items()),
+            tuple(
+                _worse(interpretation, found, "full") for interpretation, found in errors.items()
+            ),
         ),
         Claim(
             "after the occlusion the adaptive filter has the vehicle again, the conventional one "
             "has lost it",
             f"{_PLACE}, case IV",
-            tuple(_lost(reading, found) for reading, found in errors.items()),
+            tuple(_lost(interpretation, found) for interpretation, found in errors.items()),
         ),
         Claim(
             f"(not in the paper in numbers) the adaptive filter's median RMSE is at most "
             f"{_AT_MOST:g} times the conventional one's",
             _PLACE,
-            tuple(_no_worse(reading, found) for reading, found in errors.items()),
+            tuple(_no_worse(interpretation, found) for interpretation, found in errors.items()),
         ),
     )
 
@@ -142,42 +152,44 @@ def _medians(found: Errors, phase: str) -> tuple[float, float]:
     )
 
 
-def _both_low(reading: str, found: Errors, phase: str) -> Finding:
+def _both_low(interpretation: str, found: Errors, phase: str) -> Finding:
     low = [value < _LOW for value in _medians(found, phase)]
-    return Finding(reading, Holds.of(all(low), any(low)), _told(found, phase))
+    return Finding(interpretation, Holds.of(all(low), any(low)), _told(found, phase))
 
 
-def _alike(reading: str, found: Errors) -> Finding:
+def _alike(interpretation: str, found: Errors) -> Finding:
     pair = _medians(found, "partial")
     alike = max(pair) <= _ALIKE * min(pair)
-    return Finding(reading, Holds.of(alike and max(pair) < _LOW, alike), _told(found, "partial"))
+    return Finding(
+        interpretation, Holds.of(alike and max(pair) < _LOW, alike), _told(found, "partial")
+    )
 
 
-def _worse(reading: str, found: Errors, phase: str) -> Finding:
+def _worse(interpretation: str, found: Errors, phase: str) -> Finding:
     conventional, adaptive = _medians(found, phase)
     return Finding(
-        reading,
+        interpretation,
         Holds.of(conventional >= _HIGHER * adaptive, conventional > _ALIKE * adaptive),
         _told(found, phase),
     )
 
 
-def _lost(reading: str, found: Errors) -> Finding:
+def _lost(interpretation: str, found: Errors) -> Finding:
     back = {variant: [value < _LOW for value in of["after"]] for variant, of in found.items()}
     ours, others = (sum(back[s.variant]) for s in (ADAPTIVE, CONVENTIONAL))
     runs = len(back[ADAPTIVE.variant])
     return Finding(
-        reading,
+        interpretation,
         Holds.of(ours >= 0.8 * runs and others <= 0.2 * runs, ours > others),
         f"{_told(found, 'after')}; below {_LOW:g} px in {ours} of {runs} runs of adaptive and "
         f"{others} of conventional",
     )
 
 
-def _no_worse(reading: str, found: Errors) -> Finding:
+def _no_worse(interpretation: str, found: Errors) -> Finding:
     conventional, adaptive = _medians(found, "all")
     return Finding(
-        reading, Holds.of(adaptive <= _AT_MOST * conventional),
+        interpretation, Holds.of(adaptive <= _AT_MOST * conventional),
         f"{_told(found, 'all')}: {adaptive / conventional:.2f} times",
     )  # fmt: skip
 

@@ -24,9 +24,9 @@ from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import (
     ADAPTIVE,
     CONVENTIONAL,
+    INTERPRETATIONS,
     OURS,
     PHASES,
-    READINGS,
 )
 from vehicle_pf_tracker.evaluation.plots import STYLES, Style, shade_occlusions
 
@@ -42,16 +42,17 @@ Means = dict[str, dict[str, float]]
 
 def report(results: Results, size: Size) -> Report:
     """Draw the means over the seeds, and judge."""
-    passes = {r: _means(results, size, r, "resampling_passes") for r in READINGS}
-    drawn = {r: _means(results, size, r, "resampled_particles") for r in READINGS}
+    passes = {r: _means(results, size, r, "resampling_passes") for r in INTERPRETATIONS}
+    drawn = {r: _means(results, size, r, "resampled_particles") for r in INTERPRETATIONS}
     table = DataTable(
         ("filter", *PHASES),
         tuple(
-            (f"{variant}, {reading}",
-             *(f"{passes[reading][variant][name]:.1f} / {drawn[reading][variant][name]:.0f}"
+            (f"{variant}, {interpretation}",
+             *(f"{passes[interpretation][variant][name]:.1f} / "
+               f"{drawn[interpretation][variant][name]:.0f}"
                for name in PHASES))
-            for reading in READINGS
-            for variant in passes[reading]
+            for interpretation in INTERPRETATIONS
+            for variant in passes[interpretation]
         ),
     )  # fmt: skip
     return Report(
@@ -67,9 +68,9 @@ def report(results: Results, size: Size) -> Report:
     )  # fmt: skip
 
 
-def _means(results: Results, size: Size, reading: str, scalar: str) -> Means:
+def _means(results: Results, size: Size, interpretation: str, scalar: str) -> Means:
     found: Means = {}
-    for system in READINGS[reading]:
+    for system in INTERPRETATIONS[interpretation]:
         values: dict[str, list[float]] = {name: [] for name in PHASES}
         for seed in size.seeds:
             column = resampling.trace(results, system, seed)[scalar]
@@ -82,15 +83,15 @@ def _means(results: Results, size: Size, reading: str, scalar: str) -> Means:
 
 def _figure(results: Results, size: Size) -> Figure:
     figure = Figure(figsize=(10, 5.6), layout="constrained")
-    readings = {OURS: READINGS[OURS], "as printed": READINGS["as printed"]}
-    axes = figure.subplots(2, len(readings), sharex=True, sharey="row")
-    for column, (reading, pair) in enumerate(readings.items()):
+    interpretations = {OURS: INTERPRETATIONS[OURS], "as printed": INTERPRETATIONS["as printed"]}
+    axes = figure.subplots(2, len(interpretations), sharex=True, sharey="row")
+    for column, (interpretation, pair) in enumerate(interpretations.items()):
         for row, scalar in enumerate(("resampling_passes", "resampled_particles")):
             ax = axes[row, column]
             shade_occlusions(ax, resampling.run_scores(results, CONVENTIONAL, size.seeds[0]))
             for system, style in zip(reversed(pair), (STYLES[0], STYLES[1]), strict=True):
                 _draw(ax, results, size, system, scalar, style)
-        axes[0, column].set(title=reading)
+        axes[0, column].set(title=interpretation)
         axes[1, column].set(xlabel="frame")
     axes[0, 0].set(ylabel="passes")
     axes[1, 0].set(ylabel="resampled particles")
@@ -115,30 +116,33 @@ def _claims(results: Results, size: Size, passes: dict[str, Means]) -> tuple[Cla
             "the adaptive filter takes fewer passes and resamples fewer particles than the "
             "conventional one, in every phase",
             _PLACE,
-            tuple(_fewer(results, size, reading) for reading in READINGS),
+            tuple(_fewer(results, size, interpretation) for interpretation in INTERPRETATIONS),
         ),
         Claim(
             f"once the vehicle is hidden the conventional filter takes all {_MOST_PASSES} passes, "
             "and goes on to when it can be seen again",
             _PLACE,
-            tuple(_endless(reading, found) for reading, found in passes.items()),
+            tuple(_endless(interpretation, found) for interpretation, found in passes.items()),
         ),
         Claim(
             "the adaptive filter's passes stay few in all phases",
             _PLACE,
-            tuple(_few(reading, found) for reading, found in passes.items()),
+            tuple(_few(interpretation, found) for interpretation, found in passes.items()),
         ),
         Claim(
             "(not in the paper in numbers) it resamples at most a fifth of the particles that the "
             "conventional one does",
             _PLACE,
-            tuple(_saving(results, size, reading) for reading in READINGS),
+            tuple(_saving(results, size, interpretation) for interpretation in INTERPRETATIONS),
         ),
     )
 
 
-def _fewer(results: Results, size: Size, reading: str) -> Finding:
-    both = [_means(results, size, reading, s) for s in ("resampling_passes", "resampled_particles")]
+def _fewer(results: Results, size: Size, interpretation: str) -> Finding:
+    both = [
+        _means(results, size, interpretation, s)
+        for s in ("resampling_passes", "resampled_particles")
+    ]
     less = [
         found[ADAPTIVE.variant][name] < found[CONVENTIONAL.variant][name]
         for found in both
@@ -150,26 +154,28 @@ def _fewer(results: Results, size: Size, reading: str) -> Finding:
         f"{both[0][CONVENTIONAL.variant][name]:.1f} and {both[1][CONVENTIONAL.variant][name]:.0f}"
         for name in PHASES
     )
-    return Finding(reading, Holds.of(all(less), any(less)), told)
+    return Finding(interpretation, Holds.of(all(less), any(less)), told)
 
 
-def _endless(reading: str, found: Means) -> Finding:
+def _endless(interpretation: str, found: Means) -> Finding:
     own = found[CONVENTIONAL.variant]
     full = [own[name] >= 0.95 * _MOST_PASSES for name in ("full", "after")]
     rises = own["full"] > own["before"]
     told = ", ".join(f"{name} {own[name]:.1f}" for name in PHASES)
-    return Finding(reading, Holds.of(all(full) and rises, any(full)), f"passes a frame: {told}")
+    return Finding(
+        interpretation, Holds.of(all(full) and rises, any(full)), f"passes a frame: {told}"
+    )
 
 
-def _few(reading: str, found: Means) -> Finding:
+def _few(interpretation: str, found: Means) -> Finding:
     own = found[ADAPTIVE.variant]
     few = [own[name] <= _LOW for name in PHASES]
     told = ", ".join(f"{name} {own[name]:.1f}" for name in PHASES)
-    return Finding(reading, Holds.of(all(few), any(few)), f"passes a frame: {told}")
+    return Finding(interpretation, Holds.of(all(few), any(few)), f"passes a frame: {told}")
 
 
-def _saving(results: Results, size: Size, reading: str) -> Finding:
-    conventional, adaptive = READINGS[reading]
+def _saving(results: Results, size: Size, interpretation: str) -> Finding:
+    conventional, adaptive = INTERPRETATIONS[interpretation]
     ratios, counts = [], []
     for seed in size.seeds:
         own = resampling.resampled(results, adaptive, seed)
@@ -178,7 +184,7 @@ def _saving(results: Results, size: Size, reading: str) -> Finding:
         ratios.append(own / max(others, 1))
     ours, theirs = (fmean(of) for of in zip(*counts, strict=True))
     return Finding(
-        reading,
+        interpretation,
         Holds.of(max(ratios) <= _AT_MOST, ours / max(theirs, 1) <= _AT_MOST),
         f"{ours:.0f} against {theirs:.0f} a run; by seed {median_and_range(ratios, 3)} times",
     )

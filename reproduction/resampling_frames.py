@@ -16,10 +16,10 @@ from reproduction.experiment import (
 from reproduction.resampling_systems import (
     ADAPTIVE,
     CONVENTIONAL,
+    INTERPRETATIONS,
     OURS,
     PHASES,
     PRINTED,
-    READINGS,
 )
 from reproduction.strips import strip_figure
 from vehicle_pf_tracker.core.box import Box
@@ -32,13 +32,13 @@ def report(results: Results, size: Size) -> Report:
     """Show the first seed in the middle of each phase, and judge all seeds there."""
     seed = size.seeds[0]
     rows = {}
-    for reading in (OURS, PRINTED):
+    for interpretation in (OURS, PRINTED):
         runs = {
             system.variant: resampling.run_scores(results, system, seed)
-            for system in READINGS[reading]
+            for system in INTERPRETATIONS[interpretation]
         }
         numbers = [index + 1 for index in _middles(runs[CONVENTIONAL.variant])]
-        rows[reading] = (resampling.SCENE.seeded(seed), runs, numbers)
+        rows[interpretation] = (resampling.SCENE.seeded(seed), runs, numbers)
     return Report(
         resampling.data(results, size),
         strip_figure(rows),
@@ -69,9 +69,9 @@ def _middles(scored: Scores) -> list[int]:
     return [*(found[name][len(found[name]) // 2] for name in PHASES[:-1]), found["after"][-1]]
 
 
-def _hits(results: Results, size: Size, reading: str, variant: str) -> list[int]:
+def _hits(results: Results, size: Size, interpretation: str, variant: str) -> list[int]:
     """Count the seeds whose estimate is within the true box, by phase."""
-    (system,) = (s for s in READINGS[reading] if s.variant == variant)
+    (system,) = (s for s in INTERPRETATIONS[interpretation] if s.variant == variant)
     hits = [0] * len(PHASES)
     for seed in size.seeds:
         scored = resampling.run_scores(results, system, seed)
@@ -94,18 +94,18 @@ def _told(hits: list[int], size: Size) -> str:
     return f"within the true box, of {len(size.seeds)} runs: {phases}"
 
 
-def _on_it(results: Results, size: Size, reading: str, variant: str) -> Finding:
-    hits = _hits(results, size, reading, variant)
+def _on_it(results: Results, size: Size, interpretation: str, variant: str) -> Finding:
+    hits = _hits(results, size, interpretation, variant)
     enough = [count >= 0.8 * len(size.seeds) for count in hits]
-    return Finding(reading, Holds.of(all(enough), all(enough[:2])), _told(hits, size))
+    return Finding(interpretation, Holds.of(all(enough), all(enough[:2])), _told(hits, size))
 
 
-def _stuck(results: Results, size: Size, reading: str) -> Finding:
-    hits = _hits(results, size, reading, CONVENTIONAL.variant)
+def _stuck(results: Results, size: Size, interpretation: str) -> Finding:
+    hits = _hits(results, size, interpretation, CONVENTIONAL.variant)
     runs = len(size.seeds)
     on_it = all(count >= 0.8 * runs for count in hits[:2])
     lost = hits[-1] <= 0.2 * runs
-    return Finding(reading, Holds.of(on_it and lost, on_it or lost), _told(hits, size))
+    return Finding(interpretation, Holds.of(on_it and lost, on_it or lost), _told(hits, size))
 
 
 EXPERIMENT = Experiment(

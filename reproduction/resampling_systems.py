@@ -1,4 +1,4 @@
-"""What the third paper's experiments run: both filters, their schemes and readings, one scene."""
+"""Systems of the third paper: both filters, their schemes and interpretations, one scene."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ CONVENTIONAL, ADAPTIVE = (
     System.of("adaptive", "adaptive"),
 )
 BOTH = (CONVENTIONAL, ADAPTIVE)
-OURS, PRINTED = "our reading", "as printed"
+OURS, PRINTED = "our interpretation", "as printed"
 STRICTER = "as printed, low weight below half the mean"
 BY_SIMILARITY = "occlusion told by similarity"
 PHASES = "before", "partial", "full", "after"
-"""Of the vehicle's way past what hides it."""
+"""Frames of the vehicle's way past the occluders."""
 _DEFAULT_SCHEME = "multinomial"
 _RECORD = (*PATH, "regime", "n_eff", "resampling_passes", "resampled_particles")
 
@@ -38,7 +38,7 @@ def _pair(settings: Mapping[str, Any]) -> tuple[System, System]:
 
 
 _PRINTED = System.of("conventional as printed", "conventional", {"as_printed": True})
-READINGS: Mapping[str, tuple[System, System]] = MappingProxyType(
+INTERPRETATIONS: Mapping[str, tuple[System, System]] = MappingProxyType(
     {
         OURS: BOTH,
         PRINTED: (
@@ -58,7 +58,7 @@ READINGS: Mapping[str, tuple[System, System]] = MappingProxyType(
         },
     }
 )
-"""Conventional and adaptive under every reading, and with every other scheme."""
+"""Conventional and adaptive under every interpretation, and with every other scheme."""
 SETTING = (
     "The scene `phases` is our counterpart of the paper's video: a car passes a parked van that "
     "hides its lower half and a parked coach that hides all of it; 15 frames per second. Each seed "
@@ -78,8 +78,8 @@ def cell(system: System, seed: int) -> RunCell:
 
 
 def cells(size: Size) -> list[RunCell]:
-    """Run both filters under every reading and scheme, with every seed."""
-    systems = dict.fromkeys(system for pair in READINGS.values() for system in pair)
+    """Run both filters under every interpretation and scheme, with every seed."""
+    systems = dict.fromkeys(system for pair in INTERPRETATIONS.values() for system in pair)
     return [cell(system, seed) for system in systems for seed in size.seeds]
 
 
@@ -126,18 +126,19 @@ def rms(scored: Scores, chosen: list[int]) -> float:
 def data(results: Results, size: Size) -> DataTable:
     """Put every frame of every run into a row."""
     rows: list[tuple[Entry, ...]] = []
-    for reading, pair in READINGS.items():
+    for interpretation, pair in INTERPRETATIONS.items():
         for system in pair:
             for seed in size.seeds:
                 scored = run_scores(results, system, seed)
                 phase_of = {i: name for name, of in phases(scored).items() for i in of}
                 found = trace(results, system, seed)
                 rows += [
-                    (reading, system.variant, seed, index + 1, phase_of.get(index), frame.error,
+                    (interpretation, system.variant, seed, index + 1, phase_of.get(index),
+                     frame.error,
                      found["n_eff"][index], found["resampling_passes"][index],
                      found["resampled_particles"][index], found["regime"][index])
                     for index, frame in enumerate(scored.frames)
                 ]  # fmt: skip
-    columns = ("reading", "filter", "seed", "frame", "phase", "error_px", "n_eff", "passes",
+    columns = ("interpretation", "filter", "seed", "frame", "phase", "error_px", "n_eff", "passes",
                "resampled_particles", "regime")  # fmt: skip
     return DataTable(columns, tuple(rows))

@@ -41,7 +41,7 @@ RMSE = "RMSE of the centre in visible frames, px:"
 RECOVERED = "Total occlusions recovered from, of those that can be judged, over all seeds:"
 
 Table = Mapping[str, Mapping[str, Sequence[Metrics]]]
-"""What was measured, by recording and system, for each seed."""
+"""Metrics of each seed, by recording and system."""
 
 
 def main() -> None:

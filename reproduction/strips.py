@@ -32,7 +32,7 @@ def telling_frames(scored: Scores, count: int) -> list[int]:
     scored : Scores
         A run.
     count : int
-        How many, 3 at least.
+        Number of frames, 3 at least.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def strip_figure(
     Parameters
     ----------
     rows : mapping of str to (SceneChoice, mapping of str to Scores, sequence of int)
-        By the title of the row: the scene, the runs on it by name, and the frames to show.
+        Rows by title: the scene, the runs on it by name, and the frames to show.
     """
     columns = max(len(numbers) for _, _, numbers in rows.values())
     height = 11 / columns * _VIEW[1] / _VIEW[0] + 0.25

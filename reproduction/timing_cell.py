@@ -45,7 +45,7 @@ class TimingCell:
 
     @property
     def alone(self) -> bool:
-        """Nothing may run beside it."""
+        """True: nothing may run beside it."""
         return True
 
     def facts(self) -> dict[str, Any]:

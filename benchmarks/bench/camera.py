@@ -34,7 +34,7 @@ class Camera:
     Parameters
     ----------
     nodes : dict of str to str
-        Where each node publishes its position, by the image topic that it listens to.
+        Position topic of each node, by its image topic.
     """
 
     def __init__(self, nodes: dict[str, str]) -> None:

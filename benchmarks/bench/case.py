@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Case:
-    """What ours and a baseline took for the same work in one run.
+    """Times of ours and a baseline for the same work in one run.
 
     Attributes
     ----------

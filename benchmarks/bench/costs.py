@@ -1,4 +1,4 @@
-"""What more of something costs a step: particles, window, image, trackers in one process."""
+"""Cost of a step by particles, window, image, and trackers in one process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What became of the images sent to several nodes at once."""
+"""Delivery of images sent to several nodes at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long to measure."""
+"""Effort of a run of the benchmarks."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Effort:
-    """What the whole run may cost.
+    """Effort of the whole run.
 
     Attributes
     ----------
@@ -22,7 +22,7 @@ class Effort:
     batches, batch_frames : int
         Turns of each node, and images that it gets in one.
     fleet_seconds : float
-        How long many nodes at once are watched.
+        Time that many nodes at once are watched, s.
     """
 
     case_seconds: float

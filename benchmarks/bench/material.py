@@ -1,4 +1,4 @@
-"""What the benchmarks look at: a drawn 40x30 px vehicle that drives through 640x480 images."""
+"""Images of the benchmarks: a drawn 40x30 px vehicle that drives through 640x480 images."""
 
 from __future__ import annotations
 

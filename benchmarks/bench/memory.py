@@ -1,4 +1,4 @@
-"""How much memory trackers keep: `… memory VARIANT COUNT` prints MB with one and with COUNT."""
+"""Memory that trackers keep: `… memory VARIANT COUNT` prints MB with one and with COUNT."""
 
 from __future__ import annotations
 

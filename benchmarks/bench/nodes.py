@@ -1,4 +1,4 @@
-"""What a tracker node costs over the floor, and whether many nodes at once lose an image."""
+"""Cost of a tracker node over the floor, and images lost by many nodes at once."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ ALLOCATOR = {
     "MALLOC_TRIM_THRESHOLD_": "1073741824",
     "MALLOC_TOP_PAD_": "67108864",
 }
-"""What the launch files set, for the floor and for the tracker nodes alike."""
+"""Environment that the launch files set, for the floor and the tracker nodes alike."""
 
 _READY = "ready:"
 
@@ -33,7 +33,7 @@ class NodeProcess:
     Parameters
     ----------
     words : sequence of str
-        What Python runs, with arguments.
+        Module or script that Python runs, with arguments.
     environment : mapping
         Variables over those of this process.
 
@@ -89,7 +89,7 @@ class NodeProcess:
 
 
 class StepMeter:
-    """What the steps of a metered node cost so far."""
+    """Cost of a metered node's steps so far."""
 
     def __init__(self) -> None:
         self._file = tempfile.NamedTemporaryFile()  # noqa: SIM115 - as long as this object
@@ -98,7 +98,7 @@ class StepMeter:
 
     @property
     def path(self) -> str:
-        """Where the node writes it."""
+        """File that the node writes it to."""
         return self._file.name
 
     @property

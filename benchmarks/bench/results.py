@@ -15,14 +15,14 @@ from benchmarks.bench.memory import MemoryCase
 
 @dataclass
 class Results:
-    """Everything that one run found.
+    """Results of one run.
 
     Attributes
     ----------
     environment : mapping
         Machine and versions.
     commands : list of str
-        What gives these numbers again.
+        Commands that repeat the measurement.
     cases : list of Case
         CPU times and their ratios.
     memory : list of MemoryCase
@@ -30,7 +30,7 @@ class Results:
     deliveries : list of Delivery
         Images sent to many nodes at once, and lost.
     on_target : dict of str to float
-        For each tracker that was timed, the share of frames in which it was on the vehicle.
+        Share of frames on the vehicle of each timed tracker.
     """
 
     environment: Mapping[str, Any]

@@ -1,4 +1,4 @@
-"""Where the repository is: what is started from here runs there."""
+"""Root of the repository, in which child processes run."""
 
 from __future__ import annotations
 

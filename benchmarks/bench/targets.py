@@ -1,4 +1,4 @@
-"""What the project wants of its speed, and whether a run has it."""
+"""Speed targets of the project, and their check against a run."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ class Target:
     case : str
         Name of the case that tells.
     words : str
-        What is wanted.
+        Text of the target.
     value : callable
         Takes it from the results; None where it was not measured.
     limit : float
         The least value, or the most.
     is_least : bool
-        Whether more is better.
+        True if more is better.
     unit : str
         Stands behind the value.
     """
@@ -36,7 +36,7 @@ class Target:
     unit: str
 
     def is_met(self, results: Results) -> bool | None:
-        """Tell whether `results` have it; None where it was not measured."""
+        """Return whether `results` reach it; None where it was not measured."""
         value = self.value(results)
         if value is None:
             return None
@@ -84,7 +84,7 @@ STEPS = {
     "pfcl": 15,
     "mfpf": 25,
 }
-"""How many times faster than CSRT a variant's full step is to be."""
+"""Target ratio of CSRT's step to a variant's full step."""
 
 TARGETS = (
     _faster("kernel/joint512/41x31/vga/n200", 25),

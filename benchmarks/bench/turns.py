@@ -30,7 +30,7 @@ class Follower(Protocol):
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Where it says the vehicle is, px."""
+        """Estimated position of the vehicle, px."""
         ...
 
 
@@ -40,7 +40,7 @@ class Own:
     Parameters
     ----------
     name : str
-        Of the variant.
+        Name of the variant.
     settings : mapping
         Parameters over the defaults.
     count : int
@@ -113,11 +113,11 @@ def follow(
     Parameters
     ----------
     followers : mapping of str to Follower
-        By name.
+        Followers by name.
     seeds : sequence of int
         One pass over the drive for each.
     most_frames : int
-        Where a pass ends.
+        Number of frames of a pass.
 
     Returns
     -------

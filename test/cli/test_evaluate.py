@@ -124,7 +124,7 @@ def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
         (["--params", "@=none.yaml"], 2, "no label of a parameter set"),
         (["--baseline-model", "vit=a"], 2, "--baseline-model wants BASELINE:NAME=FILE"),
         (["--seeds", "0"], 2, "'0' is not an integer >= 1"),
-        (["--max-diff", "-1"], 1, "seconds from 0"),
+        (["--max-diff", "-1"], 1, "seconds >= 0"),
     ],
 )
 def test_mistakes_are_told_in_one_line(bags, tmp_path, capsys, words, status, said):
@@ -142,8 +142,8 @@ def test_things_that_are_no_recordings_say_what_to_do(tmp_path, capsys):
     for name, said in {
         "clip.mp4": "is a video; make a recording of it first: `vehicle-pf-tracker import ",
         "frames": "is a frame folder; make a recording of it first",
-        "notes.txt": "is no recording: give a rosbag2 folder",
-        "empty": "is no recording and has none in it",
+        "notes.txt": "is not a recording: give a rosbag2 folder",
+        "empty": "is not a recording and holds none",
         "none": "there is no recording",
         "untrue": "has no truth to compare with",
     }.items():

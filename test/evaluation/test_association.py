@@ -45,7 +45,7 @@ def test_nothing_to_pair():
 
 @pytest.mark.parametrize("limit", [-0.1, float("nan"), float("inf")])
 def test_a_limit_must_be_a_time(limit):
-    with pytest.raises(InputError, match="seconds from 0"):
+    with pytest.raises(InputError, match="seconds >= 0"):
         associate([1], [1], limit)
 
 

@@ -86,7 +86,7 @@ def test_scalars_without_a_mode_are_refused():
         ("", "must begin with the line frame,stamp_ns"),
         ("frame,x\n", "must begin with the line frame,stamp_ns"),
         (",".join(COLUMNS) + "\n1,2,3\n", "line 2 .* is broken"),
-        (",".join(COLUMNS) + "\n1,2,a,4,5,6,LOST,8,9,10\n", "line 2 .* x is no number: 'a'"),
+        (",".join(COLUMNS) + "\n1,2,a,4,5,6,LOST,8,9,10\n", "line 2 .* x is not a number: 'a'"),
         (",".join(COLUMNS) + "\none,2,3,4,5,6,LOST,8,9,10\n", "line 2 .* is broken"),
     ],
 )

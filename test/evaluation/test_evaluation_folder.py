@@ -50,7 +50,7 @@ def test_labels_become_names_of_folders(tmp_path):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [(None, "is not an evaluation folder"), ('{"format": 1}', "another version"),
-     ("{", "no JSON"), ("[]", "no JSON object"),
+     ("{", "not JSON"), ("[]", "does not hold a JSON object"),
      ('{"recordings": []}', "broken: KeyError"), ('{"recordings": [{}]}', "broken")],
 )  # fmt: skip
 def test_mistakes_about_the_folder(tmp_path, text, sentence):

@@ -127,8 +127,8 @@ def test_progress_counts_to_the_total(frame_folder, tmp_path):
         (HEADER + "1,nan,nan,nan,nan,1,0\n", "holds no box"),
         ("frame,x,y,w\n1,2,3,4\n", "lacks the column h"),
         (HEADER + "1,two,3,4,5,1,0\n", "line 2 of .* 'two' as x"),
-        (HEADER + "1.5,2,3,4,5,1,0\n", "line 2 of .* no whole number"),
-        (HEADER + ",2,3,4,5,1,0\n", "line 2 of .* no whole number"),
+        (HEADER + "1.5,2,3,4,5,1,0\n", "line 2 of .* no integer"),
+        (HEADER + ",2,3,4,5,1,0\n", "line 2 of .* no integer"),
         (HEADER + "1,2,3,4,5,1,7\n", "line 2 of .* occ 7"),
         (HEADER + "1,2,3,4,5,1,0\n1,2,3,4,5,1,0\n", "line 3 of .* frame 1 a second time"),
         (HEADER + "70,2,3,4,5,1,0\n", "no frame of the truth .* has an image"),
@@ -143,7 +143,7 @@ def test_faulty_truth_is_named(frame_folder, tmp_path, truth, said):
 def test_truth_that_is_no_text_is_named(frame_folder, tmp_path):
     folder = frame_folder()
     (folder / "groundtruth.csv").write_bytes(b"\xff\xfe\x00\x80")
-    with pytest.raises(InputError, match="no table of text"):
+    with pytest.raises(InputError, match="not a text table"):
         import_recording(folder, tmp_path / "bag")
 
 

@@ -73,10 +73,10 @@ STAMP = stamp_of(1)
     ("broken", "said"),
     [
         (without_box(), "has no box"),
-        (replaced(topics.TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [])), "no polygon"),
+        (replaced(topics.TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [])), "not a polygon"),
         (
             replaced(topics.TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [(math.nan, 0)] * 4)),
-            "no polygon of finite",
+            "not a polygon of finite",
         ),
         (
             replaced(topics.TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [(5, 5)] * 4)),

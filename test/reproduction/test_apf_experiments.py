@@ -63,15 +63,15 @@ def test_figures_are_the_same_every_time(tmp_path):
 
 
 def findings(report, claim):
-    return {f.reading: f for f in report.verdict.claims[claim].findings}
+    return {f.interpretation: f for f in report.verdict.claims[claim].findings}
 
 
 def test_figure_3_judges_every_reading(reports):
     tracked = findings(reports("apf-fig3"), 0)
-    assert list(tracked) == ["our reading", "ours with tau 0.8", "as printed"]
-    assert tracked["our reading"].holds is Holds.YES
+    assert list(tracked) == ["our interpretation", "ours with tau 0.8", "as printed"]
+    assert tracked["our interpretation"].holds is Holds.YES
     assert tracked["as printed"].holds is Holds.NO
-    assert tracked["our reading"].numbers.startswith("4 of 4 runs")
+    assert tracked["our interpretation"].numbers.startswith("4 of 4 runs")
 
 
 def test_figure_2_has_a_bar_that_hides_all_of_the_vehicle(reports):
@@ -114,7 +114,7 @@ def test_table_2_has_an_average_row_and_the_total_occlusions_apart():
     assert rows["**average**"]["APF"] == "15.0 ± 7.1"
     assert rows["**total occlusion**"]["PF"] == "60.0 ± 28.3"
     assert rows["paper's average"]["APF"] == "17.32"
-    average = findings(report, 0)["our reading"]
+    average = findings(report, 0)["our interpretation"]
     assert average.holds is Holds.YES
     assert "0.25 times" in average.numbers
     assert report.verdict.claims[3].findings[0].holds is Holds.YES

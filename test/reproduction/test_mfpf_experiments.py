@@ -49,21 +49,23 @@ def results():
 
 
 def findings(report, claim):
-    return {f.reading: f for f in report.verdict.claims[claim].findings}
+    return {f.interpretation: f for f in report.verdict.claims[claim].findings}
 
 
 def test_table_1_judges_by_the_best_single_feature(results):
     report = EXPERIMENTS["mfpf-table1"].report(results, SIZE)
     least = findings(report, 0)
-    assert list(least) == ["our reading", "defaults", "as printed"]
-    assert least["our reading"].holds is Holds.YES
-    assert "case 2 0.80 of RGB's" in least["our reading"].numbers
-    assert findings(report, 1)["our reading"].numbers.startswith("below it by 20, 20 %")
-    assert findings(report, 2)["our reading"].holds is Holds.NO  # RGB is the best in both
+    assert list(least) == ["our interpretation", "defaults", "as printed"]
+    assert least["our interpretation"].holds is Holds.YES
+    assert "case 2 0.80 of RGB's" in least["our interpretation"].numbers
+    assert findings(report, 1)["our interpretation"].numbers.startswith("below it by 20, 20 %")
+    assert findings(report, 2)["our interpretation"].holds is Holds.NO  # RGB is the best in both
     over_all = findings(report, 3)
-    assert over_all["our reading"].numbers.startswith("8.0 ± 0.0 px against 10.0 ± 0.0 px of RGB")
+    assert over_all["our interpretation"].numbers.startswith(
+        "8.0 ± 0.0 px against 10.0 ± 0.0 px of RGB"
+    )
     assert over_all["ours, single features with their defaults"].holds is Holds.YES
-    assert findings(report, 5)["our reading"].holds is Holds.YES  # glcm is the best
+    assert findings(report, 5)["our interpretation"].holds is Holds.YES  # glcm is the best
 
 
 def test_table_1_counts_runs_that_end_close(results):
@@ -73,15 +75,15 @@ def test_table_1_counts_runs_that_end_close(results):
     assert rows["MFPF"] == (2, 2)
     assert rows["Edge"] == (0, 0)
     assert rows["MFPF, as printed"] == (0, 0)
-    assert findings(report, 4)["our reading"].holds is Holds.YES
+    assert findings(report, 4)["our interpretation"].holds is Holds.YES
 
 
 def test_table_2_tells_prediction_from_features_in_use(results):
     report = EXPERIMENTS["mfpf-table2"].report(results, SIZE)
-    predicts = findings(report, 2)["our reading"]
+    predicts = findings(report, 2)["our interpretation"]
     assert predicts.holds is Holds.YES
     assert predicts.numbers.endswith("case6 100 (100 to 100)")
-    assert findings(report, 0)["our reading"].holds is Holds.YES
+    assert findings(report, 0)["our interpretation"].holds is Holds.YES
 
 
 def test_table_3_has_the_papers_numbers_below_ours(results):
@@ -95,7 +97,7 @@ def test_table_3_has_the_papers_numbers_below_ours(results):
 
 def test_features_come_back_together_after_the_occlusion(results):
     report = EXPERIMENTS["mfpf-similarities"].report(results, SIZE)
-    back = findings(report, 2)["our reading"].numbers
+    back = findings(report, 2)["our interpretation"].numbers
     assert "of 2 runs" in back
     assert "RGB 2, Edge 2, Texture 2" in back
 

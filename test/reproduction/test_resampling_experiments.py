@@ -40,7 +40,7 @@ def results():
 
 
 def findings(report, claim):
-    return {f.reading: f for f in report.verdict.claims[claim].findings}
+    return {f.interpretation: f for f in report.verdict.claims[claim].findings}
 
 
 def test_phases_follow_each_other_and_leave_nothing_out(results):
@@ -58,21 +58,23 @@ def test_phases_follow_each_other_and_leave_nothing_out(results):
 
 def test_figure_4_sees_who_is_lost(results):
     report = EXPERIMENTS["resampling-fig4"].report(results, SIZE)
-    readings = list(findings(report, 0))
-    assert readings[:2] == ["our reading", "as printed"]
-    assert readings[-3:] == ["residual", "systematic", "stratified"]
-    assert findings(report, 0)["our reading"].holds is Holds.PARTLY  # conventional is 30 px off
-    assert findings(report, 2)["our reading"].holds is Holds.YES
-    after = findings(report, 3)["our reading"]
+    interpretations = list(findings(report, 0))
+    assert interpretations[:2] == ["our interpretation", "as printed"]
+    assert interpretations[-3:] == ["residual", "systematic", "stratified"]
+    assert (
+        findings(report, 0)["our interpretation"].holds is Holds.PARTLY
+    )  # conventional is 30 px off
+    assert findings(report, 2)["our interpretation"].holds is Holds.YES
+    after = findings(report, 3)["our interpretation"]
     assert after.holds is Holds.YES
     assert "in 2 of 2 runs of adaptive and 0 of conventional" in after.numbers
-    assert findings(report, 4)["our reading"].numbers.endswith("0.13 times")
+    assert findings(report, 4)["our interpretation"].numbers.endswith("0.13 times")
 
 
 def test_figure_5_counts_particles(results):
     report = EXPERIMENTS["resampling-fig5"].report(results, SIZE)
-    assert findings(report, 0)["our reading"].holds is Holds.YES
-    saving = findings(report, 3)["our reading"]
+    assert findings(report, 0)["our interpretation"].holds is Holds.YES
+    saving = findings(report, 3)["our interpretation"]
     assert saving.holds is Holds.YES
     assert "0.013 (0.013 to 0.013) times" in saving.numbers
     (table,) = report.tables.values()
@@ -81,8 +83,8 @@ def test_figure_5_counts_particles(results):
 
 def test_frames_are_judged_in_the_middle_of_each_phase(results):
     report = EXPERIMENTS["resampling-frames"].report(results, SIZE)
-    assert findings(report, 0)["our reading"].holds is Holds.YES
-    assert findings(report, 1)["our reading"].numbers.endswith(
+    assert findings(report, 0)["our interpretation"].holds is Holds.YES
+    assert findings(report, 1)["our interpretation"].numbers.endswith(
         "before 0, partial 0, full 0, after 0"
     )
 
@@ -99,7 +101,7 @@ def test_cost_compares_mean_times():
 
 
 def test_both_filters_differ_in_nothing_but_how_they_resample():
-    for pair in resampling.READINGS.values():
+    for pair in resampling.INTERPRETATIONS.values():
         conventional, adaptive = (system.parameters(7) for system in pair)
         shared = ("num_particles", "sigma", "criterion", "most_passes", "likelihood", "resampling")
         for name in shared:

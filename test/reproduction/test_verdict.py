@@ -29,7 +29,7 @@ def test_shares_are_judged(value, holds):
 
 
 def verdict():
-    findings = Finding("our reading", YES, "3 px"), Finding("as printed", NO, "300 px")
+    findings = Finding("our interpretation", YES, "3 px"), Finding("as printed", NO, "300 px")
     return Verdict((Claim("it follows", "figure 1", findings),), "A bar.", ("Mind the gap.",))
 
 
@@ -41,15 +41,16 @@ def test_a_verdict_is_plain_json():
     document = json.loads(json.dumps(verdict().to_json()))
     assert document["holds"] == "yes"
     assert document["claims"][0]["findings"][1] == {
-        "reading": "as printed", "holds": "no", "numbers": "300 px",
+        "interpretation": "as printed", "holds": "no", "numbers": "300 px",
     }  # fmt: skip
 
 
 def test_a_verdict_is_a_text_with_a_table_for_each_claim():
     assert verdict().to_markdown() == (
         "**Verdict: yes.**\n\nA bar.\n\nClaim (figure 1): it follows\n\n"
-        "| reading | holds | what came out |\n|---|---|---|\n"
-        "| our reading | **yes** | 3 px |\n| as printed | **no** | 300 px |\n\nMind the gap.\n"
+        "| interpretation | holds | what came out |\n|---|---|---|\n"
+        "| our interpretation | **yes** | 3 px |\n| as printed | **no** | 300 px |\n\nMind the "
+        "gap.\n"
     )
 
 

@@ -103,8 +103,8 @@ def test_frame_rate_changes_the_stamps_only():
         ("bar", {"settings": {"width": "60"}}, ["width", "number", "'60'"]),
         ("bar", {"settings": ["width=500"]}, ["width", "from 0 to 120", "500"]),
         ("bar", {"settings": ["speed=nan"]}, ["speed", "finite"]),
-        ("bar", {"seed": -1}, ["seed", "at least 0", "-1"]),
-        ("bar", {"seed": 1.5}, ["seed", "whole number", "1.5"]),
+        ("bar", {"seed": -1}, ["seed", "integer >= 0", "-1"]),
+        ("bar", {"seed": 1.5}, ["seed", "integer >= 0", "1.5"]),
     ],
 )
 def test_mistakes_name_themselves_and_the_remedy(name, options, words):

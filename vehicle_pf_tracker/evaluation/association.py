@@ -1,4 +1,4 @@
-"""Which truth belongs to which estimate: by stamp, nearest first, one to one."""
+"""Association of truth and estimates: by stamp, nearest first, one to one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from vehicle_pf_tracker.core.errors import InputError
 
 MAX_DIFF = 0.01
-"""Stamps further apart than this, in s, never belong together unless the user says so."""
+"""Largest difference of associated stamps, s: well below a frame period at 30 Hz, 0.033 s."""
 
 
 def associate(first_ns: Sequence[int], second_ns: Sequence[int], max_diff: float) -> dict[int, int]:
@@ -57,7 +57,7 @@ def associate(first_ns: Sequence[int], second_ns: Sequence[int], max_diff: float
 def max_diff_ns(max_diff: float) -> int:
     """Check a largest difference in s and return it in ns."""
     if not math.isfinite(max_diff) or max_diff < 0:
-        raise InputError(f"the largest difference of stamps must be seconds from 0, not {max_diff}")
+        raise InputError(f"the largest difference of stamps must be seconds >= 0, not {max_diff}")
     return round(max_diff * 1e9)
 
 

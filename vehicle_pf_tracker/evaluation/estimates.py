@@ -23,7 +23,7 @@ REJECTED = "REJECTED"
 
 @dataclass(frozen=True, slots=True)
 class EstimateRow:
-    """What was estimated in one frame.
+    """The estimate of one frame.
 
     Attributes
     ----------
@@ -38,9 +38,9 @@ class EstimateRow:
     mode : str
         ``TRACKING``, ``OCCLUDED``, ``LOST``, or `WAITING` or `REJECTED`.
     confidence : float or None
-        0 to 1.
+        Confidence of the estimate, 0 to 1.
     n_eff : float or None
-        Effective sample size.
+        Effective sample size of the particles.
     step_ms : float or None
         Time that the step took, in ms.
     """
@@ -67,7 +67,7 @@ class EstimateRow:
         Raises
         ------
         InputError
-            If there is no mode, or the text of a number is none.
+            If there is no mode, or the text of a number is not one.
         """
         if "mode" not in scalars:
             raise InputError(f"the estimate of frame {frame} has no mode")
@@ -81,7 +81,7 @@ class EstimateRow:
 
     @property
     def position(self) -> tuple[float, float] | None:
-        """Centre (x, y) in px, None where there is no estimate."""
+        """Centre (x, y) in px; None where there is no estimate."""
         return None if self.x is None or self.y is None else (self.x, self.y)
 
 
@@ -110,7 +110,7 @@ def write_estimates(
 
 
 def read_estimates(path: Path) -> list[EstimateRow]:
-    """Read the rows of the file `path`; columns after those of `EstimateRow` are passed over.
+    """Read the rows of the file `path`; columns after those of `EstimateRow` are ignored.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def read_estimates(path: Path) -> list[EstimateRow]:
     try:
         text = Path(path).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is no text"
+        reason = getattr(error, "strerror", None) or "it is not text"
         raise InputError(f"cannot read the estimates {path}: {reason}") from error
     header, *lines = list(csv.reader(io.StringIO(text))) or [[]]
     if tuple(header[: len(COLUMNS)]) != COLUMNS:
@@ -143,7 +143,7 @@ def _number(name: str, value: float | str) -> float | None:
     try:
         return float(value)
     except ValueError:
-        raise InputError(f"{name} is no number: {value!r}") from None
+        raise InputError(f"{name} is not a number: {value!r}") from None
 
 
 def _text(value: float | str | None) -> str:
@@ -161,7 +161,7 @@ def interpolate_occlusions(rows: Sequence[EstimateRow]) -> list[Point | None]:
     Parameters
     ----------
     rows : sequence of EstimateRow
-        In the order of the recording.
+        Estimates in the order of the recording.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A recording with its images, its truth and what trackers made of it, for Foxglove or evo."""
+"""Recordings of images, truth and the estimates of trackers, for Foxglove or evo."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def write_with_estimates(
     Parameters
     ----------
     folder : Path
-        The rosbag2 folder to make.
+        The rosbag2 folder to write.
     recording : Recording
-        Its images and truth are copied as they are.
+        The recording whose images and truth are copied as they are.
     runs : mapping of str to rows
         Estimates by node name; they go to ``/<name>/position``, ``/<name>/box`` and
         ``/<name>/mode``, as the node publishes them.

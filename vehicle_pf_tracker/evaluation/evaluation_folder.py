@@ -1,4 +1,4 @@
-"""A recording as the plan of an evaluation names it."""
+"""A recording of the plan."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class Source:
     Attributes
     ----------
     name : str
-        Its name in all tables, and of its folders.
+        Name of the recording in all tables, and of its folders.
     path : str
-        Path or URL.
+        Path or URL of the recording.
     topic : str
         The image topic.
     frames, width, height : int
-        How many images it has, and their size in px.
+        Number of images, and their size in px.
     digest : str
         SHA-256 of its content.
     """
@@ -64,7 +64,7 @@ class Source:
         )
 
     def to_json(self) -> dict[str, Any]:
-        """Everything as plain values."""
+        """Return plain values for JSON."""
         return asdict(self)
 
 
@@ -120,7 +120,7 @@ def _row(path: Path, number: int, line: Mapping[str, str]) -> tuple[int, Truth]:
 
 
 FORMAT = 2
-"""Of the folder; 1 called a baseline a peer, and had no digests of the cells."""
+"""Format of the folder; 1 called a baseline a peer, and had no digests of the cells."""
 PLAN, FAILED = "evaluation.json", "failed.json"
 TIMINGS = "timings.json"
 TRUTH = "truth.csv"
@@ -128,20 +128,20 @@ TRUTH = "truth.csv"
 
 @dataclass(frozen=True, slots=True)
 class SystemEntry:
-    """A system as the plan names it.
+    """A system of the plan.
 
     Attributes
     ----------
     label : str
-        Its name in all tables.
+        Name of the system in all tables.
     kind : str
         The variant, or the baseline as ``baseline:<name>``.
     parameter_set : str
-        Where its parameters are from; empty for the defaults.
+        Label of its parameter set; empty for the defaults.
     overrides, parameters : mapping of str to Any
-        What was set apart from that, and everything in effect.
+        Parameters set on the command line, and all parameters in effect.
     seeds : tuple of int or None
-        Its seeds; the first alone for a system that draws nothing. None takes those of the plan.
+        Seeds of its runs; only the first for a deterministic system. None takes those of the plan.
     """
 
     label: str
@@ -175,18 +175,18 @@ class EvaluationFolder:
     Attributes
     ----------
     plan : mapping of str to Any
-        `evaluation.json` as it is.
+        Content of `evaluation.json`.
     recordings : tuple of Source
-        In the order of the plan.
+        See the plan for the order.
     systems : tuple of SystemEntry
-        In the order of the plan.
+        See the plan for the order.
     seeds : tuple of int
-        In the order of the plan.
+        See the plan for the order.
 
     Raises
     ------
     InputError
-        If it is no such folder, or the plan lacks something.
+        If it is not such a folder, or the plan lacks something.
     """
 
     def __init__(self, path: Path) -> None:
@@ -248,16 +248,16 @@ def read_document(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If it cannot be read, or is none.
+        If it cannot be read, or is not a JSON object.
     """
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror}") from error
     except ValueError as error:
-        raise InputError(f"{path} is no JSON: {error}") from error
+        raise InputError(f"{path} is not JSON: {error}") from error
     if not isinstance(document, dict):
-        raise InputError(f"{path} holds no JSON object")
+        raise InputError(f"{path} does not hold a JSON object")
     return document
 
 

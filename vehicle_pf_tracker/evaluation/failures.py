@@ -22,27 +22,27 @@ from vehicle_pf_tracker.evaluation.estimates import WAITING, EstimateRow
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 
 RESTART_AFTER = 5
-"""Frames from a failure to the first in which the tracker may be started anew."""
+"""Frames from a failure to the first possible re-start: VOT's value (Kristan et al. 2016)."""
 BURN_IN = 10
-"""Frames from a start that say little about accuracy, the start itself among them."""
+"""Frames from a start left out of the accuracy: VOT's value (Kristan et al. 2016)."""
 ROBUSTNESS_FRAMES = 30
-"""Robustness is the chance to live through so many frames."""
+"""Frames of which robustness is the probability to survive them: VOT's S = 30."""
 
 
 @dataclass(frozen=True, slots=True)
 class RestartedRun:
-    """What a run with re-starts is worth.
+    """Score of a run with re-starts.
 
     Attributes
     ----------
     failures : int
-        How often the track failed.
+        Number of failures.
     frames : int
         Scored frames that were tracked: those between a failure and the next start are left out.
     accuracy : float or None
         Mean overlap, 0 to 1, over tracked frames that are not hidden and past the burn-in.
     robustness : float or None
-        ``exp(-30 failures / frames)``: the chance to live through 30 frames.
+        ``exp(-30 failures / frames)``: the probability to survive 30 frames.
     """
 
     failures: int
@@ -52,7 +52,7 @@ class RestartedRun:
 
 
 def is_failure(frame: FrameScore) -> bool:
-    """Whether the estimate misses a vehicle that can be seen; False where nothing is scored."""
+    """Return whether the estimate misses a visible vehicle; False where nothing is scored."""
     return frame.counts and not frame.hidden and not frame.overlap
 
 
@@ -72,7 +72,7 @@ def restart_index(frames: Sequence[FrameScore], failure: int) -> int | None:
 
 
 def count_failures(frames: Sequence[FrameScore]) -> int:
-    """Count the stretches of failures in a run that nobody re-started.
+    """Count the stretches of failures in a run without re-starts.
 
     Frames in which the vehicle is hidden or the truth is unknown do not end a stretch.
     """
@@ -88,7 +88,7 @@ def score_restarts(frames: Sequence[FrameScore], starts: Sequence[int]) -> Resta
     frames : sequence of FrameScore
         The whole recording; each frame with the estimate of the start before it.
     starts : sequence of int
-        In order; from the second on each follows a failure.
+        Indices in order; from the second on each follows a failure.
     """
     ends = [*starts[1:], len(frames)]
     failures, tracked, overlaps = 0, 0, list[float]()
@@ -125,7 +125,7 @@ class _Follower(Protocol):
 def follow_restarted(
     footage: _Footage, make: Callable[[Truth], _Follower], max_diff: float
 ) -> tuple[list[EstimateRow], dict[str, Any]]:
-    """Follow through a recording, started anew on the truth after each failure.
+    """Track through a recording, started anew on the truth after each failure.
 
     Between a failure and the next start the rows are ``WAITING``.
 
@@ -134,7 +134,7 @@ def follow_restarted(
     footage : Footage
         The recording.
     make : callable
-        Makes what follows the vehicle, from the truth to start on.
+        Makes the tracker of the vehicle, from the truth to start on.
     max_diff : float
         Largest difference of stamps that belong together, in s.
 

@@ -1,4 +1,4 @@
-"""What a run is worth, in numbers.
+"""Metrics of a run.
 
 Scored are the frames that have truth, from the frame on in which the target was set. Hidden frames
 are those in which it is totally occluded, visible ones the rest. What stands for an estimate that
@@ -49,15 +49,15 @@ class Metrics:
     frames_standing : int
         Scored frames without an estimate, in which the last one stands.
     rmse_px, median_px, p95_px, max_px : float or None
-        Error of the centre over all scored frames.
+        Root mean square and quantiles of the centre's error over all scored frames.
     rmse_visible_px : float or None
-        The same over visible frames.
+        Root of the mean squared error of the centre over visible frames.
     p_error_lt_15px : float or None
         Share of scored frames with an error below 15 px.
     precision_20px : float or None
         Share of scored frames with an error of at most 20 px, as in OTB.
     precision_auc, success_auc, normalised_precision_auc : float or None
-        Areas of the curves of `curves`, over all scored frames.
+        Areas under the curves of module `curves`, over all scored frames.
     normalised_precision_20 : float or None
         Share of scored frames with a normalised error of at most 0.2, as in LaSOT.
     on_target : float or None
@@ -65,24 +65,24 @@ class Metrics:
     hidden_not_tracking : float or None
         Share of hidden frames in which the mode is not TRACKING.
     visible_tracking : float or None
-        Share of visible frames in which it is.
+        Share of visible frames in which the mode is TRACKING.
     occluded_precision : float or None
         Share of the scored frames with the mode OCCLUDED that are hidden.
     occluded_precision_partial : float or None
-        The same, where a partial occlusion counts too.
+        Share of the scored frames with the mode OCCLUDED that are hidden or partially occluded.
     occluded_recall : float or None
         Share of hidden frames with the mode OCCLUDED; LOST is no such claim.
     lost_hidden, lost_visible : int
         Hidden and visible frames with the mode LOST.
     failures : int
-        Times that the estimate came to have nothing in common with a visible vehicle; see
+        Number of times that the estimate lost all overlap with a visible vehicle; see
         `failures`.
     frames_by_mode : mapping of str to int
-        Number of frames, scored or not.
+        Number of frames by mode, scored or not.
     step_ms_p50, step_ms_p95 : float or None
-        Time of a step in ms.
+        Median and 95 % quantile of the time of a step, ms.
     occlusions : tuple of OcclusionScore
-        The total occlusions in order.
+        Scores of the total occlusions in order.
     """
 
     frames: int
@@ -118,11 +118,11 @@ class Metrics:
 
     @property
     def recovered(self) -> tuple[bool | None, ...]:
-        """For each total occlusion whether the track recovered; None where that is not judged."""
+        """Recovery of the track after each total occlusion; None where that is not judged."""
         return tuple(occlusion.recovered for occlusion in self.occlusions)
 
     def to_json(self) -> dict[str, Any]:
-        """Everything as plain values, `recovered` and the number not judged beside it."""
+        """Return plain values for JSON, with `recovered` and the number not judged."""
         return {
             **asdict(self),
             "recovered": list(self.recovered),
@@ -157,7 +157,7 @@ def measure(scores: Scores) -> Metrics:
 
 
 def is_on_target(frame: FrameScore) -> bool:
-    """Whether the error is below half the true box's diagonal."""
+    """Return whether the error is below half the true box's diagonal."""
     if frame.truth is None or frame.error is None:
         return False
     return frame.error < frame.truth.box.diagonal / 2

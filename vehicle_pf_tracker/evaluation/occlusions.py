@@ -1,4 +1,4 @@
-"""What became of the track in each total occlusion."""
+"""Recovery of the track from each total occlusion."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.evaluation.scores import FrameScore
 
 SETTLING_FRAMES = 15
-"""A track is judged from so many frames after the last hidden one."""
+"""Frames after the last hidden one before a track is judged: half a second at 30 Hz, in which a
+tracker may re-detect the vehicle."""
 FEWEST_JUDGED = 5
-"""With fewer frames than this to judge by, nothing is said."""
+"""Fewest frames that a recovery is judged by: the mean of fewer says more of noise."""
 CLOSE_PX = 15.0
-"""Errors below this many px count as on the vehicle, however small it is."""
+"""Error in px that counts as on the vehicle, however small it is: the threshold of
+Scharcanski et al. 2011, section IV, P(error < 15 px)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,19 +25,19 @@ class OcclusionScore:
     Attributes
     ----------
     first_frame, last_frame : int
-        The first and the last hidden frame.
+        Numbers of the first and the last hidden frame.
     hidden_frames : int
-        How many frames with truth are hidden.
+        Number of hidden frames with truth.
     error_inside_px : float or None
-        Mean error over them.
+        Mean error over the hidden frames.
     judged_frames : int
         Frames from `SETTLING_FRAMES` after `last_frame` until the next total occlusion or the end.
     error_after_px : float or None
-        Mean error over those.
+        Mean error over the judged frames.
     threshold_px : float or None
         Mean over them of the larger of `CLOSE_PX` and half the true box's diagonal.
     recovered : bool or None
-        Whether `error_after_px` is below `threshold_px`; None where there are fewer than
+        True if `error_after_px` is below `threshold_px`; None where there are fewer than
         `FEWEST_JUDGED` frames to judge by.
     error_at_exit_px : float or None
         Error in the first frame after `last_frame`.

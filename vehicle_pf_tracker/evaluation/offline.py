@@ -25,13 +25,13 @@ class OfflineTracker:
     Parameters
     ----------
     variant : Variant
-        From the registry.
+        Entry of the registry.
     parameters : Any
         An instance of `variant.parameters`.
     settings : SessionParameters
         A target in them is started on in the first frame.
     first_truth : Truth or None
-        Without such a target: its box is started on in the frame that its stamp belongs to, and
+        Start without such a target: its box, in the frame that its stamp belongs to;
         the frames before are waited through.
     max_diff : float
         Largest difference of stamps that belong together, in s.
@@ -43,7 +43,7 @@ class OfflineTracker:
     start_frame : int or None
         Number of the frame that the target was first set in; None until then.
     notices : list of str
-        What was remarkable, a sentence each.
+        Irregularities, a sentence each.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class OfflineTracker:
         Raises
         ------
         InputError
-            If the target is none in the frame to start in, or no frame belongs to the first truth.
+            If the target is invalid in the first frame, or no frame belongs to the first truth.
         """
         stamped = itertools.chain(frames, [None])
         for number, (current, following) in enumerate(itertools.pairwise(stamped), start=1):
@@ -84,7 +84,7 @@ class OfflineTracker:
             )
 
     def _is_start(self, stamp_ns: int, next_ns: int | None) -> bool:
-        """Tell whether the image at `stamp_ns` is the one nearest to the first truth."""
+        """Return whether the image at `stamp_ns` is the one nearest to the first truth."""
         if self._first_truth is None:
             return False
         distance = abs(stamp_ns - self._first_truth.stamp_ns)

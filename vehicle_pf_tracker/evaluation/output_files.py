@@ -15,7 +15,7 @@ from vehicle_pf_tracker.core.errors import InputError
 
 @contextmanager
 def output_errors(path: Path) -> Iterator[None]:
-    """Tell what the system refuses as a mistake about `path`."""
+    """Report errors of the operating system as an `InputError` about `path`."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Pictures of runs, readable in grey and for colour-blind eyes."""
+"""Figures of runs, readable in grey and for colour-blind readers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
 
 
 class Style(NamedTuple):
-    """How one series is drawn."""
+    """Colour, line and marker of one series."""
 
     colour: str
     line: str | tuple[int, tuple[int, ...]]
@@ -39,7 +39,7 @@ STYLES = (
 )
 _SHADES = {Occlusion.PARTIAL: ("0.93", "partly hidden"), Occlusion.TOTAL: ("0.78", "hidden")}
 _LEAST_ERROR = 0.5
-"""Errors below this, in px, are drawn at the foot of the logarithmic scale."""
+"""Foot of the logarithmic scale, px: smaller errors are below the truth's own precision."""
 _MARKER_EVERY = 20
 _DPI = 150
 _DASHED = (0, (2, 1.4))

@@ -24,7 +24,7 @@ ResultT = TypeVar("ResultT")
 
 @dataclass(frozen=True, slots=True)
 class Turn(Generic[TaskT, ResultT]):
-    """What happened: a task came to its end, or (None) new ones began; and those that run now."""
+    """An event: a task that ended, or None where new ones began; and the tasks running now."""
 
     ended: tuple[TaskT, ResultT] | None
     running: tuple[TaskT, ...]
@@ -38,11 +38,11 @@ def run_in_processes(
     Parameters
     ----------
     function : callable
-        Of a module, so that a process can find it.
+        Top-level function of a module, so that a process can import it.
     tasks : sequence
-        Begun in this order.
+        Tasks in the order of their start.
     workers : int
-        Processes.
+        Number of processes.
 
     Raises
     ------

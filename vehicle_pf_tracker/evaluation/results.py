@@ -24,18 +24,18 @@ from vehicle_pf_tracker.trackers.session import Session
 
 @dataclass(frozen=True, slots=True)
 class RunInfo:
-    """How a run was made.
+    """Provenance of a run.
 
     Attributes
     ----------
     command : sequence of str
-        The command line; empty where there was none.
+        Command line; empty where there was none.
     recording, image_topic : str
-        What was read; the topic is empty where frames came from memory.
+        Source of the images; the topic is empty where frames came from memory.
     start_frame : int or None
         Number of the frame that the target was first set in.
     notices : sequence of str
-        What was not as it should be, a sentence each.
+        Irregularities, a sentence each.
     """
 
     command: Sequence[str]
@@ -69,7 +69,7 @@ def describe_run(info: RunInfo, session: Session) -> dict[str, Any]:
 
 
 def versions() -> dict[str, str | None]:
-    """Return the versions of what decides about the numbers; None for what is not installed."""
+    """Return the versions that determine the numbers; None for packages not installed."""
     return {
         "vehicle_pf_tracker": __version__,
         "python": platform.python_version(),
@@ -91,12 +91,12 @@ ESTIMATES, METRICS, RUN = "estimates.csv", "metrics.json", "run.json"
 
 
 class ResultFolder:
-    """Takes the results of one run; those of an earlier run are never left beside them.
+    """Writes the results of one run; those of an earlier run are never left beside them.
 
     Parameters
     ----------
     path : Path
-        Made where it is missing.
+        The folder; made where it is missing.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Each frame's estimate held against its truth.
+"""Scores of each frame's estimate against its truth.
 
 One rule serves all systems. What a system estimates is scored as it stands, whatever mode it
 claims. Where it gives no estimate, its last one stands: silence neither helps nor hurts more than
@@ -25,11 +25,11 @@ class FrameScore:
     Attributes
     ----------
     row : EstimateRow
-        What was estimated in this frame.
+        Estimate of this frame.
     truth : Truth or None
-        None where it is not known.
+        Truth of this frame; None where it is unknown.
     standing : EstimateRow or None
-        The last row before with an estimate, which stands where `row` has none.
+        Last earlier row with an estimate, which is scored where `row` has none.
     """
 
     row: EstimateRow
@@ -38,17 +38,17 @@ class FrameScore:
 
     @property
     def waiting(self) -> bool:
-        """Whether there was no target yet."""
+        """True if there was no target yet."""
         return self.row.mode == WAITING
 
     @property
     def counts(self) -> bool:
-        """Whether the frame is scored: there is truth, and a target to follow."""
+        """True if the frame is scored: there is truth, and a target to track."""
         return self.truth is not None and not self.waiting
 
     @property
     def hidden(self) -> bool:
-        """Whether the vehicle is totally occluded; False without truth."""
+        """True if the vehicle is totally occluded; False without truth."""
         return self.truth is not None and self.truth.occlusion is Occlusion.TOTAL
 
     @property
@@ -58,7 +58,7 @@ class FrameScore:
 
     @property
     def stands_still(self) -> bool:
-        """Whether the last estimate is scored for want of one of this frame."""
+        """True if an earlier estimate is scored because this frame has none."""
         return self.standing is not None and not _is_estimate(self.row)
 
     @property
@@ -69,7 +69,7 @@ class FrameScore:
 
     @property
     def normalised_error(self) -> float | None:
-        """The same in widths and heights of the true box (Mueller et al. 2018, TrackingNet)."""
+        """Error of the centre in sizes of the true box (Mueller et al. 2018, TrackingNet)."""
         offset = self._offset
         if offset is None or self.truth is None or self.truth.box.area <= 0:
             return None
@@ -105,7 +105,7 @@ def overlap(one: Box, other: Box) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """All frames of a recording, in its order, and how many truths have no frame."""
+    """All frames of a recording in order, and the number of truths without a frame."""
 
     frames: tuple[FrameScore, ...]
     truths_unmatched: int = 0
@@ -119,14 +119,14 @@ class Scores:
 def score_frames(
     rows: Sequence[EstimateRow], truths: Sequence[Truth], max_diff: float = MAX_DIFF
 ) -> Scores:
-    """Hold estimates against truth by stamp.
+    """Score estimates against truth, associated by stamp.
 
     Parameters
     ----------
     rows : sequence of EstimateRow
         One per frame.
     truths : sequence of Truth
-        May be empty: then nothing has an error.
+        True states of the vehicle; if empty, nothing has an error.
     max_diff : float
         Largest difference of stamps that belong together, in s.
 
@@ -150,7 +150,7 @@ def score_frames(
 
 
 def _standing(rows: Sequence[EstimateRow]) -> Iterator[EstimateRow | None]:
-    """For each row the last estimate before it; a new wait for a target forgets it."""
+    """Yield for each row the last estimate before it; waiting for a target discards it."""
     last: EstimateRow | None = None
     for row in rows:
         if row.mode == WAITING:

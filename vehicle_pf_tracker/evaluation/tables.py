@@ -42,7 +42,7 @@ class Comparison:
     lines: tuple[MetricRow, ...]
 
     def to_rich(self) -> RichTable:
-        """For a terminal."""
+        """Return the table for a terminal."""
         # As `Text`, since a name in brackets would be taken for a style otherwise.
         table = RichTable("")
         for name in self.columns:
@@ -52,11 +52,11 @@ class Comparison:
         return table
 
     def to_markdown(self) -> str:
-        """For documents."""
+        """Return the table as Markdown."""
         return markdown(["", *self.columns], self._rows())
 
     def to_csv(self) -> str:
-        """For programs: every digit, and nothing where there is no value."""
+        """Return the table as CSV: every digit, and nothing where there is no value."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(["metric", "unit", *self.columns])
@@ -151,11 +151,11 @@ class SystemSummary:
     Attributes
     ----------
     label : str
-        Of the system.
+        Label of the system.
     metrics : mapping of str to list of mapping
         `metrics.json` of every cell that ran, by recording.
     reasons : tuple of str
-        Why others did not.
+        Reasons why other cells did not run.
     """
 
     label: str
@@ -163,7 +163,7 @@ class SystemSummary:
     reasons: tuple[str, ...]
 
     def mean(self, name: str) -> float | None:
-        """Mean over the recordings of the mean over their runs; None where there is none."""
+        """Return the mean over recordings of the mean over their runs; None where there is none."""
         means = []
         for runs in self.metrics.values():
             known = [run[name] for run in runs if run[name] is not None]
@@ -173,17 +173,17 @@ class SystemSummary:
 
     @property
     def runs(self) -> list[Document]:
-        """All that ran."""
+        """Metrics of all runs."""
         return [run for runs in self.metrics.values() for run in runs]
 
     def recovered(self) -> tuple[int, int]:
-        """Total occlusions recovered from, and judged."""
+        """Return the number of total occlusions recovered from, and judged."""
         judged = [r for run in self.runs for r in run["recovered"] if r is not None]
         return sum(judged), len(judged)
 
 
 def summarise_grid(plan: Plan, folder: Path) -> list[SystemSummary]:
-    """Read the cells of the grid, and put them together by system."""
+    """Summarise the cells of the grid by system."""
     cells = [cell for cell in plan.cells() if not cell.start.kind]
     return [
         _summary(system.label, [cell for cell in cells if cell.system == system], folder)
@@ -204,7 +204,7 @@ def _summary(label: str, cells: Sequence[GridCell], folder: Path) -> SystemSumma
 
 
 def grid_table(summaries: Sequence[SystemSummary]) -> RichTable:
-    """For a terminal: means over seeds and then recordings, the best success AUC first."""
+    """Return the means over seeds and then recordings, the best success AUC first."""
     columns: dict[str, Callable[[SystemSummary], str]] = {
         "RMSE, px": lambda s: _number(s.mean("rmse_px"), 1),
         "median error, px": lambda s: _number(s.mean("median_px"), 1),

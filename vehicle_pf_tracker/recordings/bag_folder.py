@@ -22,9 +22,9 @@ def recording_files(path: Path) -> tuple[list[Path], list[str]]:
     Returns
     -------
     files : list of Path
-        In the order in which they were recorded.
+        Files in the order of recording.
     notices : list of str
-        What is not as it should be but could be worked around.
+        Irregularities that could be worked around, a sentence each.
 
     Raises
     ------

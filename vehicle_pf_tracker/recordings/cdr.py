@@ -54,13 +54,13 @@ def deserialize(data: memoryview, type_name: str) -> Any:
     Raises
     ------
     InputError
-        If the bytes are no message of this type.
+        If the bytes are not a message of this type.
     """
     message_class(type_name)
     try:
         return _store().deserialize_cdr(data, type_name)
     except _BROKEN as error:
-        raise InputError(f"a message is no valid {type_name}: {error}") from error
+        raise InputError(f"a message is not a valid {type_name}: {error}") from error
 
 
 @cache
@@ -78,7 +78,7 @@ def type_hash(type_name: str) -> str:
 
 
 def starts_with_header(type_name: str, definition: str) -> bool:
-    """Tell whether a message begins with a `std_msgs/Header`, by its type or its `.msg` text."""
+    """Return whether a message begins with a `std_msgs/Header`, by its type or its `.msg` text."""
     known = _store().fielddefs.get(type_name)
     if known is not None:
         fields = known[1]

@@ -25,17 +25,17 @@ class Picture:
     Attributes
     ----------
     stamp_ns : int
-        Its stamp in ns.
+        Stamp in ns.
     frame : Frame
-        Its pixels.
+        Pixels of the image.
     name : str
-        What to call it in an error.
+        Name of the image in an error.
     coded_format : str or None
         ``jpeg`` or ``png`` where it comes as such a file; else None.
     coded : bytes
         The bytes of that file.
     truth : Truth or None
-        Where the vehicle is, if that is known.
+        True state of the vehicle; None where it is unknown.
     """
 
     stamp_ns: int
@@ -47,7 +47,7 @@ class Picture:
 
 
 class Footage(Protocol):
-    """A source of pictures: `total` of them as far as that is known, `fps` in each second."""
+    """A source of pictures: `total` of them if known, `fps` per second."""
 
     fps: float
     total: int | None
@@ -57,7 +57,7 @@ class Footage(Protocol):
         ...
 
     def notices(self) -> list[str]:
-        """Tell what was not as it should be, after reading."""
+        """Return irregularities found while reading, a sentence each."""
         ...
 
 
@@ -71,7 +71,7 @@ _REQUIRED = ("frame", "x", "y", "w", "h")
 
 @dataclass(frozen=True, slots=True)
 class TruthRow:
-    """The vehicle's box (px) in a frame, and how far it is hidden."""
+    """True box (px) of the vehicle in a frame, and its occlusion."""
 
     box: Box
     occlusion: Occlusion
@@ -88,7 +88,7 @@ def read_truth_table(path: Path) -> dict[int, TruthRow]:
     ------
     InputError
         If the table cannot be read, lacks a column, holds no box, names a frame twice, or has a
-        cell that is no number.
+        cell that is not a number.
     """
     try:
         with path.open(newline="", encoding="utf-8-sig") as stream:
@@ -96,7 +96,7 @@ def read_truth_table(path: Path) -> dict[int, TruthRow]:
     except OSError as error:
         raise InputError(f"cannot read the truth {path}: {error.strerror}") from error
     except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"the truth {path} is no table of text: {error}") from error
+        raise InputError(f"the truth {path} is not a text table: {error}") from error
 
 
 def _rows(path: Path, reader: csv.DictReader[str]) -> dict[int, TruthRow]:
@@ -127,7 +127,7 @@ def _rows(path: Path, reader: csv.DictReader[str]) -> dict[int, TruthRow]:
 def _row(place: str, cells: dict[str, str]) -> tuple[int, TruthRow | None]:
     frame, x, y, width, height = (_number(place, name, cells.get(name)) for name in _REQUIRED)
     if not frame.is_integer():
-        raise InputError(f"{place} has no whole number as its frame")
+        raise InputError(f"{place} has no integer as its frame")
     values = (x, y, width, height)
     if not all(map(math.isfinite, values)) or width <= 0 or height <= 0:
         return int(frame), None
@@ -152,4 +152,4 @@ def _number(place: str, name: str, cell: str | None) -> float:
     try:
         return float(cell)
     except ValueError:
-        raise InputError(f"{place} has {cell!r} as {name}, which is no number") from None
+        raise InputError(f"{place} has {cell!r} as {name}, which is not a number") from None

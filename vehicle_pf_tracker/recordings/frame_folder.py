@@ -56,7 +56,7 @@ class FrameFolder:
             yield _picture(path, stamp, self.truth.get(number))
 
     def notices(self) -> list[str]:
-        """Tell of truth without an image."""
+        """Report truth without an image."""
         lost = len(self.truth.keys() - self.images.keys())
         return [f"frames of the truth without an image: {lost}"] if lost else []
 

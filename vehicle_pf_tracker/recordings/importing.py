@@ -1,4 +1,4 @@
-"""Making recordings of video files and frame folders."""
+"""Import video files and frame folders as recordings."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ JPEG_QUALITY = 95
 
 @dataclass(frozen=True, slots=True)
 class ImportSummary:
-    """What was imported.
+    """Summary of an import.
 
     Attributes
     ----------
     path : Path
-        The recording.
+        Path of the recording.
     frames, truths : int
         Number of images, and of those with truth.
     fps : float
@@ -34,7 +34,7 @@ class ImportSummary:
     width, height : int
         Size of the images in px.
     notices : tuple of str
-        What was not as it should be, a sentence each.
+        Irregularities, a sentence each.
     """
 
     path: Path
@@ -55,7 +55,7 @@ def import_recording(
     progress: Callable[[int, int | None], None] | None = None,
     overwrite: bool = False,
 ) -> ImportSummary:
-    """Make a recording of a video file, or of a frame folder and its truth.
+    """Import a video file, or a frame folder with its truth, as a recording.
 
     Parameters
     ----------

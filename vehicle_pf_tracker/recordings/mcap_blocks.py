@@ -45,13 +45,13 @@ class Block:
     Attributes
     ----------
     offset, length : int
-        Place of the record in the file, in bytes, its head included.
+        Position and size of the record in the file, bytes, its head included.
     start_ns, end_ns : int
-        Smallest and largest log time in it.
+        Smallest and largest log time in ns.
     channels : frozenset of int or None
-        The channels that have messages in it; None where that is not known.
+        Channels that have messages in it; None where unknown.
     is_cut : bool
-        The file ends within this block.
+        True if the file ends within this block.
     """
 
     offset: int

@@ -48,15 +48,15 @@ class McapIndex:
     path : Path
         The file.
     channels, schemas : dict
-        By their numbers in the file.
+        Channels and schemas by their numbers in the file.
     blocks : list of Block
-        In the order of the file.
+        Blocks in the order of the file.
     counts : Counter
         Number of messages by channel.
     is_truncated : bool
-        The file was cut: it lacks its end, or stops within a record.
+        True if the file was cut: it lacks its end, or stops within a record.
     damages : list of str
-        What else could not be read, one clause each.
+        Other unreadable parts, one clause each.
     """
 
     path: Path
@@ -69,14 +69,14 @@ class McapIndex:
 
 
 def read_index(path: Path) -> McapIndex:
-    """Find out where the messages of an MCAP file are.
+    """Locate the messages of an MCAP file.
 
     A whole file tells it in its summary. A file without one is read once from begin to end.
 
     Raises
     ------
     InputError
-        If the file cannot be opened or is no MCAP file.
+        If the file cannot be opened or is not an MCAP file.
     """
     try:
         with path.open("rb") as stream:
@@ -136,7 +136,7 @@ def _has_true_checksum(stream: BinaryIO, tail: bytes, size: int) -> bool:
 
 
 def _is_complete(summary: Summary, counts: Counter[int], size: int) -> bool:
-    """Tell whether the channels, schemas and chunks of all messages are listed and in the file."""
+    """Return whether channels, schemas and chunks of all messages are listed and in the file."""
     statistics, chunks = summary.statistics, summary.chunk_indexes
     return (
         statistics is not None
@@ -154,7 +154,7 @@ def _is_complete(summary: Summary, counts: Counter[int], size: int) -> bool:
 
 
 class _Scan:
-    """One pass over a file that says nothing, or nothing true, about its content."""
+    """One pass over a file whose summary is missing or wrong."""
 
     def __init__(self, path: Path, stream: BinaryIO, size: int) -> None:
         self.path, self.stream, self.size = path, stream, size
@@ -245,11 +245,11 @@ def merged_messages(
     files : sequence of McapIndex
         The files, in the order of the recording.
     topics : collection of str or None
-        The topics wanted; None for all.
+        Topics to read; None for all.
     first_ns, end_ns : int
-        Log times wanted: first_ns <= time < end_ns, in ns.
+        Log times to read: first_ns <= time < end_ns, in ns.
     on_damage : callable
-        Told about a block that cannot be read; reading goes on after it.
+        Called with a block that cannot be read; reading goes on after it.
     """
     wanted = [_channels(index, topics) for index in files]
     heap = _wanted_blocks(files, wanted, first_ns, end_ns)

@@ -146,7 +146,7 @@ def _box_of(stamp_ns: int, by_topic: dict[str, Any]) -> Box:
     points = by_topic[topics.TRUTH_BOX_TOPIC].polygon.points
     xs, ys = [point.x for point in points], [point.y for point in points]
     if len(points) < 3 or not all(map(math.isfinite, xs + ys)):
-        raise InputError(f"the truth box at stamp {stamp_ns} ns is no polygon of finite corners")
+        raise InputError(f"the truth box at stamp {stamp_ns} ns is not a polygon of finite corners")
     width, height = max(xs) - min(xs), max(ys) - min(ys)
     if width <= 0 or height <= 0:
         raise InputError(f"the truth box at stamp {stamp_ns} ns has no area")
@@ -166,6 +166,6 @@ def _occlusion_of(stamp_ns: int, message: Any) -> tuple[Occlusion, float | None]
     except (KeyError, ValueError):
         raise InputError(
             f"the truth mode at stamp {stamp_ns} ns has no occlusion none, partial or total, "
-            "or its visible_fraction is no number"
+            "or its visible_fraction is not a number"
         ) from None
     return occlusion, visible if math.isfinite(visible) else None

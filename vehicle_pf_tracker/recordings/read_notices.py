@@ -1,4 +1,4 @@
-"""What was not as it should be in a recording, as sentences for its reader."""
+"""Irregularities of a recording, as sentences for its reader."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from vehicle_pf_tracker.recordings.mcap_index import McapIndex
 
 
 class ReadNotices:
-    """Collects what is found while a recording is read; each thing counts once.
+    """Collects irregularities while a recording is read; each counts once.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ class ReadNotices:
     image_topic : str
         The topic whose images are counted.
     found : iterable of str
-        What was found before, a sentence each.
+        Irregularities found before, a sentence each.
     """
 
     def __init__(self, path: Path, image_topic: str, found: Iterable[str]) -> None:
@@ -32,7 +32,7 @@ class ReadNotices:
 
     @property
     def sentences(self) -> list[str]:
-        """Everything so far."""
+        """Sentences collected so far."""
         sentences = [*self._sentences, *self._damages.values()]
         if self._unreadable:
             sentences.append(
@@ -43,7 +43,7 @@ class ReadNotices:
 
     @property
     def first_reason(self) -> str:
-        """Why the first image, or else the first part, could not be read."""
+        """Reason why the first image, or else the first part, could not be read."""
         return next(iter([*self._unreadable.values(), *self._damages.values()]))
 
     def add_files(self, files: Iterable[McapIndex]) -> None:

@@ -1,4 +1,4 @@
-"""Reading recordings: rosbag2 folders and bare MCAP files."""
+"""Read recordings: rosbag2 folders and bare MCAP files."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ from vehicle_pf_tracker.recordings.read_notices import ReadNotices
 from vehicle_pf_tracker.recordings.topic_table import TopicInfo, choose_image_topic, list_topics
 
 _UNREADABLE_IN_A_ROW = 10
-"""So many unreadable images at the very beginning mean that none can be read."""
+"""Unreadable images at the beginning after which reading stops: a recording of another encoding
+fails after a third of a second of video, and one damaged image does not end it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,9 +42,9 @@ class RecordedMessage:
     Attributes
     ----------
     topic, type_name : str
-        Its topic and its type, empty where the recording does not say the type.
+        Topic and type; the type is empty where the recording does not state it.
     log_time_ns : int
-        When it was recorded, in ns.
+        Time of recording, ns.
     stamp_ns : int or None
         Stamp of its header in ns; None where its type has no header.
     data : bytes
@@ -73,11 +74,11 @@ class Recording:
     Attributes
     ----------
     path : Path
-        As given.
+        Path as given.
     image_topic, image_type : str
         The image topic chosen and its ROS type, Image or CompressedImage.
     topics : tuple of TopicInfo
-        All topics, in the order in which they were recorded first.
+        All topics, in the order of their first messages.
     start_ns, end_ns : int
         Log times of the first and the last message of any topic, in ns.
 
@@ -115,7 +116,7 @@ class Recording:
 
     @property
     def notices(self) -> list[str]:
-        """What was not as it should be, a sentence each; it grows while reading."""
+        """Irregularities, a sentence each; the list grows while reading."""
         return self._notices.sentences
 
     def frames(
@@ -128,9 +129,9 @@ class Recording:
         Parameters
         ----------
         start_offset : float
-            Begin so many seconds (log time) after the start of the recording.
+            Time to skip after the start of the recording, s of log time.
         duration : float or None
-            End so many seconds later; None reads to the end.
+            Time to read, s; None reads to the end.
 
         Raises
         ------
@@ -201,9 +202,9 @@ class Recording:
         Parameters
         ----------
         topics : collection of str or None
-            The topics wanted; None for all.
+            Topics to read; None for all.
         start_offset, duration : float
-            As for `frames`.
+            Time span, s, as for `frames`.
         """
         types = {info.name: info for info in self.topics}
         for index, message in self._select(topics, start_offset, duration):
@@ -231,7 +232,7 @@ class Recording:
             return StampedFrame(message.log_time_ns if stamp is None else stamp, None)
 
     def _has_truth(self) -> bool:
-        """Tell whether there is truth; raise if its topics are there but cannot hold any."""
+        """Return whether there is truth; raise if its topics are there but cannot hold any."""
         found = [info for info in self.topics if info.name in names.TRUTH_TOPICS]
         for info in found:
             expected = messages.TRUTH_TYPES[info.name]
@@ -282,5 +283,5 @@ def _decode(type_name: str, data: memoryview) -> StampedFrame:
 
 def _nanoseconds(name: str, seconds: float) -> int:
     if not math.isfinite(seconds) or seconds < 0:
-        raise InputError(f"the {name} must be a number of seconds from 0, not {seconds}")
+        raise InputError(f"the {name} must be a number of seconds >= 0, not {seconds}")
     return round(seconds * 1e9)

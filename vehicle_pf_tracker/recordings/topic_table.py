@@ -1,4 +1,4 @@
-"""The topics of a recording, and which of them is the camera's."""
+"""The topics of a recording, and the choice of its image topic."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class TopicInfo:
 
     @property
     def is_image(self) -> bool:
-        """Whether these are images that we can read."""
+        """True if these are images that we can read."""
         return self.is_cdr and self.type_name in IMAGE_TYPES
 
 

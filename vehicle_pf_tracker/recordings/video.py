@@ -36,7 +36,7 @@ class VideoFile:
     Raises
     ------
     InputError
-        If the file is no video, has no frame, or states no frame rate, or the truth is none.
+        If the file is not a video, has no frame or no frame rate, or the truth is invalid.
     """
 
     def __init__(self, path: Path, truth: Path | None = None) -> None:
@@ -68,7 +68,7 @@ class VideoFile:
             raise InputError(f"no frame of the video {self._path} can be decoded")
 
     def notices(self) -> list[str]:
-        """Tell whether the file has fewer frames than it states, and of truth without a frame."""
+        """Report fewer frames than the file states, and truth without a frame."""
         told = []
         if self.total is not None and self._read < self.total:
             told.append(
@@ -81,7 +81,7 @@ class VideoFile:
         with _quiet():
             video = cv2.VideoCapture(str(self._path), _backend())
         if not video.isOpened():
-            raise InputError(f"{self._path} is no video file that can be decoded")
+            raise InputError(f"{self._path} is not a video file that can be decoded")
         return video
 
 

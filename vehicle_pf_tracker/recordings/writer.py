@@ -29,7 +29,7 @@ from vehicle_pf_tracker.recordings.cdr import definition, serialize, type_hash
 
 @contextmanager
 def output_errors(folder: Path) -> Iterator[None]:
-    """Tell what the system refuses as a mistake about `folder`."""
+    """Report errors of the operating system as an `InputError` about `folder`."""
     try:
         yield
     except OSError as error:

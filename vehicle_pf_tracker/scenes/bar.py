@@ -27,7 +27,7 @@ _SOURCE = "Scharcanski 2011, section IV"
 
 @dataclass(frozen=True, slots=True)
 class BarParameters:
-    """What can be chosen about the artificial video."""
+    """Parameters of the artificial video."""
 
     speed: float = parameter(
         5.0, "faster vehicles need a wider search, and the video gets shorter",

@@ -62,7 +62,7 @@ def daylight(frame: float) -> Colour:
 
 @dataclass(frozen=True, slots=True)
 class Disturbance:
-    """How badly a camera behaves.
+    """Disturbance of a camera.
 
     Attributes
     ----------

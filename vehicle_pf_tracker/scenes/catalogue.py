@@ -50,11 +50,11 @@ class SceneKind:
     Attributes
     ----------
     parameters : type
-        Frozen dataclass of what can be chosen, its fields made with `parameter`.
+        Frozen dataclass of the scene's parameters, its fields made with `parameter`.
     build : callable
         Makes the scene from an instance of `parameters` and a seed.
     summary : str
-        What is to be seen, in one line.
+        Content of the scene, in one line.
     """
 
     parameters: type[Any]
@@ -73,7 +73,7 @@ SCENES: dict[str, SceneKind] = {
     "trees": SceneKind(DriveParameters, trees, "thin crowns of trees hide parts of the target"),
     "bus": SceneKind(HidingParameters, bus, "a coach overtakes and hides the target"),
     "cross": SceneKind(DriveParameters, cross, "a coach crosses the road in front of the target"),
-    "twin": SceneKind(DriveParameters, twin, "a vehicle of the same looks drives alongside"),
+    "twin": SceneKind(DriveParameters, twin, "a vehicle of the same appearance drives alongside"),
     "dense": SceneKind(DriveParameters, dense, "full lanes; vehicles hide parts of the target"),
     "shadows": SceneKind(ShadowParameters, shadows, "strong shadows of trees across the road"),
     "illumination": SceneKind(IlluminationParameters, illumination, "a cloud passes"),
@@ -101,7 +101,7 @@ def make_scene(
     name : str
         A key of `scenes`.
     seed : int
-        At least 0. Changes textures, noise and what the scene leaves to chance.
+        Integer >= 0: changes textures, noise and all that is random in the scene.
     settings : mapping or sequence of str
         Scene parameters by name, or ``key=value`` words.
     scenes : mapping of str to SceneKind

@@ -1,4 +1,4 @@
-"""Sprites painted over an image at exact sub-pixel places and sizes, and what they hide.
+"""Sprites painted over an image at exact sub-pixel positions and sizes, and their coverage.
 
 A sprite keeps the integral of its finely drawn picture, so that the mean over any pixel is four
 look-ups, exact for every sub-pixel shift and every scale.
@@ -55,7 +55,7 @@ class PixelWindow:
 
 
 class Sprite:
-    """A picture with opacity that can be painted at any place and size.
+    """A picture with opacity that can be painted at any position and size.
 
     Parameters
     ----------
@@ -166,6 +166,6 @@ def visible_fraction(
 
 
 def overlap(one: Box, other: Box) -> bool:
-    """Tell whether the two boxes share more than an edge."""
+    """Return whether the two boxes share more than an edge."""
     across = one.x < other.x + other.width and other.x < one.x + one.width
     return across and one.y < other.y + other.height and other.y < one.y + one.height

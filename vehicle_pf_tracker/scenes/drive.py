@@ -45,7 +45,7 @@ PAINTS: tuple[Colour, ...] = (
 
 @dataclass(frozen=True, slots=True)
 class DriveParameters:
-    """What can be chosen about every drive."""
+    """Parameters of every drive."""
 
     speed: float = parameter(
         5.0, "faster vehicles need a wider search, and the video gets shorter",
@@ -80,7 +80,7 @@ class Drive:
     Parameters
     ----------
     parameters : DriveParameters
-        What was chosen.
+        Parameters of the drive.
     seed : int
         Seed of the scene.
     pace : Pace or None

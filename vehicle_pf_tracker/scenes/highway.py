@@ -23,7 +23,7 @@ from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon
 
 WIDTH, HEIGHT, FRAME_COUNT = 640, 480, 200
 START = 33
-"""Where the middle of the target starts, px from the left."""
+"""Start of the target's middle, px from the left."""
 SPEED = 2.9
 """Mean speed of the target, px/frame: it crosses the image in `FRAME_COUNT` frames."""
 OVERTAKING = 3.8
@@ -31,12 +31,12 @@ OVERTAKING = 3.8
 HIDDEN_AT = 133
 """Frame in which the middle of the lorry's box is level with the target."""
 LOAD_MIDDLE = 0.39
-"""Where along the lorry its box has its middle."""
+"""Middle of the lorry's box, as a share of its length."""
 
 
 @dataclass(frozen=True, slots=True)
 class HighwayParameters:
-    """What can be chosen about the highway."""
+    """Parameters of the highway."""
 
     noise: float = parameter(
         3.0, "more makes histograms differ from frame to frame",

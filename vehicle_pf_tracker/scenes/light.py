@@ -19,7 +19,7 @@ from vehicle_pf_tracker.scenes.textures import value_noise
 
 @dataclass(frozen=True, slots=True)
 class ShadowParameters(DriveParameters):
-    """What can be chosen about static shadows."""
+    """Parameters of static shadows."""
 
     depth: float = parameter(
         0.55, "deeper shadows change the target's colours more", minimum=0.1, maximum=0.8
@@ -28,7 +28,7 @@ class ShadowParameters(DriveParameters):
 
 @dataclass(frozen=True, slots=True)
 class IlluminationParameters(DriveParameters):
-    """What can be chosen about light that changes."""
+    """Parameters of changing light."""
 
     dimming: float = parameter(
         0.45, "the share of the light that the cloud takes away", minimum=0.05, maximum=0.8

@@ -26,7 +26,7 @@ from vehicle_pf_tracker.scenes.textures import asphalt, grass
 
 @dataclass(frozen=True, slots=True)
 class BrakingParameters(DriveParameters):
-    """What can be chosen about a change of speed out of sight."""
+    """Parameters of a change of speed during an occlusion."""
 
     change: float = parameter(
         0.6, "speed after the occlusion over that before; above 1 accelerates",
@@ -40,7 +40,7 @@ class BrakingParameters(DriveParameters):
 
 @dataclass(frozen=True, slots=True)
 class AccelerationParameters(DriveParameters):
-    """What can be chosen about a change of speed in sight."""
+    """Parameters of a change of speed while visible."""
 
     change: float = parameter(
         2.2, "highest speed over the speed at the start and at the end", minimum=1.0, maximum=3.0
@@ -114,7 +114,7 @@ TOP, BOTTOM = 0.22, 0.84
 
 @dataclass(frozen=True, slots=True)
 class ScaleParameters(DriveParameters):
-    """What can be chosen about a drive into depth."""
+    """Parameters of a drive into depth."""
 
     factor: float = parameter(
         2.5, "how many times larger the target is at its nearest than at its farthest",

@@ -98,7 +98,7 @@ def tree(
     foot : float
         Row of the ground it stands on, px.
     density : float
-        From 0 (bare) to 1 (nothing can be seen through the middle of the crown).
+        Density of the crown: 0 is bare, at 1 its middle is opaque.
     rng : numpy.random.Generator
         Source of its shape.
     """
@@ -135,7 +135,7 @@ def _lettering(
 PARAPET = 11
 """Width of the wall on each side of the deck, px."""
 SHADOW_REACH = 30
-"""How far the shadow falls to the left of the deck, px."""
+"""Reach of the shadow to the left of the deck, px."""
 
 
 def bridge(left: float, width: float, height: int, rng: np.random.Generator) -> tuple[Actor, Actor]:

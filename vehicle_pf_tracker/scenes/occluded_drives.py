@@ -24,7 +24,7 @@ from vehicle_pf_tracker.scenes.vehicles import car, coach, saloon, suv, van
 
 @dataclass(frozen=True, slots=True)
 class HidingParameters(DriveParameters):
-    """What can be chosen where one thing hides the target."""
+    """Parameters of scenes in which one obstacle hides the target."""
 
     hidden: float = parameter(
         15.0, "longer occlusions leave more to prediction",
@@ -116,7 +116,7 @@ def trees(parameters: DriveParameters, seed: int) -> Scene:
 COACH_LENGTH = 12.0
 """Metres."""
 CLEAR_FRAMES = 10
-"""So long nothing may hide the target at the start."""
+"""Frames at the start in which nothing may hide the target: trackers learn it there."""
 
 
 def coach_at(

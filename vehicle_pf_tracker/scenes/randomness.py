@@ -20,8 +20,8 @@ def check_seed(seed: int) -> int:
     Raises
     ------
     InputError
-        If it is not a whole number of at least 0.
+        If it is not an integer >= 0.
     """
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise InputError(f"the seed of a scene must be a whole number of at least 0, got {seed!r}")
+        raise InputError(f"the seed of a scene must be an integer >= 0, got {seed!r}")
     return seed

@@ -20,7 +20,7 @@ STEEL: Colour = (176, 180, 182)
 
 @dataclass(frozen=True, slots=True)
 class Lane:
-    """Where and how big vehicles are in one lane.
+    """A lane: position and scale of its vehicles.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ def guard_rail(picture: Image, top: int) -> None:
 LANE_WIDTH = 3.25
 """Metres."""
 SHOULDER = 8
-"""From the kerb to the first lane, px."""
+"""Distance from the kerb to the first lane, px."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +122,7 @@ class Carriageway:
     top : int
         First row of asphalt on the stage.
     lanes : int
-        How many.
+        Number of lanes.
     scale : float
         Size, px per metre.
     rightward : bool

@@ -1,4 +1,4 @@
-"""A scene: things on paths in front of a backdrop, seen by a camera, with exact truth."""
+"""A scene: actors on paths in front of a backdrop, seen by a camera, with exact truth."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ FIRST_STAMP_NS = 1_000_000_000
 
 
 Look: TypeAlias = Callable[[float], Sprite]
-"""Gives the sprite a thing shows at a frame number, for what changes its looks (by turning)."""
+"""Sprite by frame number, of an actor whose appearance changes (by turning)."""
 
 
 class Eye(Protocol):
-    """What takes the pictures; `camera.Camera` and `outdoor_camera.OutdoorCamera` are ones."""
+    """Interface of the cameras in module `cameras`."""
 
     def offset(self, index: int) -> tuple[float, float]:
-        """Where the image's top-left corner is on the stage in frame `index`, px."""
+        """Return the image's top-left corner on the stage in frame `index`, px."""
         ...
 
     def capture(self, picture: Image, index: int) -> Frame:
@@ -54,7 +54,7 @@ class Actor:
     Attributes
     ----------
     sprite : Sprite or Look
-        What it looks like, for good or by frame number.
+        Appearance, constant or by frame number.
     path : Path
         The box it fills on the stage, by frame number.
     hides : bool
@@ -90,7 +90,7 @@ class Scene:
     backdrop : callable
         Draws what never moves and hides nothing; called once per pass over the frames.
     actors : tuple of Actor
-        All things in the order they are painted, far to near.
+        All actors in painting order, far to near.
     target : int
         Index in `actors` of the vehicle the truth is about.
     camera : Eye

@@ -121,7 +121,7 @@ def _middles(first: int, end: int) -> Array:
 
 
 def _nearness(face: Face, x: Array, y: Array) -> tuple[Array, float]:
-    """How far towards the viewer a face is at points (x, y) of the view plane, m.
+    """Depth of a face towards the viewer at points (x, y) of the view plane, m.
 
     The second value is the depth along the view, in m, of a layer `SAME_PLACE` thick on it.
     """

@@ -32,14 +32,14 @@ PAINTS: tuple[Colour, ...] = (
 
 
 class Vehicle:
-    """A vehicle as it looks in one lane, with its shadow; drawn when first seen.
+    """The appearance of a vehicle in one lane, with its shadow; drawn when first seen.
 
     Parameters
     ----------
     faces : sequence of Face
         The solid, heading to the right.
     lane : Lane
-        Where it will drive.
+        The lane it drives in.
     """
 
     def __init__(self, faces: Sequence[Face], lane: Lane) -> None:
@@ -72,7 +72,7 @@ class Vehicle:
 
 
 Kinds: TypeAlias = tuple[Callable[[Colour], list[Face]], ...]
-"""What vehicles to choose from; each makes the solid of one colour."""
+"""Kinds of vehicles to choose from; each makes the solid of one colour."""
 
 
 def any_car(

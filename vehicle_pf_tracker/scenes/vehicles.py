@@ -113,7 +113,7 @@ def _flank(body: Contour, paint: Colour, door: float) -> list[Face]:
 
 
 _TUMBLEHOME = 0.2
-"""How far the cabin leans in from sill to roof, m."""
+"""Inward lean of the cabin from sill to roof, m."""
 
 
 def _cabin(cabin: Contour, width: float, paint: Colour) -> list[Face]:

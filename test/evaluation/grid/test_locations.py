@@ -55,6 +55,6 @@ def test_urls_that_name_nothing_are_told(far, url, said):
 def test_a_folder_far_away_without_recordings_is_told():
     memory = fsspec.filesystem("memory")
     memory.makedirs("/bare/inner")
-    with pytest.raises(InputError, match="memory://bare is no recording and has none in it"):
+    with pytest.raises(InputError, match="memory://bare is not a recording and holds none"):
         find_recordings(["memory://bare"])
     memory.rm("/bare", recursive=True)

@@ -27,7 +27,7 @@ VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 _FORMER_VARIABLE = "VEHICLE_PF_TRACKER_PEERS"
 
 DEFAULT = Path(".venv-baselines/bin/python")
-"""What `make baselines` builds, below the working directory."""
+"""Interpreter that `make baselines` builds, below the working directory."""
 
 
 def baseline_python(chosen: Path | None = None) -> Path:
@@ -64,22 +64,22 @@ MODELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "dasiamrpn": ("model", "kernel_cls1", "kernel_r1"),
     }
 )
-"""The baselines by name, and the model files that the user brings for each."""
+"""Model files that the user brings, by the name of the baseline."""
 
 _WORKER = Path(__file__).with_name("worker.py")
 
 
 class BaselineAnswer(NamedTuple):
-    """What a baseline says of one frame.
+    """A baseline's answer to one frame.
 
     Attributes
     ----------
     box : Box
-        In px; the last one known where the baseline gave the frame up.
+        Estimated box, px; the last known one where the baseline gave the frame up.
     found : bool
-        Whether the baseline claims to see its target.
+        True if the baseline claims to see its target.
     seconds : float
-        CPU of the tracking thread, without the transfer of the frame.
+        Processor time of the tracking thread, s, without the transfer of the frame.
     """
 
     box: Box
@@ -138,7 +138,7 @@ class Baseline:
             raise
 
     def start(self, frame: Frame, box: Box) -> BaselineAnswer:
-        """Begin anew on `box` (rounded to whole px, as these trackers want it) of `frame`.
+        """Start anew on `box` (rounded to whole px, as these trackers want it) of `frame`.
 
         Raises
         ------
@@ -237,8 +237,8 @@ def baseline_rows(
     """Track through (stamp in ns, frame) pairs, and give one row for each.
 
     The baseline starts on the first truth's box, in the first image that belongs to it by its
-    stamp. Where it gives up, the row is ``LOST`` at its last box. ``step_ms`` is CPU time of one
-    thread.
+    stamp. Where it gives a frame up, the row is ``LOST`` at its last box. ``step_ms`` is the
+    processor time of one thread.
 
     Raises
     ------

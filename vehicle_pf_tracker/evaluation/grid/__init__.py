@@ -1,4 +1,4 @@
-"""The grid of an evaluation: recordings by systems by seeds, each cell a run that is kept.
+"""The grid of an evaluation: recordings by systems by seeds, each cell one stored run.
 
 `sources` finds the recordings, `systems` says what follows a vehicle in them, and `plan` makes the
 cells of both. `tracking` runs one cell, `running` all that are missing, on this machine or on a

@@ -1,4 +1,4 @@
-"""Where a run starts: on the first true box, or, to see how robust it is, elsewhere.
+"""Cells of the grid, and their starts: on the first true box, or elsewhere to test robustness.
 
 Shifted starts and other first frames are those of the OTB benchmark (Wu, Lim and Yang 2013, "Online
 object tracking: a benchmark", spatial and temporal robustness evaluation); failures and re-starts
@@ -20,7 +20,7 @@ from vehicle_pf_tracker.trackers.registry import find_variant
 
 SHIFTED, FRAMES, RESTARTS = "shifted_starts", "start_frames", "restarts"
 _SHIFT = 0.1
-"""Of the box's width and height."""
+"""Shift of OTB's spatial robustness, in widths and heights of the box."""
 _SCALES = (0.8, 0.9, 1.1, 1.2)
 _SIDES = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}
 _CORNERS = {
@@ -30,25 +30,25 @@ _CORNERS = {
     "right_down": (1, 1),
 }
 _LAST_START = 0.8
-"""Share of a recording in which runs start; later ones would tell little."""
+"""Share of a recording in which runs start: a fifth of it at least is left to track."""
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Where a run starts, and whether it is started anew after failures.
+    """The start of a run.
 
     Attributes
     ----------
     kind : str
-        What it is for; empty for the grid itself.
+        Kind of robustness run it belongs to; empty for the grid itself.
     name : str
-        Which one of its kind.
+        Name among the starts of its kind.
     stamp_ns : int or None
-        Stamp of the true box it starts on; None for the first one.
+        Stamp in ns of the true box it starts on; None for the first one.
     shift : tuple of float
-        The box is moved by so many of its widths and heights.
+        Displacement of the box, in its widths and heights.
     scale : float
-        And its sides are so many times as long.
+        Factor of the box's sides.
     """
 
     kind: str = ""
@@ -63,7 +63,7 @@ class Start:
         Parameters
         ----------
         truths : sequence of Truth
-            All of the recording, in order.
+            All truths of the recording, in order.
         """
         truth = next(t for t in truths if self.stamp_ns in {None, t.stamp_ns})
         box = truth.box
@@ -76,7 +76,7 @@ class Start:
 
     @property
     def moves(self) -> bool:
-        """Whether the box is another one than the true one."""
+        """True if the box differs from the true one."""
         return self.shift != (0.0, 0.0) or self.scale != 1.0
 
 
@@ -113,7 +113,7 @@ def start_frames(truths: Sequence[Truth], count: int) -> list[Start]:
 
 
 BESIDE = "robustness"
-"""Folder of what is run beside the grid."""
+"""Folder of the robustness runs, beside the grid's cells."""
 
 _PACKAGE = "vehicle_pf_tracker"
 _SHARED = frozenset({f"{_PACKAGE}.recordings.reader"})
@@ -124,18 +124,18 @@ _STARTS = frozenset({f"{_PACKAGE}.evaluation.grid.cells", f"{_PACKAGE}.evaluatio
 
 @dataclass(frozen=True, slots=True)
 class GridCell:
-    """Says everything that its run depends on.
+    """One run: a system on a recording with a seed, from a start.
 
     Attributes
     ----------
     source : Source
         The recording.
     system : VariantSystem or BaselineSystem
-        What follows the vehicle.
+        The system that tracks the vehicle.
     seed : int
-        Of the random numbers.
+        Seed of the random numbers.
     start : Start
-        Where it starts.
+        The start of its run.
     max_diff : float
         Largest difference of stamps that belong together, in s.
     """
@@ -148,12 +148,12 @@ class GridCell:
 
     @property
     def label(self) -> str:
-        """What to call it while it runs."""
+        """Name of the cell while it runs."""
         words = (self.source.name, self.system.label, str(self.seed), self.start.kind)
         return " ".join(word for word in (*words, self.start.name) if word)
 
     def key(self) -> str:
-        """Digest all that decides its run: recording, parameters, seed, start, code, versions."""
+        """Return its cache key: recording, parameters, seed, start, code and versions."""
         facts = {
             "recording": self.source.digest,
             "topic": self.source.topic,

@@ -1,4 +1,4 @@
-"""The grid on a Dask cluster, whose workers have this package and can read the recordings."""
+"""Run the grid on a Dask cluster whose workers have this package and can read the recordings."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def on_cluster(address: str, seconds: float = 10.0) -> Runner:
     Parameters
     ----------
     address : str
-        Of the scheduler, as ``tcp://host:8786``.
+        Address of the scheduler, as ``tcp://host:8786``.
     seconds : float
-        How long to wait for it.
+        Time to wait for the scheduler, s.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The plan of an evaluation: what is compared on what, and the cells that this makes."""
+"""The plan of an evaluation: recordings, systems and seeds, and the cells they make."""
 
 from __future__ import annotations
 
@@ -33,16 +33,16 @@ from vehicle_pf_tracker.evaluation.results import versions
 
 @dataclass(frozen=True, slots=True)
 class Robustness:
-    """What is run beside the grid, to see how robust the systems are.
+    """The robustness runs, beside the grid.
 
     Attributes
     ----------
     shifted_starts : bool
-        Runs from the twelve shifted and scaled boxes of OTB.
+        True for runs from the twelve shifted and scaled boxes of OTB.
     start_frames : int
-        So many runs from other frames.
+        Number of runs from other frames.
     restarts : bool
-        Runs that are started anew after each failure, as in VOT.
+        True for runs that are started anew after each failure, as in VOT.
     """
 
     shifted_starts: bool = False
@@ -58,22 +58,22 @@ class Robustness:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is compared on what.
+    """Recordings, systems and seeds of an evaluation.
 
     Attributes
     ----------
     recordings : mapping of Source to truth
-        With each, its truth by the number of the frame.
+        Recordings, with the truth by the number of the frame.
     systems : sequence of System
-        Their labels are distinct.
+        Systems with distinct labels.
     seeds : sequence of int
-        Those of systems that have randomness; others run with the first.
+        Seeds of the systems with randomness; deterministic ones run with the first.
     command : list of str
-        The command line that makes it again.
+        Command line that repeats the evaluation.
     max_diff : float
         Largest difference of stamps that belong together, in s.
     robustness : Robustness
-        What is run beside the grid.
+        The robustness runs.
 
     Raises
     ------
@@ -134,7 +134,7 @@ class Plan:
         write_json(folder / PLAN, self.to_json())
 
     def to_json(self) -> dict[str, Any]:
-        """Everything as plain values."""
+        """Return plain values for JSON."""
         return {
             "format": FORMAT,
             "command": self.command,

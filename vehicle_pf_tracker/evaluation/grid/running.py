@@ -29,7 +29,7 @@ _PARTIAL = ".partial"
 
 
 class CellStore:
-    """Keeps cells in the folder of an evaluation.
+    """Stores cells in an evaluation folder.
 
     A cell is written beside its place and then moved there. What a killed run left half written is
     removed.
@@ -37,7 +37,7 @@ class CellStore:
     Parameters
     ----------
     folder : Path
-        Of the evaluation.
+        Folder of the evaluation.
 
     Raises
     ------
@@ -53,7 +53,7 @@ class CellStore:
                 shutil.rmtree(left, ignore_errors=True)
 
     def has(self, cell: GridCell) -> bool:
-        """Whether the cell was run, as it is to be run now; one that failed is tried again."""
+        """Return whether a valid result of the cell is stored; one that failed is tried again."""
         path = cell.folder(self._folder)
         if not all((path / name).is_file() for name in (ESTIMATES, METRICS, RUN)):
             return False
@@ -64,7 +64,7 @@ class CellStore:
         return run.get("key") == cell.key() and run.get("scored_by") == self._scoring
 
     def drop_others(self, cells: Iterable[GridCell]) -> None:
-        """Remove what is beside the grid and not among `cells`: the report shows all it finds."""
+        """Remove robustness runs that are not among `cells`: the report shows all it finds."""
         wanted = {cell.folder(self._folder) for cell in cells}
         with output_errors(self._folder):
             for name in (METRICS, FAILED):
@@ -73,7 +73,7 @@ class CellStore:
                         shutil.rmtree(path.parent)
 
     def add(self, cell: GridCell, outcome: Outcome, command: list[str]) -> None:
-        """Keep what came out of a cell, in place of what an earlier run of it left."""
+        """Store the outcome of a cell, in place of that of an earlier run."""
         place = cell.folder(self._folder)
         partial = place.with_name(f".{place.name}.{os.getpid()}{_PARTIAL}")
         with output_errors(partial):
@@ -100,7 +100,7 @@ class CellStore:
 
 
 Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[Turn[GridCell, Outcome]]]
-"""Runs cells, in any order, and tells what happens."""
+"""Runs cells, in any order, and reports each that begins or ends."""
 
 
 def on_this_machine(workers: int) -> Runner:
@@ -114,13 +114,13 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
     Parameters
     ----------
     plan : Plan
-        Is written into the folder first.
+        The plan; it is written into the folder first.
     folder : Path
-        Of the evaluation.
+        Folder of the evaluation.
     runner : callable
-        Runs them.
+        Runs the missing cells.
     on_progress : callable
-        Is told whenever a run begins or ends.
+        Called whenever a run begins or ends.
 
     Raises
     ------

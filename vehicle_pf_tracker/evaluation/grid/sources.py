@@ -26,7 +26,7 @@ _VIDEOS = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".
 
 
 def is_url(location: str) -> bool:
-    """Whether `location` is a URL, and no path."""
+    """Return whether `location` is a URL rather than a path."""
     return "://" in location
 
 
@@ -47,7 +47,7 @@ def find_recordings(locations: Sequence[str]) -> list[str]:
 
 
 def at_hand(location: str) -> Path:
-    """Return a path to read the recording from; what a URL names is copied, once per process.
+    """Return a local path of the recording; what a URL names is copied, once per process.
 
     Raises
     ------
@@ -65,12 +65,12 @@ def _at_path(path: Path) -> list[str]:
     if path.is_file() and path.suffix.lower() in _VIDEOS:
         raise InputError(f"{path} is a video; {_MAKE.format(path)}")
     if path.is_file():
-        raise InputError(f"{path} is no recording: give a rosbag2 folder or an MCAP file")
+        raise InputError(f"{path} is not a recording: give a rosbag2 folder or an MCAP file")
     if (path / "img").is_dir():
         raise InputError(f"{path} is a frame folder; {_MAKE.format(path)}")
     inside = sorted(child for child in path.iterdir() if _is_recording(child))
     if not inside:
-        raise InputError(f"the folder {path} is no recording and has none in it")
+        raise InputError(f"the folder {path} is not a recording and holds none")
     return [str(child) for child in inside]
 
 
@@ -98,7 +98,7 @@ def _at_url(url: str) -> list[str]:
 
     found = _asked(url, look)
     if not found:
-        raise InputError(f"the folder {url} is no recording and has none in it")
+        raise InputError(f"the folder {url} is not a recording and holds none")
     return [str(system.unstrip_protocol(name)) for name in found]
 
 
@@ -152,23 +152,24 @@ def _asked(url: str, question: Callable[[], T]) -> T:
 
 
 FRAMES_BYTES = 1 << 30
-"""Decoded frames that a process keeps at most; what is larger is decoded anew for each run."""
+"""Largest recording, in bytes of frames, that is decoded once: 1 GiB, a share of a small machine
+that leaves room for a worker per core. Larger ones are decoded for each run."""
 _BLOCK = 1 << 22
 
 
 class Footage:
-    """A recording at hand: its truth, and its frames as often as they are wanted.
+    """A local recording: its truth, and its frames, readable repeatedly.
 
     Attributes
     ----------
     truth : tuple of Truth
-        In order.
+        True states of the vehicle, in order.
     """
 
     def __init__(self, source: Source) -> None:
         path = at_hand(source.path)
         if _digest(path) != source.digest:
-            raise InputError(f"the recording {source.path} is another one than when it was planned")
+            raise InputError(f"the recording {source.path} has changed since it was planned")
         self._recording = Recording(path, source.topic)
         self.truth: tuple[Truth, ...] = self._recording.truth()
         size = source.frames * source.width * source.height * 3
@@ -176,7 +177,7 @@ class Footage:
 
     @property
     def notices(self) -> list[str]:
-        """What is not as it should be in the recording, a sentence each."""
+        """Irregularities of the recording, a sentence each."""
         return self._recording.notices
 
     def frames(self) -> Iterator[tuple[int, Frame | None]]:
@@ -219,7 +220,7 @@ def footage(source: Source) -> Footage:
 def describe(
     locations: Sequence[str], topic: str | None, max_diff: float
 ) -> list[tuple[Source, dict[int, Truth]]]:
-    """Look at recordings: what they are, and their truth by the number of its frame.
+    """Describe recordings, and read their truth by the number of its frame.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What follows the vehicle: a variant with its parameters, or a baseline."""
+"""Systems under comparison: a variant with its parameters, or a baseline."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ Settings = tuple[tuple[str, Value], ...]
 
 @dataclass(frozen=True, slots=True)
 class VariantSystem:
-    """A variant of ours.
+    """A variant with its parameters.
 
     Attributes
     ----------
     label : str
-        Its name in all tables.
+        Name of the system in all tables.
     variant : str
-        Its name in the registry.
+        Name of the variant in the registry.
     parameter_set : str
-        The name of its parameters; empty for the defaults.
+        Label of its parameter set; empty for the defaults.
     overrides : tuple of (str, Value)
-        What was set on the command line.
+        Parameters set on the command line.
     parameters : tuple of (str, Value)
-        Everything in effect but the seed and the target.
+        All parameters in effect but the seed and the target.
     """
 
     label: str
@@ -42,7 +42,7 @@ class VariantSystem:
 
     @property
     def is_deterministic(self) -> bool:
-        """Whether the seed has no effect: what has no particles draws nothing."""
+        """True if the seed has no effect: a variant without particles is deterministic."""
         return not issubclass(self._entry.parameters, ParticleParameters)
 
     @property
@@ -72,7 +72,7 @@ class VariantSystem:
         return changed
 
     def session_parameters(self) -> SessionParameters:
-        """Make what a stream needs besides."""
+        """Make the parameters of the session."""
         return from_mapping(SessionParameters, self._own(SessionParameters))
 
     def _own(self, kind: type[Any]) -> dict[str, Value]:
@@ -80,11 +80,11 @@ class VariantSystem:
         return {name: value for name, value in self.parameters if name in table}
 
     def facts(self, seed: int) -> dict[str, Any]:
-        """Give what decides about its runs, besides the code."""
+        """Return what determines its runs, besides the code."""
         return {"variant": self.variant, "parameters": {**dict(self.parameters), "seed": seed}}
 
     def to_json(self) -> dict[str, Any]:
-        """Everything as plain values."""
+        """Return plain values for JSON."""
         return {
             "label": self.label,
             "variant": self.variant,
@@ -104,13 +104,13 @@ class BaselineSystem:
     Attributes
     ----------
     baseline : str
-        Its name without ``baseline:``.
+        Name of the baseline without ``baseline:``.
     python : str
-        The interpreter that runs it; empty looks where `baselines.environment` says.
+        The interpreter that runs it; empty looks where `baseline_python` says.
     models : tuple of (str, str)
-        Its model files by name.
+        Model files by name.
     build : str
-        What is known of the interpreter's OpenCV, so that results of another one are not kept.
+        Version of the interpreter's OpenCV, so that results of another one are not reused.
     """
 
     baseline: str
@@ -120,16 +120,16 @@ class BaselineSystem:
 
     @property
     def label(self) -> str:
-        """Its name in all tables."""
+        """Name of the system in all tables."""
         return f"{BASELINE}{self.baseline}"
 
     @property
     def is_deterministic(self) -> bool:
-        """The seed has no effect."""
+        """True: the seed has no effect."""
         return True
 
     def facts(self, seed: int) -> dict[str, Any]:
-        """Give what decides about its runs, besides the code."""
+        """Return what determines its runs, besides the code."""
         return {"baseline": self.baseline, "models": self.models, "build": self.build, "seed": seed}
 
     def model_files(self) -> Mapping[str, Path]:
@@ -137,7 +137,7 @@ class BaselineSystem:
         return {name: Path(path) for name, path in self.models}
 
     def to_json(self) -> dict[str, Any]:
-        """Everything as plain values."""
+        """Return plain values for JSON."""
         models: dict[str, Value] = dict(self.models)
         return {
             "label": self.label,

@@ -1,4 +1,4 @@
-"""The speed of all systems, in a serial pass of its own.
+"""Measure the speed of all systems, in a serial pass of its own.
 
 Each frame is given to all systems before the next one is, so that whatever slows the machine down
 for a while slows all of them alike, and nothing of ours runs beside. What counts is the processor
@@ -36,7 +36,7 @@ from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session
 
 WARM_UP = 2
-"""First steps that are left out: they find caches cold."""
+"""First steps left out: the start, and a step that still finds caches cold."""
 
 
 def time_systems(plan: Plan, folder: Path, frames: int, on_progress: OnProgress) -> None:
@@ -45,13 +45,13 @@ def time_systems(plan: Plan, folder: Path, frames: int, on_progress: OnProgress)
     Parameters
     ----------
     plan : Plan
-        Says what to measure on what.
+        The recordings and systems to measure.
     folder : Path
-        Of the evaluation.
+        Folder of the evaluation.
     frames : int
-        At most so many of each recording, from the first true box on.
+        Largest number of frames of each recording, from the first true box on.
     on_progress : callable
-        Is told after every recording.
+        Called before every recording.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Runs a cell of the grid."""
+"""Run a cell of the grid."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ from vehicle_pf_tracker.trackers.registry import find_variant
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came out of a cell.
+    """The result of a cell.
 
     Attributes
     ----------
     rows : tuple of EstimateRow
-        One per frame.
+        Estimates, one per frame.
     run : dict
         Content of `run.json`.
     metrics : Metrics or None
-        None where it could not run.
+        Metrics of the run; None where it could not run.
     reason : str
-        Why it could not run, in a sentence; empty if it did.
+        Reason why it could not run, a sentence; empty if it did.
     restarts : dict or None
-        Where it was re-started after failures: how it went.
+        Content of `restarts.json` where it was re-started after failures.
     """
 
     rows: tuple[EstimateRow, ...] = ()
@@ -52,14 +52,14 @@ class Outcome:
 
 
 def run_cell(cell: GridCell) -> Outcome:
-    """Run a cell. What goes wrong is told in the outcome, so that the others go on."""
+    """Run a cell; a failure is reported in the outcome, so that the others go on."""
     cv2.setNumThreads(1)
     try:
         return _run(cell, footage(cell.source))
     except InputError as error:
         return Outcome(reason=str(error))
     except Exception as error:  # a fault of ours must not cost the rest of a long evaluation
-        return Outcome(reason=f"it ended with a fault of the program: {error!r}")
+        return Outcome(reason=f"it ended with an internal error: {error!r}")
 
 
 def _run(cell: GridCell, at_hand: Footage) -> Outcome:
@@ -79,10 +79,10 @@ def _run(cell: GridCell, at_hand: Footage) -> Outcome:
 
 
 class Follower(Protocol):
-    """A system at work on one recording, from one start on."""
+    """A system that tracks through one recording, from one start on."""
 
     def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]:
-        """Follow through (stamp in ns, frame) pairs, a row for each."""
+        """Track through (stamp in ns, frame) pairs, a row for each."""
         ...
 
     def describe(self, notices: list[str]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Runs drawn together: over seeds, and over recordings."""
+"""Summaries of runs: over seeds, and over recordings."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ from vehicle_pf_tracker.evaluation.statistics.paired import (
 from vehicle_pf_tracker.evaluation.statistics.ranks import Ranking, rank_systems
 
 Summaries = Mapping[str, Summary | None]
-"""By the key of a column."""
+"""Summaries by the key of a column."""
 
 
 @dataclass(frozen=True, slots=True)
 class Aggregates:
-    """What the tables show.
+    """Numbers of the tables.
 
     Attributes
     ----------
     order : tuple of str
         Labels of the systems that have a run, the best first.
     by_recording : mapping of (recording, system) to Summaries
-        Over seeds.
+        Summaries over seeds.
     overall : mapping of system to Summaries
-        Over the means of the recordings, so that a long recording does not outweigh a short one.
+        Summaries over the means of the recordings, so that long ones do not outweigh short ones.
     rankings : mapping of str to Ranking
-        By the key of a ranked column.
+        Rankings by the key of a ranked column.
     pairs : tuple of PairedTest
-        All pairs, by the first ranked column.
+        Tests of all pairs, by the first ranked column.
     recoveries : mapping of str to (int, int)
         Total occlusions recovered from and judged, of all runs of a system.
     """
@@ -49,7 +49,7 @@ class Aggregates:
 
 
 def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
-    """Draw all runs together."""
+    """Summarise all runs."""
     labels = [system.label for system in evaluation.systems if evaluation.of(system=system.label)]
     by_recording = {
         (recording.name, label): _over_seeds(runs)

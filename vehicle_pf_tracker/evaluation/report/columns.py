@@ -16,21 +16,21 @@ class Column:
     Attributes
     ----------
     key : str
-        Its name in files.
+        Name of the metric in files.
     group : str
-        What it is about.
+        Group of columns it stands in.
     label, unit : str
-        Its name and unit for people; shares have no unit.
+        Name and unit for readers; shares have no unit.
     decimals : int
-        For people.
+        Decimals shown to readers.
     higher_is_better : bool or None
-        Which end is best; None where neither is.
+        True if large values are best; None where neither end is.
     value : callable
-        Takes it from the metrics of a run; None where a run has none.
+        Reads it from the metrics of a run; None where a run has none.
     help : str
-        One sentence.
+        Explanation, one sentence.
     by_recording : bool
-        Whether the page shows it for each recording too, and not in its summary and in files alone.
+        True if the page shows it for each recording, not only in the summary and in files.
     """
 
     key: str

@@ -28,7 +28,7 @@ LEAST_ERROR = 0.5
 """Errors below this, in px, are drawn at the foot of the logarithmic scale."""
 _SMALL, _CURVE = (3.3, 1.75), (3.6, 2.6)
 _PLACE = (0.16, 0.235, 0.825, 0.74)
-"""Of the axes of a small figure: left, bottom, width and height, as shares of it."""
+"""Axes of a small figure: left, bottom, width and height, as shares of it."""
 _ROW = 0.19
 """Height of a system's row in a figure of intervals, in inches."""
 
@@ -40,11 +40,11 @@ class Line:
     Attributes
     ----------
     label : str
-        What it shows.
+        Label of the line.
     slot : int or None
         Number of its style in `STYLES`; None is drawn grey, behind the others.
     xs, ys : (N,) array
-        Its points.
+        Points of the line.
     """
 
     label: str
@@ -103,13 +103,13 @@ class Interval:
     Attributes
     ----------
     label : str
-        The system.
+        Label of the system.
     values : sequence of float
-        Its means on the recordings.
+        Means on the recordings.
     mean : float
-        Over them.
+        Mean over the recordings.
     low, high : float or None
-        The interval of that; None where there is none.
+        Interval of the mean; None where there is none.
     """
 
     label: str

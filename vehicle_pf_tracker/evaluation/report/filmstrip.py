@@ -22,7 +22,7 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
 from vehicle_pf_tracker.recordings.reader import Recording
 
 MOST_OCCLUSIONS = 4
-"""So many occlusions of a recording are shown, the longest ones."""
+"""Largest number of occlusions shown for a recording, the longest ones: a page stays readable."""
 WIDTH = 280
 """Width of a still in px."""
 _QUALITY = 78
@@ -63,9 +63,9 @@ def plan_strips(
     Parameters
     ----------
     truths : mapping of int to Truth
-        By number of the frame.
+        Truths by the number of the frame.
     runs : mapping of str to ScoredRun
-        One run for each system, by its label.
+        One run for each system, by label.
     slots : mapping of str to int
         Number of the style of those systems that are shown together.
     """

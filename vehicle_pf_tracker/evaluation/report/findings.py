@@ -1,4 +1,4 @@
-"""What a report says first, in a few sentences."""
+"""Findings of a report, in a few sentences."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from vehicle_pf_tracker.evaluation.statistics.paired import FEWEST_RECORDINGS, s
 
 
 def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
-    """Say who leads, who cannot be told apart from it, and what is missing."""
+    """State the leader, the systems statistically tied with it, and missing results."""
     sentences = [*_leader(aggregates)]
     sentences += [_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED)]
     sentences.append(_failed(evaluation))

@@ -16,7 +16,7 @@ _BLACK, _WHITE, _YELLOW = (0, 0, 0), (255, 255, 255), (240, 228, 66)
 _TAG = 13
 """Side of a tag in px."""
 _DARK_STYLES = 3
-"""So many of the first colours are dark, and have white tags."""
+"""Number of the first colours that are dark, and have white tags."""
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
 
 
@@ -33,7 +33,7 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A part of an image, and how large it is shown.
+    """A crop of an image, and the scale it is shown at.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class View:
         Parameters
         ----------
         boxes : sequence of Box
-            At least one; as far as they are in the image.
+            At least one box; parts outside the image are ignored.
         size : (int, int)
             Width and height of the image in px.
         shown_width : int

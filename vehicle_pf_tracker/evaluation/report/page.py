@@ -38,7 +38,7 @@ from vehicle_pf_tracker.evaluation.report.svg import SvgMaker
 
 @dataclass(frozen=True, slots=True)
 class RecordingSection:
-    """What the page shows of one recording."""
+    """A recording's section of the page."""
 
     name: str
     facts: str
@@ -64,9 +64,9 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
     Parameters
     ----------
     evaluation, aggregates : ScoredEvaluation, Aggregates
-        What it shows.
+        The evaluation to show, and its summaries.
     images : bool
-        Whether to show stills of the recordings.
+        True to show stills of the recordings.
     """
     environment = Environment(
         loader=PackageLoader("vehicle_pf_tracker.evaluation.report"),
@@ -111,7 +111,7 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
 
 
 def styled(aggregates: Aggregates) -> dict[str, int]:
-    """Give the first systems the styles there are."""
+    """Assign styles to the first systems."""
     return {label: slot for slot, label in enumerate(aggregates.order[: len(STYLES)])}
 
 
@@ -223,7 +223,7 @@ class ParameterRow:
 
 @dataclass(frozen=True, slots=True)
 class SystemSection:
-    """What a system was."""
+    """A system's section of the page."""
 
     label: str
     kind: str

@@ -1,4 +1,4 @@
-"""Tables of the page: what stands in each cell, what it sorts by, and which cells are best."""
+"""Tables of the page: text, sorting value and the best cells."""
 
 from __future__ import annotations
 
@@ -48,15 +48,15 @@ class TableCell:
     Attributes
     ----------
     text : str
-        What stands in it.
+        Text of the cell.
     value : float or None
-        What it sorts by; None goes last.
+        Value it sorts by; None goes last.
     best : bool
-        Whether no other in its column is better.
+        True if no other in its column is better.
     note : str
-        Shown on demand.
+        Note shown on demand.
     heat : float
-        From -1 to 1: how strongly it is tinted, and which way.
+        Tint, -1 to 1: its strength and direction.
     """
 
     text: str
@@ -158,7 +158,7 @@ def pairs_table(aggregates: Aggregates, slots: Slots) -> PageTable:
 
 
 def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]], slots: Slots) -> PageTable | None:
-    """Show what became of each system in each total occlusion; None without any."""
+    """Show the recovery of each system from each total occlusion; None without any."""
     occlusions = occlusions_of([run for some in runs.values() for run in some])
     if not occlusions:
         return None
@@ -229,9 +229,9 @@ class OcclusionCell:
     exit_px : float or None
         Mean error at the exit.
     back : int
-        Seeds in which the track came to stay on the vehicle.
+        Seeds in which the track recovered for good.
     frames : float or None
-        Their median number of frames until then.
+        Median number of frames until then.
     """
 
     recovered: int
@@ -247,7 +247,7 @@ def occlusions_of(runs: Sequence[ScoredRun]) -> list[tuple[int, int]]:
 
 
 def occlusion_cell(runs: Sequence[ScoredRun], occlusion: tuple[int, int]) -> OcclusionCell:
-    """Draw the seeds of one system together."""
+    """Summarise the seeds of one system."""
     found = [o for run in runs for o in run.metrics.occlusions if _key(o) == occlusion]
     verdicts = [o.recovered for o in found if o.recovered is not None]
     exits = [o.error_at_exit_px for o in found if o.error_at_exit_px is not None]
@@ -308,7 +308,7 @@ def speed_table(
 
 
 def speed_note(timings: Mapping[str, Any] | None) -> str:
-    """Say what was measured, and on what."""
+    """Describe the measurement and the machine."""
     clock = (timings or {}).get("clock", "time of a step")
     processor = " with ".join(map(str, (timings or {}).get("processor", []) or ["unknown"]))
     return (

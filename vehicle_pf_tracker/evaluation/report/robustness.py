@@ -1,4 +1,4 @@
-"""What the runs beside the grid say: other starts, and new starts after failures."""
+"""Sections on the robustness runs: other starts, and re-starts after failures."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _RESTARTS_FILE = "restarts.json"
 
 Document = Mapping[str, Any]
 Documents = Mapping[str, Sequence[Document]]
-"""Of one system, by recording."""
+"""JSON documents of one system, by recording."""
 
 
 @dataclass(frozen=True, slots=True)
 class RobustnessSection:
-    """A table with the sentence that says what was done."""
+    """A table with a sentence about its runs."""
 
     title: str
     about: str

@@ -1,4 +1,4 @@
-"""Every cell of an evaluation, scored anew by its truth."""
+"""Cells of an evaluation, scored against the truth."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 
 @dataclass(frozen=True, slots=True)
 class ScoredRun:
-    """One run, in numbers.
+    """One run with its scores.
 
     Attributes
     ----------
     recording, system, seed : str, str, int
-        Which cell of the grid it is.
+        Cell of the grid.
     metrics : Metrics
-        What it is worth.
+        Metrics of the run.
     errors : (N,) array
         Error of the centre in px by frame of the recording; NaN where nothing is scored.
     boxes : sequence of Box or None
-        The scored estimate by frame.
+        Box of the scored estimate by frame.
     modes : sequence of str
-        The mode by frame.
+        Mode by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
     first_failure : int or None
@@ -75,18 +75,18 @@ class FailedCell:
 
 @dataclass(frozen=True, slots=True)
 class ScoredEvaluation:
-    """All of an evaluation that its report is made of.
+    """The runs and the truth that a report is made of.
 
     Attributes
     ----------
     folder : EvaluationFolder
-        What it was read from.
+        Folder the runs were read from.
     truths : mapping of str to mapping of int to Truth
-        By recording and number of the frame.
+        Truths by recording and number of the frame.
     runs : tuple of ScoredRun
-        In the order of the plan: recordings, systems, seeds.
+        Runs in the order of the plan: recordings, systems, seeds.
     failed : tuple of FailedCell
-        In the same order.
+        Failed cells in the same order.
     """
 
     folder: EvaluationFolder
@@ -96,12 +96,12 @@ class ScoredEvaluation:
 
     @property
     def recordings(self) -> tuple[Source, ...]:
-        """Those of the plan."""
+        """See `EvaluationFolder`."""
         return self.folder.recordings
 
     @property
     def systems(self) -> tuple[SystemEntry, ...]:
-        """Those of the plan."""
+        """See `EvaluationFolder`."""
         return self.folder.systems
 
     def of(self, recording: str | None = None, system: str | None = None) -> list[ScoredRun]:

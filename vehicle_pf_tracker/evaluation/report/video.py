@@ -33,11 +33,11 @@ def write_videos(
     Parameters
     ----------
     evaluation : ScoredEvaluation
-        Of each system the run with the median error is shown.
+        The evaluation; of each system the run with the median error is shown.
     slots : mapping of str to int
-        The systems to show, with the numbers of their styles.
+        Systems to show, with the numbers of their styles.
     tell : callable
-        Takes a sentence for each video that could not be made.
+        Called with a sentence for each video that could not be made.
     """
     written = []
     for entry in evaluation.recordings:

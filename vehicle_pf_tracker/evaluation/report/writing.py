@@ -189,18 +189,18 @@ def _cell_text(text: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ReportOptions:
-    """What to make besides the page and the summaries.
+    """Parts of a report besides the page and the summaries.
 
     Attributes
     ----------
     images : bool
-        Show stills of the recordings in the page.
+        True for stills of the recordings in the page.
     video : bool
-        A video of each recording with boxes, in ``videos/``.
+        True for a video of each recording with boxes, in ``videos/``.
     recordings : bool
-        Each recording with its truth and all estimates, in ``estimates/``.
+        True for recordings with truth and all estimates, in ``estimates/``.
     trajectories : bool
-        TUM files of the truth and of all runs, in ``trajectories/``.
+        True for TUM files of the truth and of all runs, in ``trajectories/``.
     """
 
     images: bool = True
@@ -221,16 +221,16 @@ def write_report(
     Parameters
     ----------
     folder : Path
-        Of an evaluation.
+        Folder of an evaluation.
     options : ReportOptions or None
-        What to make; None makes the page and the summaries.
+        Parts to write; None writes the page and the summaries.
     tell : callable
-        Takes a sentence for each file that could not be made.
+        Called with a sentence for each file that could not be made.
 
     Raises
     ------
     InputError
-        If it is no folder of an evaluation, or cannot be written to.
+        If it is not an evaluation folder, or cannot be written to.
     """
     options = options or ReportOptions()
     evaluation = score_folder(EvaluationFolder(folder))

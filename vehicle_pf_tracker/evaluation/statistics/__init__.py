@@ -1,1 +1,1 @@
-"""What can be concluded from repeated runs: intervals, paired tests, ranks."""
+"""Statistics of repeated runs: intervals, paired tests, ranks."""

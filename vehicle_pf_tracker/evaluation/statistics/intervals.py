@@ -13,7 +13,7 @@ from scipy import stats
 CONFIDENCE = 0.95
 RESAMPLES = 9999
 _GENERATOR = "rng" if "rng" in inspect.signature(stats.bootstrap).parameters else "random_state"
-"""What SciPy calls the argument: another name from 1.15 on."""
+"""Name of SciPy's argument: it changed in 1.15."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,14 +23,14 @@ class Summary:
     Attributes
     ----------
     count : int
-        How many values there are.
+        Number of values.
     mean : float
-        Their mean.
+        Mean of the values.
     spread : float or None
-        Their sample standard deviation; None for a single value.
+        Sample standard deviation; None for a single value.
     low, high : float or None
         Percentile bootstrap interval of the mean, of confidence `CONFIDENCE`; None for a single
-        value. Of five values or fewer it is too narrow; it shows the scale, not the promise.
+        value. Of five values or fewer it is too narrow, and shows the scale only.
     """
 
     count: int

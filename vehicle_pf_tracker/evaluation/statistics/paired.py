@@ -15,7 +15,7 @@ from vehicle_pf_tracker.evaluation.statistics.intervals import Summary, summaris
 
 
 class RunKey(NamedTuple):
-    """Which run of a system."""
+    """Identity of a system's run."""
 
     recording: str
     seed: int
@@ -41,7 +41,7 @@ def paired_differences(
 ) -> dict[str, float]:
     """Return the mean of first minus second over the seeds that both have, by recording.
 
-    A system with one run on a recording, since it draws nothing, stands against all of the other's.
+    A deterministic system, with one run on a recording, is compared with all runs of the other.
     """
     differences = {}
     for recording in dict.fromkeys(key.recording for key in first):
@@ -62,21 +62,21 @@ def _on(runs: Mapping[RunKey, float], recording: str) -> dict[int, float]:
 
 ALPHA = 0.05
 FEWEST_RECORDINGS = 6
-"""Of fewer differences even a clean sweep has a p value above `ALPHA`: 2 / 2^5 > 0.05."""
+"""Fewest differences that are tested: a clean sweep of 5 has p = 2 / 2^5, above `ALPHA`."""
 
 
 @dataclass(frozen=True, slots=True)
 class PairedTest:
-    """One system held against another.
+    """Comparison of two systems.
 
     Attributes
     ----------
     first, second : str
-        The systems.
+        Labels of the systems.
     difference : Summary or None
-        Of first minus second, over the recordings that both have runs on.
+        Difference of first minus second, over the recordings that both have runs on.
     p_value, adjusted_p : float or None
-        Of the two-sided Wilcoxon signed-rank test, alone and among all pairs; None where fewer
+        Two-sided Wilcoxon signed-rank test, alone and among all pairs; None where fewer
         than `FEWEST_RECORDINGS` recordings show a difference.
     """
 
@@ -88,7 +88,7 @@ class PairedTest:
 
     @property
     def significant(self) -> bool:
-        """Whether the two differ at the level `ALPHA` among all pairs."""
+        """True if the two differ at the level `ALPHA` among all pairs."""
         return self.adjusted_p is not None and self.adjusted_p < ALPHA
 
 

@@ -1,4 +1,4 @@
-"""Ranks over recordings, with systems that cannot be told apart shown as ties.
+"""Ranks over recordings, with ties of systems that do not differ significantly.
 
 Every recording ranks the systems; Friedman's test says whether their mean ranks differ at all, and
 Nemenyi's critical difference which of them do. It corrects for the number of pairs with far more
@@ -26,13 +26,13 @@ class Rank:
     Attributes
     ----------
     system : str
-        Its name.
+        Label of the system.
     mean_rank : float
-        Mean over the recordings of its rank there; 1 is best, ties share theirs.
+        Mean of its ranks on the recordings; 1 is best, ties share theirs.
     place : int
-        1 and the number of systems that are significantly better.
+        Place: 1 plus the number of significantly better systems.
     tied : tuple of str
-        Systems that cannot be told apart from it.
+        Systems that do not differ from it significantly.
     """
 
     system: str
@@ -43,14 +43,14 @@ class Rank:
 
 @dataclass(frozen=True, slots=True)
 class Ranking:
-    """All systems, the least mean rank first.
+    """Ranking of all systems, the least mean rank first.
 
     Attributes
     ----------
     ranks : tuple of Rank
-        One for each system.
+        Rank of each system.
     recordings : int
-        How many they were ranked on.
+        Number of recordings they were ranked on.
     friedman_p : float or None
         The p value of Friedman's test; None of fewer than three systems, or of too few recordings.
     critical_difference : float or None
@@ -76,7 +76,7 @@ def rank_systems(
     values : mapping of str to mapping of str to float
         Values by system and recording, see `recording_means`.
     higher_is_better : bool
-        Which end is best.
+        True if large values are best.
     """
     systems = [system for system, by_recording in values.items() if by_recording]
     recordings = sorted({name for system in systems for name in values[system]})
@@ -106,7 +106,7 @@ def _friedman(ranks: NDArray[np.float64]) -> float | None:
     recordings, systems = ranks.shape
     if systems < 3 or recordings < FEWEST_RECORDINGS:
         return None
-    if not np.ptp(ranks, axis=1).any():  # no recording tells any two apart
+    if not np.ptp(ranks, axis=1).any():  # all systems are equal on every recording
         return 1.0
     return float(stats.friedmanchisquare(*ranks.T).pvalue)
 

@@ -1,4 +1,4 @@
-"""The best parameters against those that the search began with, where it searched and elsewhere."""
+"""Comparison of the best parameters with the initial ones, on tuned and held-out recordings."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ class Line:
     part : str
         `TUNED` or `HELD_OUT`.
     recording : str
-        Its name; for a mean, how many it is of.
+        Name of the recording; for a mean, the number of recordings.
     metric : str
-        Its name in `metrics.json`.
+        Name of the metric in `metrics.json`.
     base, best : float or None
         Mean over the seeds, and then over the recordings.
     base_spread, best_spread : float or None
@@ -50,11 +50,11 @@ class Line:
 
     @property
     def change(self) -> float | None:
-        """How much more the best has."""
+        """Difference of best minus base; None where either is unknown."""
         return None if self.base is None or self.best is None else self.best - self.base
 
     def to_json(self) -> dict[str, Any]:
-        """Everything as plain values."""
+        """Return plain values for JSON."""
         return {**asdict(self), "change": self.change}
 
 
@@ -66,13 +66,13 @@ def compare(
     Parameters
     ----------
     plan : Plan
-        Was completed there.
+        Plan that was completed there.
     folder : Path
-        Of the evaluation.
+        Folder of the evaluation.
     held_out : sequence of str
         Names of the recordings that the search did not see.
     metrics : sequence of str
-        What to compare.
+        Metrics to compare.
     """
     names = [source.name for source in plan.recordings]
     parts = {
@@ -116,7 +116,7 @@ def _spread(values: Sequence[float | None]) -> float | None:
 
 
 def to_markdown(lines: Sequence[Line]) -> str:
-    """For documents."""
+    """Return the comparison as Markdown."""
     rows = [
         "| | recording | metric | default | best | change |",
         "|---|---|---|---:|---:|---:|",
@@ -126,7 +126,7 @@ def to_markdown(lines: Sequence[Line]) -> str:
 
 
 def to_rich(lines: Sequence[Line]) -> Table:
-    """For a terminal."""
+    """Return the comparison for a terminal."""
     table = Table()
     for name in ("", "recording", "metric"):
         table.add_column(name)
@@ -151,7 +151,7 @@ def _number(value: float | None, spread: float | None) -> str:
 
 
 def verdict(lines: Sequence[Line], objective: Objective) -> str:
-    """Say in a sentence whether the gain holds where the search did not look."""
+    """State in a sentence whether the gain holds on held-out recordings."""
     change = {
         line.part: line.change
         for line in lines

@@ -1,4 +1,4 @@
-"""What a search may turn, and how far: derived from the table of parameters."""
+"""Search space of a tuning: parameters and ranges, derived from the parameter table."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ class Dimension:
     Attributes
     ----------
     name : str
-        Of the parameter.
+        Name of the parameter.
     kind : type
         `bool`, `int`, `float` or `str`.
     low, high : float
-        Of a number: the least and the largest value.
+        Least and largest value of a number.
     logarithmic : bool
-        Whether ratios count, not differences.
+        True if the scale is logarithmic.
     choices : tuple of bool or str
-        Of anything else.
+        Values of a parameter that is not a number.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Dimension:
     choices: tuple[bool | str, ...] = ()
 
     def covers(self, value: Value) -> bool:
-        """Whether `value` can be found."""
+        """Return whether `value` is in the range."""
         if self.choices:
             return value in self.choices
         return self.low <= float(value) <= self.high
@@ -84,9 +84,9 @@ def search_space(
     Parameters
     ----------
     variant : Variant
-        From the registry.
+        Entry of the registry.
     values : mapping of str to Value
-        Where the search begins; ranges are derived from these.
+        Initial values; ranges are derived from these.
     words : sequence of str
         Each ``name`` or ``name=low:high``; none takes the parameters marked as tuned.
 

@@ -1,4 +1,11 @@
-"""What a search makes as good as it can."""
+"""The search: trials that Optuna proposes, run in batches on all recordings and seeds.
+
+The sampler is seeded and every run is stored under the key of all that determines it, so that the
+same search goes through the same trials again. An interrupted search continues without a database:
+trials that were run before are reported to the sampler at once, and more trials than before
+continue where the last one ended. Results do not depend on the number of workers, since a batch has
+the same size for any.
+"""
 
 from __future__ import annotations
 
@@ -25,14 +32,14 @@ from vehicle_pf_tracker.parameters.table import Value
 
 @dataclass(frozen=True, slots=True)
 class Objective:
-    """A metric of `evaluation.metrics`, and which way is up."""
+    """A metric of `evaluation.metrics` to maximise or minimise."""
 
     metric: str
     told: str
     maximise: bool = True
 
     def better(self, one: float, other: float) -> bool:
-        """Whether `one` is better than `other`."""
+        """Return whether `one` is better than `other`."""
         return one > other if self.maximise else one < other
 
 
@@ -48,7 +55,7 @@ OBJECTIVES: Mapping[str, Objective] = MappingProxyType(
         )
     }
 )
-"""By the name of the metric."""
+"""Objectives by the name of the metric."""
 
 
 def mean_of_means(runs: Mapping[str, Sequence[float | None]]) -> float | None:
@@ -66,31 +73,32 @@ if TYPE_CHECKING:
     import optuna
 
 BATCH = 6
-"""Trials that are proposed before the first of them is known."""
+"""Trials proposed before the first of them is known: enough to keep a few workers busy, few enough
+for the sampler to learn (40 trials are 7 batches)."""
 START_UP = 10
-"""Trials at random, before what was learnt counts."""
+"""Random trials before the sampler uses what it learnt: Optuna's own default."""
 
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """What is searched, and on what.
+    """A search: the space, and the runs that score a point of it.
 
     Attributes
     ----------
     base : VariantSystem
-        Where it begins, which is the first trial; what is not searched stays as here.
+        The first trial; parameters that are not searched keep its values.
     space : sequence of Dimension
-        What is turned.
+        Dimensions of the space.
     sources : sequence of Source
         The recordings.
     seeds : sequence of int
-        Of the runs.
+        Seeds of the runs.
     objective : Objective
-        What is made as good as it can be.
+        The metric to optimise.
     max_diff : float
         Largest difference of stamps that belong together, in s.
     sampler_seed : int
-        Of the proposals.
+        Seed of the proposals.
     """
 
     base: VariantSystem
@@ -104,7 +112,7 @@ class Search:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """What was tried, and what it is worth; None where it could not run."""
+    """A tried point of the space and its score; None where it could not run."""
 
     number: int
     values: Mapping[str, Value]
@@ -119,15 +127,15 @@ def search(
     Parameters
     ----------
     what : Search
-        What is searched.
+        The search.
     count : int
-        Trials.
+        Number of trials.
     store : ResultStore
-        Takes every run, and has those of before.
+        Stores every run, and has those of earlier calls.
     runner : callable
         Runs cells, see `grid.running`.
     on_progress : callable
-        Is told whenever a run begins or ends.
+        Called whenever a run begins or ends.
     """
     study = _study(what)
     trials: list[Trial] = []
