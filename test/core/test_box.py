@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from vehicle_pf_tracker.core.box import Box, check_target, clip_position
+from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 
 
@@ -43,8 +43,3 @@ def test_boxes_no_tracker_can_start_on(box):
 )
 def test_boxes_at_the_border_are_targets(box):
     assert check_target(box, 64, 48) is box
-
-
-def test_clipping_moves_to_the_nearest_pixel_centre():
-    assert clip_position((-3, 50), 64, 48) == (0.5, 47.5)
-    assert clip_position((7.25, 8), 64, 48) == (7.25, 8)

@@ -6,10 +6,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.filtering.motion import (
-    expected_drift,
-    normal_pdf,
-    normal_rayleigh_pdf,
-    rayleigh_pdf,
+    RAYLEIGH_MEAN,
     sample_disc,
     sample_normal,
     sample_normal_rayleigh,
@@ -26,28 +23,18 @@ def integral(density, low, high, steps=801):
     return density(grid).sum() * (edges[1] - edges[0]) ** 2
 
 
-def test_normal_density_by_hand():
-    # Equation 7 at (sigma, 0): exp(-1/2) / (2 pi sigma²).
-    expected = math.exp(-0.5) / (2 * math.pi * 4)
-    assert normal_pdf(np.array([2.0, 0.0]), 2.0) == pytest.approx(expected)
+def normal_pdf(displacement, sigma):
+    """Equation 7: bivariate Normal density without correlation."""
+    squared = np.square(displacement).sum(axis=-1)
+    return np.exp(-0.5 * squared / sigma**2) / (2 * math.pi * sigma**2)
 
 
-def test_rayleigh_density_by_hand():
-    # Equation 9 at its mode k1 = sigma_R: exp(-1/2) / sigma_R.
-    assert rayleigh_pdf(np.array(3.0), 3.0) == pytest.approx(math.exp(-0.5) / 3)
-    assert rayleigh_pdf(np.array([-1.0, 0.0]), 3.0).tolist() == [0.0, 0.0]
-
-
-def test_joint_density_by_hand_has_sigma_r_along_and_sigma_n_across():
-    along, across, sigma_r, sigma_n = 1.0, 2.0, 2.0, 4.0
-    expected = (
-        along
-        / (math.sqrt(2 * math.pi) * sigma_n * sigma_r**2)
-        * math.exp(-(along**2) / (2 * sigma_r**2) - across**2 / (2 * sigma_n**2))
-    )
-    assert normal_rayleigh_pdf(
-        np.array(along), np.array(across), sigma_r, sigma_n
-    ) == pytest.approx(expected)
+def normal_rayleigh_pdf(along, across, sigma_r, sigma_n):
+    """Equations 11 and 12: Rayleigh (eq. 9) along the motion, Normal across it."""
+    k1 = np.maximum(along, 0.0)
+    along_pdf = k1 / sigma_r**2 * np.exp(-0.5 * np.square(k1 / sigma_r))
+    across_pdf = np.exp(-0.5 * np.square(across / sigma_n)) / (math.sqrt(2 * math.pi) * sigma_n)
+    return along_pdf * across_pdf
 
 
 def test_densities_integrate_to_one():
@@ -99,8 +86,8 @@ def test_drift_after_t_steps_is_t_times_the_rayleigh_mean():
     position = np.zeros((20_000, 2))
     for _ in range(steps):
         position += sample_normal_rayleigh(rng, len(position), (1.0, 0.0), sigma, sigma)
-    assert expected_drift(steps, sigma) == pytest.approx(12 * math.sqrt(math.pi / 2) * 4.0)
-    assert position[:, 0].mean() == pytest.approx(expected_drift(steps, sigma), rel=0.01)
+    assert pytest.approx(math.sqrt(math.pi / 2)) == RAYLEIGH_MEAN
+    assert position[:, 0].mean() == pytest.approx(steps * RAYLEIGH_MEAN * sigma, rel=0.01)
     assert position[:, 1].mean() == pytest.approx(0.0, abs=0.5)
 
 

@@ -84,10 +84,3 @@ def check_target(box: Box, width: int, height: int) -> Box:
             "give the top-left corner and the size of the vehicle in this image"
         )
     return box
-
-
-def clip_position(position: Position, width: int, height: int) -> Position:
-    """Move `position` to the nearest pixel centre range of an image of `width` x `height` px."""
-    x = min(max(position[0], 0.5), width - 0.5)
-    y = min(max(position[1], 0.5), height - 0.5)
-    return x, y

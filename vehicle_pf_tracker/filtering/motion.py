@@ -1,7 +1,7 @@
-"""Motion densities of P1, section III, and samplers that draw from them.
+"""Samplers of the motion densities of P1, section III.
 
-Equations are numbered as in the paper and read with READINGS 2 to 4 (the printed norms of
-equations 10 and 12 are no densities, and equation 20 loses a term).
+Equations are numbered as in the paper. The printed norms of equations 10 and 12 make no densities,
+and equation 20 loses a term; READINGS 2 to 4 correct them.
 """
 
 from __future__ import annotations
@@ -12,50 +12,6 @@ from vehicle_pf_tracker.core.array import Array
 
 RAYLEIGH_MEAN = float(np.sqrt(np.pi / 2))
 """Mean of a Rayleigh variable in units of its parameter."""
-
-
-def normal_pdf(displacement: Array, sigma: float) -> Array:
-    """Bivariate Normal density without correlation (eq. 7).
-
-    Parameters
-    ----------
-    displacement : (..., 2) array
-        x' and y' of equation 8, in px.
-    sigma : float
-        Standard deviation in px.
-
-    Returns
-    -------
-    (...) array
-        Density per px².
-    """
-    squared = np.sum(np.square(displacement), axis=-1)
-    return np.asarray(np.exp(-0.5 * squared / sigma**2) / (2 * np.pi * sigma**2))
-
-
-def rayleigh_pdf(along: Array, sigma_r: float) -> Array:
-    """Rayleigh density along the motion (eq. 9); zero for `along` below zero."""
-    k1 = np.maximum(along, 0.0)
-    return np.asarray(k1 / sigma_r**2 * np.exp(-0.5 * np.square(k1 / sigma_r)))
-
-
-def normal_rayleigh_pdf(along: Array, across: Array, sigma_r: float, sigma_n: float) -> Array:
-    """Joint Normal-Rayleigh density (eq. 11 and 12, READINGS 2 and 3).
-
-    Parameters
-    ----------
-    along, across : arrays of one shape
-        Displacement k1 along and k2 across the principal motion direction, in px.
-    sigma_r, sigma_n : float
-        Rayleigh parameter along, and Normal standard deviation across the motion, in px.
-
-    Returns
-    -------
-    array
-        Density per px².
-    """
-    across_pdf = np.exp(-0.5 * np.square(across / sigma_n)) / (np.sqrt(2 * np.pi) * sigma_n)
-    return np.asarray(rayleigh_pdf(along, sigma_r) * across_pdf)
 
 
 def sample_normal(rng: np.random.Generator, count: int, sigma: float) -> Array:
@@ -82,7 +38,7 @@ def sample_normal_rayleigh(
         Principal motion direction k1 of any length; where it is zero there is no direction to
         drift in, and each particle takes a random one.
     sigma_r, sigma_n : float
-        As in `normal_rayleigh_pdf`.
+        Rayleigh parameter along, and Normal standard deviation across the motion, in px.
 
     Returns
     -------
@@ -107,8 +63,3 @@ def sample_disc(rng: np.random.Generator, count: int, radius: float) -> Array:
     # The root makes every area as likely as any other.
     distance = radius * np.sqrt(rng.random(count))
     return np.column_stack([distance * np.cos(angle), distance * np.sin(angle)])
-
-
-def expected_drift(steps: int, sigma_r: float) -> float:
-    """Mean displacement along the motion after `steps` draws, in px (eq. 20, READINGS 4)."""
-    return steps * RAYLEIGH_MEAN * sigma_r

@@ -40,7 +40,7 @@ class StrayImageError(InputError):
     """An image that does not continue the stream it came in."""
 
 
-class Verdict(Enum):
+class Continuation(Enum):
     """How an image goes with those before it."""
 
     CONTINUES = "continues the stream"
@@ -74,7 +74,7 @@ class Continuity:
         """Width and height in px of the believed images; None before the first."""
         return self._last.size if self._last else None
 
-    def judge(self, size: Size, stamp_ns: int, *, timed: bool) -> Verdict:
+    def judge(self, size: Size, stamp_ns: int, *, timed: bool) -> Continuation:
         """Judge the next image.
 
         Parameters
@@ -95,18 +95,18 @@ class Continuity:
         reason = self._oddity(seen, timed)
         if reason is None:
             self._believe(seen, stamp_ns - self._last.stamp_ns if self._last else 0)
-            return Verdict.LEAPS if timed and self._last_leapt else Verdict.CONTINUES
+            return Continuation.LEAPS if timed and self._last_leapt else Continuation.CONTINUES
         if self._doubted is not None and self._agrees(seen, self._doubted):
             self._believe(seen, stamp_ns - self._doubted.stamp_ns)
-            return Verdict.CONFIRMS
+            return Continuation.CONFIRMS
         if self._shows_last_ahead(seen):
             self._last = self._before
             self._believe(seen, stamp_ns - self._last.stamp_ns if self._last else 0)
-            return Verdict.CORRECTS
+            return Continuation.CORRECTS
         self._doubted = seen
         self._odd += 1
         if self._odd > PATIENCE and size == self.size:
-            return Verdict.UNTIMED
+            return Continuation.UNTIMED
         raise StrayImageError(reason + _AGREED)
 
     def _oddity(self, seen: _Seen, timed: bool) -> str | None:

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.base import DEFAULT_PERIOD, BaseTracker
-from vehicle_pf_tracker.trackers.continuity import Continuity, StrayImageError, Verdict
+from vehicle_pf_tracker.trackers.continuity import Continuation, Continuity, StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
 
@@ -106,16 +106,16 @@ class Session:
         aside, self._aside = self._aside, None
         size = frame_size(check_frame(frame))
         try:
-            verdict = self._continuity.judge(size, stamp_ns, timed=self._size is not None)
+            continuation = self._continuity.judge(size, stamp_ns, timed=self._size is not None)
         except StrayImageError:
             self._aside = frame.copy(), stamp_ns
             raise
-        if verdict is Verdict.CONFIRMS and aside is not None:
+        if continuation is Continuation.CONFIRMS and aside is not None:
             self._take(*aside)
-        if verdict is Verdict.CORRECTS:
+        if continuation is Continuation.CORRECTS:
             self._take_back()
-        self._backup = self._copied() if verdict is Verdict.LEAPS else None
-        return self._take(frame, None if verdict is Verdict.UNTIMED else stamp_ns)
+        self._backup = self._copied() if continuation is Continuation.LEAPS else None
+        return self._take(frame, None if continuation is Continuation.UNTIMED else stamp_ns)
 
     def _copied(self) -> tuple[StampClock, BaseTracker[Any]]:
         """Copy what an image changes; kernels have no state of their own."""

@@ -16,6 +16,8 @@ from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     ConfidenceParameters,
     EdgeParameters,
     MfpfParameters,
+)
+from vehicle_pf_tracker.trackers.papers.sfpf import (
     SfpfColorParameters,
     SfpfEdgeParameters,
     SfpfTextureParameters,

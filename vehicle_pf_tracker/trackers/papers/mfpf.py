@@ -31,11 +31,11 @@ from vehicle_pf_tracker.image.similarity import (
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.image.window_feature import Histograms, WindowFeature
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.papers.feature_fusion import (
-    Fusion,
+from vehicle_pf_tracker.trackers.papers.feature_weighting import (
+    FeatureWeighting,
     average_similarities,
     common_survivors,
-    fuse,
+    weigh_features,
 )
 from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
@@ -112,23 +112,23 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         averages = self._averages(rho)
         if self._initial is None:
             self._initial = averages
-        fusion = fuse(averages, self._initial, settings.confidence.threshold)  # step 4
-        if fusion.full_occlusion:
+        weighting = weigh_features(averages, self._initial, settings.confidence.threshold)  # step 4
+        if weighting.full_occlusion:
             cloud, position = Cloud.uniform(particles), self._foresee(frame, elapsed)
         else:
-            cloud = self._weigh(particles, prior, rho, fusion)
-            position = self._locate(particles, fusion)
+            cloud = self._weigh(particles, prior, rho, weighting)
+            position = self._locate(particles, weighting)
         histograms = self._describe(frame, position)
         similarities = self._similarities(histograms)
-        self._follow(fusion, histograms, position, elapsed)
+        self._follow(weighting, histograms, position, elapsed)
         return Outcome(
             cloud,
             position,
             self._velocity.value,
-            "prediction" if fusion.full_occlusion else "estimation",
+            "prediction" if weighting.full_occlusion else "estimation",
             # The majority counts: one feature that fails, or is fooled, does not decide.
             statistics.median(similarities.tolist()),
-            self._report(fusion),
+            self._report(weighting),
             resampling_passes=int(resample),
             resampled_particles=len(particles) if resample else 0,
             left_image=left_image,
@@ -194,21 +194,23 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         best_share = self._settings.confidence.best_share
         return average_similarities(hellinger_distance(rho), best_share)
 
-    def _weigh(self, particles: Array, prior: Array, rho: Array, fusion: Fusion) -> Cloud:
+    def _weigh(
+        self, particles: Array, prior: Array, rho: Array, weighting: FeatureWeighting
+    ) -> Cloud:
         """Weigh by each feature alone (eq. 10 and 11) and by all in use together."""
         logs = log_likelihood(rho, self._settings.likelihood)
         log_prior = np.log(np.maximum(prior, np.finfo(np.float64).tiny))
         self._weights = np.stack([from_log(log_prior + row)[0] for row in logs])
-        return Cloud(particles, *from_log(log_prior + (fusion.factors > 0) @ logs))
+        return Cloud(particles, *from_log(log_prior + (weighting.factors > 0) @ logs))
 
-    def _locate(self, particles: Array, fusion: Fusion) -> tuple[float, float]:
+    def _locate(self, particles: Array, weighting: FeatureWeighting) -> tuple[float, float]:
         """Position by equation 18, from each feature's own by equation 12 or 13."""
         assert self._weights is not None
         if self._settings.estimate == "best":
             candidates = particles[self._weights.argmax(axis=1)]
         else:
             candidates = self._weights @ particles
-        x, y = fusion.combine(candidates)
+        x, y = weighting.combine(candidates)
         return float(x), float(y)
 
     def _foresee(self, frame: Frame, elapsed: float) -> tuple[float, float]:
@@ -234,31 +236,31 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
     def _follow(
         self,
-        fusion: Fusion,
+        weighting: FeatureWeighting,
         histograms: list[Histograms],
         position: tuple[float, float],
         elapsed: float,
     ) -> None:
         """Update references (eq. 9) and increments, but for what is occluded."""
         weight = self._settings.reference_weight
-        for number in np.flatnonzero(fusion.factors):
+        for number in np.flatnonzero(weighting.factors):
             found = histograms[number]
             blended = weight * self._first[number] + (1 - weight) * found
             self._references[number] = Reference(blended)
-        if fusion.full_occlusion:
+        if weighting.full_occlusion:
             self._searching = (self._searching or 0.0) + elapsed
         else:
             self._searching = None
             self._velocity.add(self._position, position, elapsed)
         self._position = position
 
-    def _report(self, fusion: Fusion) -> dict[str, float]:
+    def _report(self, weighting: FeatureWeighting) -> dict[str, float]:
         """AS, LC and WF of every feature, and which are in use, for `~/mode`."""
         columns = {
-            "as": fusion.averages,
-            "lc": fusion.confidences,
-            "wf": fusion.factors,
-            "used": fusion.factors > 0,
+            "as": weighting.averages,
+            "lc": weighting.confidences,
+            "wf": weighting.factors,
+            "used": weighting.factors > 0,
         }
         return {
             f"{column}_{name}": float(value)

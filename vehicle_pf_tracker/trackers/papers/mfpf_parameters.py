@@ -24,7 +24,8 @@ TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
 """The textures that P2 tried, by the word that the parameter takes."""
 
 
-def _texture_parameter() -> Any:
+def texture_parameter() -> Any:
+    """Make the choice of the texture feature."""
     return parameter(
         "glcm",
         "The histogram that describes texture; the paper tried all three and kept glcm.",
@@ -178,42 +179,11 @@ class FeatureFilterParameters(ParticleParameters):
 
 
 @dataclass(frozen=True, slots=True)
-class SfpfColorParameters(FeatureFilterParameters):
-    """Parameters of `sfpf_color`."""
-
-    def effective(self) -> SfpfColorParameters:
-        """Return the parameters in force: those of the print where `as_printed` is set."""
-        return _common_print(self) if self.as_printed else self
-
-
-@dataclass(frozen=True, slots=True)
-class SfpfEdgeParameters(FeatureFilterParameters):
-    """Parameters of `sfpf_edge`."""
-
-    edges: EdgeParameters = group(EdgeParameters)
-
-    def effective(self) -> SfpfEdgeParameters:
-        """Return the parameters in force: those of the print where `as_printed` is set."""
-        return replace(_common_print(self), edges=_PRINTED_EDGES) if self.as_printed else self
-
-
-@dataclass(frozen=True, slots=True)
-class SfpfTextureParameters(FeatureFilterParameters):
-    """Parameters of `sfpf_texture`."""
-
-    texture: str = _texture_parameter()
-
-    def effective(self) -> SfpfTextureParameters:
-        """Return the parameters in force: those of the print where `as_printed` is set."""
-        return _common_print(self) if self.as_printed else self
-
-
-@dataclass(frozen=True, slots=True)
 class MfpfParameters(FeatureFilterParameters):
     """Parameters of `mfpf`."""
 
     edges: EdgeParameters = group(EdgeParameters)
-    texture: str = _texture_parameter()
+    texture: str = texture_parameter()
     joint_resampling: bool = parameter(
         True,
         "Resample once, on the product of the features' weights; off keeps the particles that "
@@ -225,15 +195,16 @@ class MfpfParameters(FeatureFilterParameters):
         """Return the parameters in force: those of the print where `as_printed` is set."""
         if not self.as_printed:
             return self
-        return replace(_common_print(self), edges=_PRINTED_EDGES, joint_resampling=False)
+        return replace(common_print(self), edges=PRINTED_EDGES, joint_resampling=False)
 
 
 FilterParametersT = TypeVar("FilterParametersT", bound=FeatureFilterParameters)
 
-_PRINTED_EDGES = EdgeParameters(threshold=0.8, floor=0.0, in_frame=False, signed=False)
+PRINTED_EDGES = EdgeParameters(threshold=0.8, floor=0.0, in_frame=False, signed=False)
 
 
-def _common_print(parameters: FilterParametersT) -> FilterParametersT:
+def common_print(parameters: FilterParametersT) -> FilterParametersT:
+    """Return `parameters` with everything as printed that all filters of P2 have."""
     return replace(
         parameters,
         velocity_window=1,

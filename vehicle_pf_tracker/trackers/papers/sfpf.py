@@ -7,16 +7,51 @@ threshold.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 from vehicle_pf_tracker.image.colour import RgbMarginals
 from vehicle_pf_tracker.image.window_feature import WindowFeature
+from vehicle_pf_tracker.parameters.table import group
 from vehicle_pf_tracker.trackers.papers.mfpf import FeatureFilter, edge_feature
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
+    PRINTED_EDGES,
     TEXTURES,
-    SfpfColorParameters,
-    SfpfEdgeParameters,
-    SfpfTextureParameters,
+    EdgeParameters,
+    FeatureFilterParameters,
+    common_print,
+    texture_parameter,
 )
+
+
+@dataclass(frozen=True, slots=True)
+class SfpfColorParameters(FeatureFilterParameters):
+    """Parameters of `sfpf_color`."""
+
+    def effective(self) -> SfpfColorParameters:
+        """Return the parameters in force: those of the print where `as_printed` is set."""
+        return common_print(self) if self.as_printed else self
+
+
+@dataclass(frozen=True, slots=True)
+class SfpfEdgeParameters(FeatureFilterParameters):
+    """Parameters of `sfpf_edge`."""
+
+    edges: EdgeParameters = group(EdgeParameters)
+
+    def effective(self) -> SfpfEdgeParameters:
+        """Return the parameters in force: those of the print where `as_printed` is set."""
+        return replace(common_print(self), edges=PRINTED_EDGES) if self.as_printed else self
+
+
+@dataclass(frozen=True, slots=True)
+class SfpfTextureParameters(FeatureFilterParameters):
+    """Parameters of `sfpf_texture`."""
+
+    texture: str = texture_parameter()
+
+    def effective(self) -> SfpfTextureParameters:
+        """Return the parameters in force: those of the print where `as_printed` is set."""
+        return common_print(self) if self.as_printed else self
 
 
 class SfpfColorTracker(FeatureFilter[SfpfColorParameters]):

@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from vehicle_pf_tracker.trackers.papers.feature_fusion import (
+from vehicle_pf_tracker.trackers.papers.feature_weighting import (
     average_similarities,
     common_survivors,
-    fuse,
+    weigh_features,
 )
 
 
@@ -26,23 +26,23 @@ def test_reading_19_average_similarity_of_the_best():
 
 
 def test_confidences_and_factors_by_hand():
-    fusion = fuse(np.array([0.6, 0.4, 0.3]), np.array([0.5, 0.5, 0.5]), 0.7)
+    weighting = weigh_features(np.array([0.6, 0.4, 0.3]), np.array([0.5, 0.5, 0.5]), 0.7)
     # Ratios 1.2, 0.8 and 0.6; the last is below the threshold.
-    assert fusion.confidences == pytest.approx([1.2, 0.8, 0.0])
-    assert fusion.factors == pytest.approx([0.6, 0.4, 0.0])
-    assert not fusion.full_occlusion
-    assert fusion.combine(np.array([[10, 0], [20, 10], [99, 99]])) == pytest.approx([14, 4])
+    assert weighting.confidences == pytest.approx([1.2, 0.8, 0.0])
+    assert weighting.factors == pytest.approx([0.6, 0.4, 0.0])
+    assert not weighting.full_occlusion
+    assert weighting.combine(np.array([[10, 0], [20, 10], [99, 99]])) == pytest.approx([14, 4])
 
 
 def test_all_below_their_thresholds_is_full_occlusion():
-    fusion = fuse(np.array([0.2, 0.3]), np.array([0.5, 0.5]), 0.7)
-    assert fusion.full_occlusion
-    assert fusion.factors.tolist() == [0, 0]
+    weighting = weigh_features(np.array([0.2, 0.3]), np.array([0.5, 0.5]), 0.7)
+    assert weighting.full_occlusion
+    assert weighting.factors.tolist() == [0, 0]
 
 
 def test_a_feature_that_was_never_there_is_never_used():
-    fusion = fuse(np.array([0.0, 0.9, 0.4]), np.array([0.0, 0.0, 0.4]), 0.0)
-    assert fusion.factors.tolist() == [0, 0, 1]
+    weighting = weigh_features(np.array([0.0, 0.9, 0.4]), np.array([0.0, 0.0, 0.4]), 0.0)
+    assert weighting.factors.tolist() == [0, 0, 1]
 
 
 @given(
@@ -51,7 +51,7 @@ def test_a_feature_that_was_never_there_is_never_used():
     st.floats(0, 1),
 )
 def test_factors_are_shares_or_all_zero(averages, initial, threshold):
-    factors = fuse(averages, initial, threshold).factors
+    factors = weigh_features(averages, initial, threshold).factors
     assert np.all(factors >= 0)
     assert factors.sum() == pytest.approx(1.0) or not factors.any()
 

@@ -37,7 +37,7 @@ def average_similarities(distances: Array, best_share: float) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Fusion:
+class FeatureWeighting:
     """What the features are worth in one frame; arrays of shape (F,).
 
     Attributes
@@ -65,7 +65,7 @@ class Fusion:
         return np.asarray(self.factors @ candidates)
 
 
-def fuse(averages: Array, initial: Array, threshold: float) -> Fusion:
+def weigh_features(averages: Array, initial: Array, threshold: float) -> FeatureWeighting:
     """Compare each feature's average similarity with its initial one.
 
     Parameters
@@ -79,7 +79,9 @@ def fuse(averages: Array, initial: Array, threshold: float) -> Fusion:
     ratios = averages / np.where(initial > 0, initial, 1.0)
     confidences = np.where(useful & (initial > 0), ratios, 0.0)
     total = confidences.sum()
-    return Fusion(averages, confidences, confidences / total if total > 0 else confidences)
+    return FeatureWeighting(
+        averages, confidences, confidences / total if total > 0 else confidences
+    )
 
 
 def common_survivors(sets: Sequence[Ancestors], count: int, otherwise: Ancestors) -> Ancestors:
