@@ -1,4 +1,4 @@
-"""Equations 7 to 22 of P1, read with READINGS 2 to 4."""
+"""Equations 7 to 22 of P1, read with interpretations 2 to 4."""
 
 import math
 
@@ -80,7 +80,7 @@ def test_sampler_draws_from_the_density():
 
 
 def test_drift_after_t_steps_is_t_times_the_rayleigh_mean():
-    # Equations 18 to 20 with all T terms (READINGS 4), and 21 and 22 across the motion.
+    # Equations 18 to 20 with all T terms (interpretation 4), and 21 and 22 across the motion.
     steps, sigma = 12, 4.0
     rng = np.random.default_rng(3)
     position = np.zeros((20_000, 2))

@@ -7,7 +7,7 @@ from vehicle_pf_tracker.image.window import Window
 
 
 def test_bins_are_a_21st_of_256():
-    # 12 * 21 / 256 = 0.98, 13 * 21 / 256 = 1.07, 255 * 21 / 256 = 20.9 (READINGS 20).
+    # 12 * 21 / 256 = 0.98, 13 * 21 / 256 = 1.07, 255 * 21 / 256 = 20.9 (interpretation 20).
     assert marginal_bins(np.array([[[0, 12, 13], [243, 244, 255]]], np.uint8)).tolist() == [
         [[0, 0, 1], [19, 20, 20]]
     ]

@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from vehicle_pf_tracker.parameters.table import specs
+from vehicle_pf_tracker.trackers.registry import VARIANTS
+
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]*))?\)")
@@ -32,3 +35,30 @@ def test_every_page_can_be_found():
         for target, _ in LINK.findall(page.read_text(encoding="utf-8"))
     }
     assert {page for page in PAGES if page.name != "README.md"} <= linked
+
+
+def interpretations() -> dict[int, str]:
+    """Switches named for each interpretation of the papers, by its number."""
+    page = (ROOT / "docs" / "interpretations.md").read_text(encoding="utf-8")
+    return {
+        int(number): switches
+        for number, switches in re.findall(r"^\| (\d+) \|.*\|([^|]*)\|$", page, re.MULTILINE)
+    }
+
+
+def test_the_interpretations_that_code_refers_to_are_listed():
+    listed = set(interpretations())
+    for path in [
+        *(ROOT / "vehicle_pf_tracker").rglob("*.py"),
+        *(ROOT / "reproduction").rglob("*.py"),
+    ]:
+        text = path.read_text(encoding="utf-8")
+        for numbers in re.findall(r"interpretations?\s+((?:\d+(?:, | to | and )?)+)", text):
+            assert set(map(int, re.findall(r"\d+", numbers))) <= listed, path
+
+
+def test_the_switches_of_interpretations_are_parameters():
+    known = {name for variant in VARIANTS.values() for name in specs(variant.parameters)}
+    named = set(re.findall(r"`([\w.]+)`", " ".join(interpretations().values())))
+    assert named
+    assert named <= known

@@ -1,7 +1,7 @@
 """Samplers of the motion densities of P1, section III.
 
 Equations are numbered as in the paper. The printed norms of equations 10 and 12 make no densities,
-and equation 20 loses a term; READINGS 2 to 4 correct them.
+and equation 20 loses a term; interpretations 2 to 4 correct them.
 """
 
 from __future__ import annotations

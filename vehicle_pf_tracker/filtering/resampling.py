@@ -60,7 +60,7 @@ def _search(weights: Weights, points: npt.NDArray[np.float64]) -> Ancestors:
         cumulative = normalise(weights)[0].cumsum()
         total = cumulative[-1]
     # ``side="right"`` steps over particles of weight zero; a point may round up to the whole sum,
-    # and past all particles: clamp to the last one that adds to it (READINGS 9).
+    # and past all particles: clamp to the last one that adds to it (interpretation 9).
     last = cumulative.argmax()
     return np.asarray(np.minimum(cumulative.searchsorted(points * total, side="right"), last))
 

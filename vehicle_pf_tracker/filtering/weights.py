@@ -72,7 +72,7 @@ def effective_sample_size(weights: Weights) -> float:
 
     References
     ----------
-    P2 eq. 14 and P3, with normalised weights (READINGS 16).
+    P2 eq. 14 and P3, with normalised weights (interpretation 16).
     """
     return float(1.0 / np.square(weights).sum())
 

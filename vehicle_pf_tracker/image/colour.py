@@ -109,7 +109,7 @@ CHANNEL_BINS = 21
 
 @dataclass(frozen=True)
 class RgbMarginals(CountedFeature):
-    """63 bins: red 0 to 20, green 21 to 41, blue 42 to 62 (P2, section III-C; READINGS 20)."""
+    """63 bins: red 0 to 20, green 21 to 41, blue 42 to 62 (P2, III-C; interpretation 20)."""
 
     bins = 3 * CHANNEL_BINS
 

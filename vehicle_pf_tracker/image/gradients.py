@@ -164,13 +164,13 @@ class GradientDirections(CountedFeature):
     ----------
     threshold : float
         Edge points have at least this share of the window's strongest gradient (printed: 0.8;
-        READINGS 14).
+        interpretation 14).
     in_frame : bool
         Take the gradient in the frame; False takes it in each window by itself, mirrored at its
-        border, as printed (READINGS 14).
+        border, as printed (interpretation 14).
     signed : bool
         Tell dark-to-light from light-to-dark; False takes the printed ``atan``, which folds
-        opposite directions into the middle 32 bins (READINGS 13).
+        opposite directions into the middle 32 bins (interpretation 13).
     floor : float
         Gradient that an edge point has at least (a step of one grey level makes 4). Without one, a
         window of nothing but noise is full of edge points.

@@ -1,7 +1,7 @@
 """Windows: the rectangle of pixels around a position from which features are taken.
 
 A window has ``(2 w_x + 1) x (2 w_y + 1)`` pixels, as in P1. Over the border of the image it keeps
-the pixels that exist (READINGS 24).
+the pixels that exist (interpretation 24).
 """
 
 from __future__ import annotations

@@ -135,7 +135,7 @@ def test_as_printed_overrides_every_reading():
 
 
 def test_as_printed_weights_are_almost_flat():
-    # READINGS 1: target to background is 1.16 to 1.
+    # interpretation 1: target to background is 1.16 to 1.
     estimates = follow(make(as_printed=True), Street(), range(5))
     assert min(e.effective_sample_size for e in estimates) > 190
     assert max(e.effective_sample_size for e in follow(make(), Street(), range(5))[1:]) < 150

@@ -196,7 +196,7 @@ def test_as_printed_overrides_every_reading(cls):
 
 
 def test_as_printed_weights_are_flat():
-    # READINGS 1: exp(-BD² / 4.5) lies between 0.80 and 1.
+    # interpretation 1: exp(-BD² / 4.5) lies between 0.80 and 1.
     estimates = follow(make(as_printed=True), Street(), range(6))
     assert min(e.effective_sample_size for e in estimates) > 190
     assert min(e.effective_sample_size for e in follow(make(), Street(), range(6))[1:]) < 100

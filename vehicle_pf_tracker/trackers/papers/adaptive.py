@@ -34,7 +34,7 @@ class OcclusionTestParameters:
         "Take a small effective sample size as occlusion, as printed, or a best particle unlike "
         "the reference.",
         choices=OCCLUSION_TESTS,
-        source="P3 Table II step 15, READINGS 22",
+        source="P3 Table II step 15, interpretation 22",
     )
     n_eff: float = parameter(
         0.3,
@@ -42,7 +42,7 @@ class OcclusionTestParameters:
         minimum=0.0,
         maximum=1.0,
         unit="share of the particles",
-        source="P3 T_thres, READINGS 22",
+        source="P3 T_thres, interpretation 22",
         tuned=True,
     )
     similarity: float = parameter(
@@ -51,7 +51,7 @@ class OcclusionTestParameters:
         minimum=0.0,
         maximum=1.0,
         unit="share of the clear level",
-        source="READINGS 22",
+        source="interpretation 22",
     )
     jitter: float = parameter(
         0.25,
@@ -59,7 +59,7 @@ class OcclusionTestParameters:
         minimum=0.0,
         maximum=10.0,
         unit="share of sigma",
-        source="P3 Table II step 17, READINGS 23",
+        source="P3 Table II step 17, interpretation 23",
     )
 
 
@@ -73,7 +73,7 @@ class AdaptiveParameters(RepeatedResamplingParameters):
         minimum=0.0,
         maximum=100.0,
         unit="of the mean weight 1/N",
-        source="P3 Table II step 19, READINGS 23",
+        source="P3 Table II step 19, interpretation 23",
         tuned=True,
     )
     occlusion: OcclusionTestParameters = group(OcclusionTestParameters)

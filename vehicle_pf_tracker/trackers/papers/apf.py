@@ -46,7 +46,7 @@ class ApfMotionParameters:
         minimum=0.01,
         maximum=1000.0,
         unit="px/frame",
-        source="P1 eq. 7, READINGS 11",
+        source="P1 eq. 7, interpretation 11",
         tuned=True,
     )
     sigma_n: float = parameter(
@@ -69,7 +69,7 @@ class ApfMotionParameters:
     drift_from_velocity: bool = parameter(
         True,
         "Drift at the vehicle's own mean speed, sigma_R = |V| / sqrt(pi / 2); off takes sigma_r.",
-        source="P1 eq. 20, READINGS 11",
+        source="P1 eq. 20, interpretation 11",
     )
 
 
@@ -102,7 +102,7 @@ class ApfReferenceParameters:
         True,
         "Keep the reference while occluded; off lets it learn the occluder, as printed. Counts "
         "with the fixed occlusion rule.",
-        source="P1 Algorithm 1 step 15, READINGS 6",
+        source="P1 Algorithm 1 step 15, interpretation 6",
     )
 
 
@@ -123,12 +123,12 @@ class ApfOcclusionParameters:
         "fixed rule.",
         minimum=0.0,
         maximum=1.0,
-        source="P1 Algorithm 1 step 4, READINGS 8",
+        source="P1 Algorithm 1 step 4, interpretation 8",
     )
     raw_histogram: bool = parameter(
         True,
         "Judge the window's own histogram; off judges the blended reference, as printed.",
-        source="P1 Algorithm 1 step 16, READINGS 7",
+        source="P1 Algorithm 1 step 16, interpretation 7",
     )
     level: ClearLevelParameters = group(ClearLevelParameters)
 
@@ -143,7 +143,7 @@ class ApfVelocityParameters:
         minimum=0,
         maximum=10_000,
         unit="frames",
-        source="P1 section III-B, READINGS 5",
+        source="P1 section III-B, interpretation 5",
         tuned=True,
     )
     delay: int = parameter(
@@ -153,17 +153,17 @@ class ApfVelocityParameters:
         minimum=0,
         maximum=1000,
         unit="frames",
-        source="READINGS 5",
+        source="interpretation 5",
     )
     from_origin: bool = parameter(
         False,
         "Count the first displacement from (0, 0), as printed.",
-        source="P1 section III-B, READINGS 5",
+        source="P1 section III-B, interpretation 5",
     )
     frozen_while_occluded: bool = parameter(
         True,
         "Leave estimates of the occlusion regime out of the mean.",
-        source="READINGS 5",
+        source="interpretation 5",
     )
 
 
@@ -171,7 +171,7 @@ class ApfVelocityParameters:
 class ApfParameters(ParticleParameters):
     """Parameters of `apf`."""
 
-    as_printed: bool = as_printed_switch("READINGS 1, 5, 6, 7, 11")
+    as_printed: bool = as_printed_switch("interpretations 1, 5, 6, 7, 11")
     histogram_bits: int = histogram_bits_parameter()
     resampling: str = resampling_parameter("P1 Algorithm 2")
     motion: ApfMotionParameters = group(ApfMotionParameters)

@@ -24,7 +24,7 @@ def average_similarities(distances: Array, best_share: float) -> Array:
     distances : (F, N) array
         Bhattacharyya distances of the particles (eq. 8), 0 to 1.
     best_share : float
-        Share of the particles that count; 1 is all of them, as printed (READINGS 19).
+        Share of the particles that count; 1 is all of them, as printed (interpretation 19).
 
     Returns
     -------
@@ -87,7 +87,7 @@ def weigh_features(averages: Array, initial: Array, threshold: float) -> Feature
 def common_survivors(sets: Sequence[Ancestors], count: int, otherwise: Ancestors) -> Ancestors:
     """Keep the particles that survive in every feature's own resampling, as printed.
 
-    The paper does not say how the set is filled up again (READINGS 18); here its members are
+    The paper does not say how the set is filled up again (interpretation 18); here its members are
     repeated in turn.
 
     Parameters

@@ -21,13 +21,13 @@ class LikelihoodParameters:
         "Smaller: weights fall faster as a particle's histogram departs from the reference.",
         minimum=1e-3,
         maximum=100.0,
-        source="P1 eq. 25, READINGS 1 (printed: 1.5)",
+        source="P1 eq. 25, interpretation 1 (printed: 1.5)",
         tuned=True,
     )
     squared_distance: bool = parameter(
         True,
         "False takes the distance unsquared, as printed; the weights are then almost flat.",
-        source="P1 eq. 25, READINGS 1",
+        source="P1 eq. 25, interpretation 1",
     )
 
 

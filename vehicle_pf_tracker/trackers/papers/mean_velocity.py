@@ -12,7 +12,7 @@ _Move: TypeAlias = tuple[float, float, float]
 
 
 class MeanVelocity:
-    """Mean of the last displacements per nominal frame (P1, section III-B; READINGS 5).
+    """Mean of the last displacements per nominal frame (P1, section III-B; interpretation 5).
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ class DispersionParameters:
         minimum=0.0,
         maximum=100.0,
         unit="px/frame",
-        source="P2 section IV, READINGS 19 (no value printed)",
+        source="P2 section IV, interpretation 19 (no value printed)",
     )
     largest: float = parameter(
         60.0,
@@ -70,7 +70,7 @@ class DispersionParameters:
         minimum=0.0,
         maximum=10_000.0,
         unit="px",
-        source="READINGS 19",
+        source="interpretation 19",
     )
 
 
@@ -85,7 +85,7 @@ class ConfidenceParameters:
         minimum=0.0,
         maximum=1.0,
         unit="share of the particles",
-        source="P2 section IV, READINGS 19",
+        source="P2 section IV, interpretation 19",
     )
     threshold: float = parameter(
         0.7,
@@ -93,7 +93,7 @@ class ConfidenceParameters:
         minimum=0.0,
         maximum=1.0,
         unit="share of the initial average similarity",
-        source="P2 Table II, READINGS 19",
+        source="P2 Table II, interpretation 19",
         tuned=True,
     )
 
@@ -108,7 +108,7 @@ class EdgeParameters:
         minimum=0.01,
         maximum=1.0,
         unit="share of the window's strongest gradient",
-        source="P2 section III-C, READINGS 14",
+        source="P2 section III-C, interpretation 14",
         effect="relearns",
         tuned=True,
     )
@@ -119,19 +119,19 @@ class EdgeParameters:
         minimum=0.0,
         maximum=1500.0,
         unit="grey levels",
-        source="P2 section III-C, READINGS 14",
+        source="P2 section III-C, interpretation 14",
         effect="relearns",
     )
     in_frame: bool = parameter(
         True,
         "Take the gradient in the frame; off takes it in each window by itself, as printed.",
-        source="P2 eq. 6, READINGS 14",
+        source="P2 eq. 6, interpretation 14",
         effect="relearns",
     )
     signed: bool = parameter(
         True,
         "Tell light-to-dark from dark-to-light; off folds them by the printed arctangent.",
-        source="P2 eq. 7, READINGS 13",
+        source="P2 eq. 7, interpretation 13",
         effect="relearns",
     )
 
@@ -140,13 +140,13 @@ class EdgeParameters:
 class FeatureFilterParameters(ParticleParameters):
     """What `mfpf` and its single-feature filters have in common."""
 
-    as_printed: bool = as_printed_switch("READINGS 1, 12 to 19")
+    as_printed: bool = as_printed_switch("interpretations 1, 12 to 19")
     reference_weight: float = parameter(
         0.7,
         "Higher: the reference keeps more of the first frame and follows the last one less.",
         minimum=0.0,
         maximum=1.0,
-        source="P2 eq. 9, READINGS 15 (no value printed)",
+        source="P2 eq. 9, interpretation 15 (no value printed)",
         tuned=True,
     )
     velocity_window: int = parameter(
@@ -155,14 +155,14 @@ class FeatureFilterParameters(ParticleParameters):
         minimum=1,
         maximum=10_000,
         unit="frames",
-        source="P2 eq. 5, READINGS 12",
+        source="P2 eq. 5, interpretation 12",
         tuned=True,
     )
     estimate: str = parameter(
         "mean",
         "The weighted mean of the particles, or the best one, as printed.",
         choices=("mean", "best"),
-        source="P2 eq. 12, 13 and 18, READINGS 17",
+        source="P2 eq. 12, 13 and 18, interpretation 17",
     )
     resampling: str = resampling_parameter("P2 eq. 15")
     resample_below: float = parameter(
@@ -171,7 +171,7 @@ class FeatureFilterParameters(ParticleParameters):
         minimum=0.0,
         maximum=1.0,
         unit="share of the particles",
-        source="P2 eq. 14, READINGS 16",
+        source="P2 eq. 14, interpretation 16",
     )
     likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.1)
     dispersion: DispersionParameters = group(DispersionParameters)
@@ -188,7 +188,7 @@ class MfpfParameters(FeatureFilterParameters):
         True,
         "Resample once, on the product of the features' weights; off keeps the particles that "
         "survive in every feature's own resampling, as printed.",
-        source="P2 section IV, READINGS 18",
+        source="P2 section IV, interpretation 18",
     )
 
     def effective(self) -> MfpfParameters:

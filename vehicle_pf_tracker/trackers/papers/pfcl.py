@@ -32,7 +32,7 @@ class LineParameters:
         "Smaller: weights fall faster as a particle's lines depart from the reference.",
         minimum=1e-3,
         maximum=100.0,
-        source="READINGS 3",
+        source="Xiong 2004 (no value printed)",
         tuned=True,
     )
     bins: int = parameter(

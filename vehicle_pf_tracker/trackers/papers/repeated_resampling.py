@@ -27,14 +27,14 @@ from vehicle_pf_tracker.trackers.papers.shared_parameters import as_printed_swit
 class RepeatedResamplingParameters(ColourParameters):
     """What both filters of P3 have."""
 
-    as_printed: bool = as_printed_switch("READINGS 21 and 22")
+    as_printed: bool = as_printed_switch("interpretations 21 and 22")
     sigma: float = parameter(
         14.0,
         "About 1.75 times the vehicle's speed: less loses fast vehicles, more follows look-alikes.",
         minimum=0.01,
         maximum=1000.0,
         unit="px/frame",
-        source="P3 Table I step 5, READINGS 23",
+        source="P3 Table I step 5, interpretation 23",
         tuned=True,
     )
     jitter: float = parameter(
@@ -43,7 +43,7 @@ class RepeatedResamplingParameters(ColourParameters):
         minimum=0.0,
         maximum=10.0,
         unit="share of sigma",
-        source="P3 Table I step 16, READINGS 23",
+        source="P3 Table I step 16, interpretation 23",
         tuned=True,
     )
     criterion: float = parameter(
@@ -53,7 +53,7 @@ class RepeatedResamplingParameters(ColourParameters):
         minimum=0.0,
         maximum=1.0,
         unit="share of the particles",
-        source="P3 Table I step 13, READINGS 21",
+        source="P3 Table I step 13, interpretation 21",
         tuned=True,
     )
     most_passes: int = parameter(
