@@ -21,12 +21,12 @@ from reproduction.experiment import (
     Claim,
     DataTable,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 
@@ -120,9 +120,9 @@ def _figure(grids: Mapping[str, Grid], size: Size) -> Figure:
     return figure
 
 
-def _verdict(grids: Mapping[str, Grid], size: Size) -> Verdict:
+def _verdict(grids: Mapping[str, Grid], size: Size) -> ExperimentVerdict:
     speeds, sigmas = size.of(*_SPEEDS), size.of(*_SIGMAS)
-    return Verdict(
+    return ExperimentVerdict(
         (
             Claim(
                 "for each speed there is a sigma with the least error, about half the speed",

@@ -17,12 +17,12 @@ from reproduction.experiment import (
     Claim,
     DataTable,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.scenes.scene import SceneFrame
@@ -53,7 +53,7 @@ def report(results: Results, size: Size) -> Report:
     return Report(
         DataTable(("frame", "x", "y", "occlusion", "visible_fraction"), rows),
         _figure(shown),
-        Verdict(
+        ExperimentVerdict(
             (
                 Claim(
                     f"a dark vertical bar of {_WIDTH} px hides the whole vehicle",

@@ -25,12 +25,12 @@ from reproduction.experiment import (
     DataTable,
     Entry,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.numbers import (
     counted,
@@ -180,13 +180,13 @@ def _outline(axes: Axes, spans: dict[int, tuple[int, int] | None]) -> None:
         )
 
 
-def _verdict(table: _Runs) -> Verdict:
+def _verdict(table: _Runs) -> ExperimentVerdict:
     def claim(words: str, judge: Callable[[_Runs, str], Finding]) -> Claim:
         return Claim(
             words, _PLACE, tuple(judge(table, interpretation) for interpretation in INTERPRETATIONS)
         )
 
-    return Verdict(
+    return ExperimentVerdict(
         (
             claim("the vehicle is tracked at every width from 0 to 120 px", _tracked),
             claim("the wider the occlusion, the more frames are in occlusion mode", _longer),

@@ -22,12 +22,12 @@ from reproduction.experiment import (
     DataTable,
     Entry,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.numbers import counted, median_and_range, share
 
@@ -105,12 +105,12 @@ def _draw(axes: Axes, traces: dict[int, list[float | None]]) -> None:
     axes.set_ylim(0, 1)
 
 
-def _verdict(results: Results, size: Size) -> Verdict:
+def _verdict(results: Results, size: Size) -> ExperimentVerdict:
     def runs(interpretation: str, width: int) -> list[Result]:
         return [results[_cell(interpretation, width, seed)] for seed in size.seeds]
 
     narrow, wide = _WIDTHS
-    return Verdict(
+    return ExperimentVerdict(
         (
             Claim(
                 f"with {narrow} px the similarities stay above the threshold, and occlusion mode "

@@ -14,12 +14,12 @@ from reproduction.cells import Result, RunCell
 from reproduction.experiment import (
     Claim,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.numbers import counted, median_and_range, share
 from vehicle_pf_tracker.core.frame import Frame
@@ -113,7 +113,7 @@ def _draw(axes: Axes, frame: Frame, scored: Scores, until: int) -> None:
     )
 
 
-def _verdict(results: Results, runs: dict[str, list[Scores]], size: Size) -> Verdict:
+def _verdict(results: Results, runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
     def claim(words: str, judge: _Judge) -> Claim:
         found = []
         for interpretation, system in INTERPRETATIONS.items():
@@ -121,7 +121,7 @@ def _verdict(results: Results, runs: dict[str, list[Scores]], size: Size) -> Ver
             found.append(judge(interpretation, raw, runs[system.label]))
         return Claim(words, _PLACE, tuple(found))
 
-    return Verdict(
+    return ExperimentVerdict(
         (
             claim("the vehicle is followed through partial and total occlusions", _followed),
             claim("in the clear, the regular mode is used", _regular),

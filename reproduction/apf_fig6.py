@@ -11,12 +11,12 @@ from reproduction.experiment import (
     Claim,
     DataTable,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.numbers import median_and_range
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
@@ -59,12 +59,12 @@ def _table(runs: dict[str, list[Scores]]) -> DataTable:
     return DataTable(("tracker", "before the first total occlusion", "after the last"), tuple(rows))
 
 
-def _verdict(runs: dict[str, list[Scores]], size: Size) -> Verdict:
+def _verdict(runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
     findings = tuple(
         _finding(interpretation, runs[system.label], runs)
         for interpretation, system in INTERPRETATIONS.items()
     )
-    return Verdict(
+    return ExperimentVerdict(
         (
             Claim(
                 "before and after the total occlusions APF's errors are smaller than the others'",

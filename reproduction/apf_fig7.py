@@ -9,12 +9,12 @@ from reproduction.apf_systems import INTERPRETATIONS, RIVALS, SIX
 from reproduction.experiment import (
     Claim,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.numbers import counted, share
 from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
@@ -46,7 +46,7 @@ def _figure(runs: dict[str, Scores]) -> Figure:
     return figure
 
 
-def _verdict(runs: dict[str, list[Scores]], size: Size) -> Verdict:
+def _verdict(runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
     own = {
         interpretation: video3.recoveries(runs[system.label])
         for interpretation, system in INTERPRETATIONS.items()
@@ -54,7 +54,7 @@ def _verdict(runs: dict[str, list[Scores]], size: Size) -> Verdict:
     others = {rival.label: video3.recoveries(runs[rival.label]) for rival in RIVALS}
     lost = [not hit for hits in others.values() for hit in hits]
     told = "; ".join(f"{label} {counted(hits)}" for label, hits in others.items())
-    return Verdict(
+    return ExperimentVerdict(
         (
             Claim(
                 "APF overcomes the total occlusions and follows the vehicle again",

@@ -32,12 +32,12 @@ from reproduction.experiment import (
     DataTable,
     Entry,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.numbers import (
     counted,
@@ -86,7 +86,10 @@ def report(results: Results, size: Size) -> Report:
     }  # fmt: skip
     claims = (*_claims(videos, hits, others), *condition_claims(conditions))
     return Report(
-        _data(results, size), table_figure(videos), Verdict(claims, _setting(size)), tables
+        _data(results, size),
+        table_figure(videos),
+        ExperimentVerdict(claims, _setting(size)),
+        tables,
     )
 
 

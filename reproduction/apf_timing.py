@@ -13,12 +13,12 @@ from reproduction.experiment import (
     Claim,
     DataTable,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.numbers import median_and_range
 from reproduction.timing_cell import TimingCell
@@ -86,14 +86,14 @@ def _figure(ratios: dict[str, list[float]]) -> Figure:
     return figure
 
 
-def _verdict(ratios: dict[str, list[float]], size: Size) -> Verdict:
+def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
     middle = {label: median(found) for label, found in ratios.items()}
     filters = [rival.label for rival in RIVALS if rival.label != "MS"]
     told = ", ".join(f"{label} {median_and_range(ratios[label], 2)}" for label in filters)
     cheaper = [label for label in filters if middle[label] < 1]
     alike = [1 / _ALIKE <= middle[label] <= _ALIKE for label in filters]
     mean_shift = f"{median_and_range(ratios['MS'], 2)} of APF's time"
-    return Verdict(
+    return ExperimentVerdict(
         (
             Claim(
                 "APF takes no more time than the other particle filters",

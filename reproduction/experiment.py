@@ -46,7 +46,7 @@ def _shown(entry: Entry, decimals: int) -> str:
 
 
 class Holds(str, Enum):
-    """Verdict on a claim."""
+    """ExperimentVerdict on a claim."""
 
     YES = "yes"
     PARTLY = "partly"
@@ -80,7 +80,7 @@ class Finding:
     interpretation : str
         Name of the interpretation.
     holds : Holds
-        Verdict under this interpretation.
+        ExperimentVerdict under this interpretation.
     numbers : str
         The numbers that say so, with their spread.
     """
@@ -100,7 +100,7 @@ class Claim:
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class ExperimentVerdict:
     """The judgement of one experiment.
 
     Attributes
@@ -128,7 +128,7 @@ class Verdict:
 
     def to_markdown(self) -> str:
         """Return the text, with a table per claim."""
-        parts = [f"**Verdict: {self.holds.value}.**", self.setting]
+        parts = [f"**ExperimentVerdict: {self.holds.value}.**", self.setting]
         for claim in self.claims:
             rows = ["| interpretation | holds | what came out |", "|---|---|---|"]
             rows += [
@@ -175,7 +175,7 @@ class Report:
         Values of all cells.
     figure : Figure
         Like the paper's.
-    verdict : Verdict
+    verdict : ExperimentVerdict
         Verdicts on the claims.
     tables : mapping of str to DataTable
         Summaries to be read, by title.
@@ -183,7 +183,7 @@ class Report:
 
     data: DataTable
     figure: Figure
-    verdict: Verdict
+    verdict: ExperimentVerdict
     tables: Mapping[str, DataTable] = field(default_factory=dict)
 
 

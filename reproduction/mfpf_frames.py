@@ -9,12 +9,12 @@ from reproduction.experiment import (
     Claim,
     DataTable,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.mfpf_systems import FOUR, MFPF, OURS, SINGLES
 from reproduction.strips import strip_figure, telling_frames
@@ -41,7 +41,7 @@ def report(results: Results, size: Size) -> Report:
     return Report(
         DataTable(columns, rows),
         _figure(results, size),
-        Verdict(
+        ExperimentVerdict(
             (Claim("the six cases show what the paper's do", "section V, figures 4 to 14",
                    (_finding(results, size),)),),
             f"{mfpf.setting(size)} The picture shows the first seed, in grey, cut to what "

@@ -16,12 +16,12 @@ from reproduction.experiment import (
     DataTable,
     Entry,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.mfpf_systems import (
     FEATURES,
@@ -173,7 +173,7 @@ def report(results: Results, size: Size) -> Report:
     return Report(
         DataTable(("interpretation", "situation", "seed", "feature", "distance"), tuple(rows)),
         _figure(size),
-        Verdict(_claims(found), _setting(size)),
+        ExperimentVerdict(_claims(found), _setting(size)),
         {"Hellinger distance from the first frame's histogram, mean ± standard deviation over the "
          "seeds:": table},
     )  # fmt: skip

@@ -14,7 +14,7 @@ from reproduction.case_figure import (
     Values,
     draw_cases,
 )
-from reproduction.experiment import Claim, DataTable, Entry, Report, Size, Verdict
+from reproduction.experiment import Claim, DataTable, Entry, ExperimentVerdict, Report, Size
 from reproduction.mfpf_systems import OURS
 from reproduction.numbers import mean_and_spread
 from reproduction.paper_scenes import CASES
@@ -48,7 +48,7 @@ def share_report(
     return Report(
         DataTable(("interpretation", "case", told.of, "seed", told.column), tuple(rows)),
         _share_figure(shares[OURS], told.axis),
-        Verdict(tuple(claims), mfpf.setting(size)),
+        ExperimentVerdict(tuple(claims), mfpf.setting(size)),
         {told.title: _share_table(shares, paper)},
     )
 

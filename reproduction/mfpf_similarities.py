@@ -14,12 +14,12 @@ from reproduction.experiment import (
     DataTable,
     Entry,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.mfpf_case_plots import draw_by_case
 from reproduction.mfpf_systems import FEATURES, INTERPRETATIONS, MFPF, OURS
@@ -42,7 +42,7 @@ def report(results: Results, size: Size) -> Report:
     return Report(
         DataTable(columns, tuple(rows)),
         _figure(results, size),
-        Verdict(
+        ExperimentVerdict(
             _claims(results, size),
             f"{mfpf.setting(size)} Curves are those of the first seed under our interpretation; "
             f"thin "

@@ -18,12 +18,12 @@ from reproduction.experiment import (
     DataTable,
     Entry,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.mfpf_systems import (
     DEFAULTS,
@@ -89,7 +89,7 @@ def report(results: Results, size: Size) -> Report:
     return Report(
         _data(results, size),
         error_case_figure(errors[OURS], shades, [_short(n) for n in shades], "case"),
-        Verdict(
+        ExperimentVerdict(
             (*_claims(errors), *_further(errors, followed), textures.claim(results, size)),
             mfpf.setting(size),
             _TRIED,

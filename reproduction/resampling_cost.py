@@ -13,12 +13,12 @@ from reproduction.experiment import (
     Claim,
     DataTable,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import INTERPRETATIONS
@@ -99,8 +99,8 @@ def _figure(means: dict[str, list[float]]) -> Figure:
     return figure
 
 
-def _verdict(ratios: dict[str, list[float]], size: Size) -> Verdict:
-    return Verdict(
+def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
+    return ExperimentVerdict(
         (
             Claim(
                 "the adaptive filter takes no more time than the conventional one",

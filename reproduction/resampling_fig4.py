@@ -11,12 +11,12 @@ from reproduction.experiment import (
     Claim,
     DataTable,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import (
@@ -59,7 +59,7 @@ def report(results: Results, size: Size) -> Report:
     return Report(
         resampling.data(results, size),
         _figure(results, size),
-        Verdict(
+        ExperimentVerdict(
             _claims(errors),
             f"{resampling.SETTING} {len(size.seeds)} seeds. Thick curves are the medians of the "
             "seeds' errors, thin ones the seeds; shades are those of the first seed.",

@@ -13,12 +13,12 @@ from reproduction.experiment import (
     Claim,
     DataTable,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import (
@@ -58,7 +58,7 @@ def report(results: Results, size: Size) -> Report:
     return Report(
         resampling.data(results, size),
         _figure(results, size),
-        Verdict(
+        ExperimentVerdict(
             _claims(results, size, passes),
             f"{resampling.SETTING} {len(size.seeds)} seeds; curves are their means. A resampled "
             "particle is one that is drawn and weighed anew in a pass.",

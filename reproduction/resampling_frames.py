@@ -6,12 +6,12 @@ from reproduction import resampling_systems as resampling
 from reproduction.experiment import (
     Claim,
     Experiment,
+    ExperimentVerdict,
     Finding,
     Holds,
     Report,
     Results,
     Size,
-    Verdict,
 )
 from reproduction.resampling_systems import (
     ADAPTIVE,
@@ -42,7 +42,7 @@ def report(results: Results, size: Size) -> Report:
     return Report(
         resampling.data(results, size),
         strip_figure(rows),
-        Verdict(
+        ExperimentVerdict(
             (
                 Claim(
                     "the adaptive filter is on the vehicle in all four phases",

@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from reproduction.experiment import Claim, DataTable, Finding, Holds, Verdict
+from reproduction.experiment import Claim, DataTable, ExperimentVerdict, Finding, Holds
 from reproduction.numbers import (
     counted,
     mean_and_spread,
@@ -30,7 +30,9 @@ def test_shares_are_judged(value, holds):
 
 def verdict():
     findings = Finding("our interpretation", YES, "3 px"), Finding("as printed", NO, "300 px")
-    return Verdict((Claim("it follows", "figure 1", findings),), "A bar.", ("Mind the gap.",))
+    return ExperimentVerdict(
+        (Claim("it follows", "figure 1", findings),), "A bar.", ("Mind the gap.",)
+    )
 
 
 def test_our_reading_decides():
@@ -47,7 +49,7 @@ def test_a_verdict_is_plain_json():
 
 def test_a_verdict_is_a_text_with_a_table_for_each_claim():
     assert verdict().to_markdown() == (
-        "**Verdict: yes.**\n\nA bar.\n\nClaim (figure 1): it follows\n\n"
+        "**ExperimentVerdict: yes.**\n\nA bar.\n\nClaim (figure 1): it follows\n\n"
         "| interpretation | holds | what came out |\n|---|---|---|\n"
         "| our interpretation | **yes** | 3 px |\n| as printed | **no** | 300 px |\n\nMind the "
         "gap.\n"

@@ -26,7 +26,7 @@ from vehicle_pf_tracker.evaluation.tuning import comparison
 from vehicle_pf_tracker.evaluation.tuning.search_space import default_search, search_space
 from vehicle_pf_tracker.evaluation.tuning.searching import (
     OBJECTIVES,
-    Search,
+    SearchTask,
     Trial,
     best_of,
     search,
@@ -89,7 +89,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Search, compare, write everything, and print the comparison."""
+    """SearchTask, compare, write everything, and print the comparison."""
     variant = find_variant(args.variant)
     configuration = _configuration(variant, args)
     base = system_options.make_system(variant, "", configuration, {})
@@ -134,7 +134,7 @@ def _configuration(variant: Variant, args: argparse.Namespace) -> Configuration:
 
 def _search(
     variant: Variant, base: VariantSystem, args: argparse.Namespace
-) -> tuple[Search, Recordings]:
+) -> tuple[SearchTask, Recordings]:
     words = [word for text in args.search for word in text.split(",") if word]
     space = search_space(variant, dict(base.parameters), words)
     tuned = find_recordings(args.sources)
@@ -147,13 +147,13 @@ def _search(
             raise InputError(f"{source.path} is held out and tuned on; it can only be one of both")
     seeds = range(SEARCH_SEED, SEARCH_SEED + args.seeds)
     objective = OBJECTIVES[args.objective]
-    what = Search(
+    what = SearchTask(
         base, space, sources[: len(tuned)], seeds, objective, args.max_diff, args.sampler_seed
     )
     return what, recordings
 
 
-def _find_best(what: Search, output: Path, args: argparse.Namespace) -> Trial:
+def _find_best(what: SearchTask, output: Path, args: argparse.Namespace) -> Trial:
     store = ResultStore(output / "runs.jsonl")
     with telling("tune") as on_progress:
         trials = search(what, args.trials, store, on_this_machine(args.workers), on_progress)
@@ -162,8 +162,8 @@ def _find_best(what: Search, output: Path, args: argparse.Namespace) -> Trial:
 
 
 def _compare(
-    what: Search, best: Trial, recordings: Recordings, folder: Path, args: argparse.Namespace
-) -> list[comparison.Line]:
+    what: SearchTask, best: Trial, recordings: Recordings, folder: Path, args: argparse.Namespace
+) -> list[comparison.ComparedMetric]:
     systems = [what.base, what.base.changed(BEST, best.values)]
     plan = Plan(dict(recordings), systems, range(args.seeds), args.command, args.max_diff)
     with telling("compare") as on_progress:
@@ -174,7 +174,9 @@ def _compare(
     return comparison.compare(plan, folder, held_out, list(metrics))
 
 
-def _write_best(configuration: Configuration, variant: Variant, what: Search, output: Path) -> Path:
+def _write_best(
+    configuration: Configuration, variant: Variant, what: SearchTask, output: Path
+) -> Path:
     names = ", ".join(source.name for source in what.sources)
     title = f"{variant.name}: tuned by `vehicle-pf-tracker tune` on {names}."
     path = output / f"{BEST}.yaml"

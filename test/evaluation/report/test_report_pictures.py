@@ -19,7 +19,7 @@ from vehicle_pf_tracker.evaluation.report.filmstrip import (
     plan_strips,
     take_stills,
 )
-from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, colour_of, draw_overlay
+from vehicle_pf_tracker.evaluation.report.overlay import Crop, Mark, colour_of, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker, ink
 
@@ -46,17 +46,17 @@ def test_stretches_of_one_kind():
 
 
 def test_a_view_holds_the_boxes_and_stays_in_the_image():
-    view = View.around([BOX, Box(5, 5, 20, 10)], (320, 240), 280)
+    view = Crop.around([BOX, Box(5, 5, 20, 10)], (320, 240), 280)
     assert view.left <= 5 and view.top <= 5
     assert view.left + view.width >= 120 and view.top + view.height >= 70
     assert view.scale == pytest.approx(280 / view.width)
-    far = View.around([BOX, Box(-900, 5, 20, 10)], (320, 240), 280)
+    far = Crop.around([BOX, Box(-900, 5, 20, 10)], (320, 240), 280)
     assert (far.left, far.top, far.width, far.height) == (0, 0, 320, 240)
 
 
 @pytest.mark.parametrize("size", [(96, 64), (640, 360), (40, 400)])
 def test_views_are_four_to_three_in_every_image(size):
-    view = View.around([Box(10, 10, 8, 8)], size, 280)
+    view = Crop.around([Box(10, 10, 8, 8)], size, 280)
     assert view.width / view.height == pytest.approx(4 / 3, rel=0.05)
     assert 0 <= view.left <= size[0] - view.width
     assert 0 <= view.top <= size[1] - view.height
@@ -65,7 +65,7 @@ def test_views_are_four_to_three_in_every_image(size):
 def test_an_overlay_has_the_boxes_where_they_are():
     frame = np.full((240, 320, 3), 128, np.uint8)
     before = frame.copy()
-    image = draw_overlay(frame, View.whole(frame, 640), BOX, [Mark(Box(200, 100, 40, 40), 1)])
+    image = draw_overlay(frame, Crop.whole(frame, 640), BOX, [Mark(Box(200, 100, 40, 40), 1)])
     assert image.shape == (480, 640, 3)
     assert tuple(image[240, 400]) == colour_of(1)  # the middle of its left side
     assert tuple(image[120, 200]) == (255, 255, 255)  # the truth's corner
@@ -76,7 +76,7 @@ def test_an_overlay_has_the_boxes_where_they_are():
 def test_boxes_far_outside_do_no_harm():
     frame = np.full((24, 32, 3), 128, np.uint8)
     marks = [Mark(Box(1e9, -1e9, 5, 5), None), Mark(Box(-50, -50, 1e7, 1e7), 2)]
-    assert draw_overlay(frame, View.whole(frame, 320), None, marks).shape == (240, 320, 3)
+    assert draw_overlay(frame, Crop.whole(frame, 320), None, marks).shape == (240, 320, 3)
 
 
 def test_each_system_is_shown_where_it_was_worst(made_evaluation):

@@ -3,7 +3,7 @@ import pytest
 from vehicle_pf_tracker.evaluation.tuning.comparison import (
     HELD_OUT,
     TUNED,
-    Line,
+    ComparedMetric,
     to_markdown,
     verdict,
 )
@@ -13,8 +13,11 @@ UP, DOWN = OBJECTIVES["success_auc"], OBJECTIVES["rmse_px"]
 
 
 def lines(metric, tuned, held_out):
-    found = [Line(TUNED, "a", metric, 1.0, 1.0), Line(TUNED, "mean of 1", metric, *tuned)]
-    return found + ([Line(HELD_OUT, "mean of 2", metric, *held_out)] if held_out else [])
+    found = [
+        ComparedMetric(TUNED, "a", metric, 1.0, 1.0),
+        ComparedMetric(TUNED, "mean of 1", metric, *tuned),
+    ]
+    return found + ([ComparedMetric(HELD_OUT, "mean of 2", metric, *held_out)] if held_out else [])
 
 
 @pytest.mark.parametrize(
@@ -35,7 +38,7 @@ def test_the_verdict_says_whether_the_gain_holds(objective, tuned, held_out, sai
 
 
 def test_the_table_shows_spread_and_change():
-    line = Line(TUNED, "road", "rmse_px", 12.0, 10.5, 1.0, 0.25)
+    line = ComparedMetric(TUNED, "road", "rmse_px", 12.0, 10.5, 1.0, 0.25)
     assert (
         "| tuned on | road | rmse_px | 12.000 ± 1.000 | 10.500 ± 0.250 | -1.500 |"
         in to_markdown([line])

@@ -5,13 +5,13 @@ pytest.importorskip("optuna", reason="the extra [tune] is not installed")
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
-from vehicle_pf_tracker.evaluation.grid.tracking import Outcome
+from vehicle_pf_tracker.evaluation.grid.tracking import CellResult
 from vehicle_pf_tracker.evaluation.processes import Turn
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.tuning.search_space import search_space
 from vehicle_pf_tracker.evaluation.tuning.searching import (
     OBJECTIVES,
-    Search,
+    SearchTask,
     Trial,
     best_of,
     mean_of_means,
@@ -46,9 +46,9 @@ class FakeRunner:
             self.asked.append(cell)
             sigma = dict(cell.system.parameters)["sigma"]
             if self.fail_above is not None and sigma > self.fail_above:
-                yield Turn((cell, Outcome(reason="too wide")), ())
+                yield Turn((cell, CellResult(reason="too wide")), ())
             else:
-                yield Turn((cell, Outcome(metrics=Scored(cell))), ())
+                yield Turn((cell, CellResult(metrics=Scored(cell))), ())
 
 
 def what(objective="rmse_px", **more):
@@ -56,7 +56,7 @@ def what(objective="rmse_px", **more):
     values = {n: v for n, v in to_mapping(variant.parameters()).items() if n != "seed"}
     base = VariantSystem("pf", "pf", "", (), tuple(values.items()))
     space = search_space(variant, values, ["sigma"])
-    return Search(base, space, SOURCES, (100, 101), OBJECTIVES[objective], 0.01, **more)
+    return SearchTask(base, space, SOURCES, (100, 101), OBJECTIVES[objective], 0.01, **more)
 
 
 def silent(progress):

@@ -10,7 +10,7 @@ from typing import Any
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.running import Runner
-from vehicle_pf_tracker.evaluation.grid.tracking import Outcome, run_cell
+from vehicle_pf_tracker.evaluation.grid.tracking import CellResult, run_cell
 from vehicle_pf_tracker.evaluation.processes import Turn
 
 
@@ -34,11 +34,11 @@ def on_cluster(address: str, seconds: float = 10.0) -> Runner:
     return partial(_run, address, seconds)
 
 
-def run_checked(cell: GridCell, key: str) -> Outcome:
+def run_checked(cell: GridCell, key: str) -> CellResult:
     """Run a cell on a worker whose code and libraries are those that it was planned with."""
     if cell.key() == key:
         return run_cell(cell)
-    return Outcome(
+    return CellResult(
         reason=f"the worker on {socket.gethostname()} has other code or other versions of Python, "
         "NumPy, OpenCV or numba than the machine that evaluates; install the same everywhere"
     )
@@ -46,7 +46,7 @@ def run_checked(cell: GridCell, key: str) -> Outcome:
 
 def _run(
     address: str, seconds: float, cells: Sequence[GridCell]
-) -> Iterator[Turn[GridCell, Outcome]]:
+) -> Iterator[Turn[GridCell, CellResult]]:
     if not cells:
         return
     client = _connected(address, seconds)
@@ -73,7 +73,7 @@ def _connected(address: str, seconds: float) -> Any:
     return client
 
 
-def _results(client: Any, cells: Sequence[GridCell]) -> Iterator[Turn[GridCell, Outcome]]:
+def _results(client: Any, cells: Sequence[GridCell]) -> Iterator[Turn[GridCell, CellResult]]:
     from distributed import as_completed  # noqa: PLC0415 - an extra
 
     by_key = {f"{cell.label}-{cell.key()}".replace(" ", "-"): cell for cell in cells}
@@ -85,12 +85,12 @@ def _results(client: Any, cells: Sequence[GridCell]) -> Iterator[Turn[GridCell, 
         yield Turn((by_key[future.key], _outcome(future)), _running(client, by_key))
 
 
-def _outcome(future: Any) -> Outcome:
+def _outcome(future: Any) -> CellResult:
     error = future.exception()
     if error is None:
-        outcome: Outcome = future.result()
+        outcome: CellResult = future.result()
         return outcome
-    return Outcome(reason=f"the cluster gave it up: {' '.join(str(error).split())}")
+    return CellResult(reason=f"the cluster gave it up: {' '.join(str(error).split())}")
 
 
 def _running(client: Any, by_key: Mapping[str, GridCell]) -> tuple[GridCell, ...]:

@@ -13,7 +13,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, GridCell
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
-from vehicle_pf_tracker.evaluation.grid.tracking import Outcome, run_cell
+from vehicle_pf_tracker.evaluation.grid.tracking import CellResult, run_cell
 from vehicle_pf_tracker.evaluation.identity import scoring_digest
 from vehicle_pf_tracker.evaluation.output_files import (
     alone_in,
@@ -72,7 +72,7 @@ class CellStore:
                     if path.parent not in wanted:
                         shutil.rmtree(path.parent)
 
-    def add(self, cell: GridCell, outcome: Outcome, command: list[str]) -> None:
+    def add(self, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
         """Store the outcome of a cell, in place of that of an earlier run."""
         place = cell.folder(self._folder)
         partial = place.with_name(f".{place.name}.{os.getpid()}{_PARTIAL}")
@@ -82,7 +82,7 @@ class CellStore:
             shutil.rmtree(place, ignore_errors=True)
             partial.rename(place)
 
-    def _write(self, path: Path, cell: GridCell, outcome: Outcome, command: list[str]) -> None:
+    def _write(self, path: Path, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
         if outcome.metrics is None:
             write_json(make_folder(path) / FAILED, {"reason": outcome.reason})
             return
@@ -99,7 +99,7 @@ class CellStore:
             write_json(path / RESTARTS, outcome.restarts)
 
 
-Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[Turn[GridCell, Outcome]]]
+Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[Turn[GridCell, CellResult]]]
 """Runs cells, in any order, and reports each that begins or ends."""
 
 

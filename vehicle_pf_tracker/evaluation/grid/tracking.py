@@ -27,7 +27,7 @@ from vehicle_pf_tracker.trackers.registry import find_variant
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class CellResult:
     """The result of a cell.
 
     Attributes
@@ -51,18 +51,18 @@ class Outcome:
     restarts: dict[str, Any] | None = None
 
 
-def run_cell(cell: GridCell) -> Outcome:
+def run_cell(cell: GridCell) -> CellResult:
     """Run a cell; a failure is reported in the outcome, so that the others go on."""
     cv2.setNumThreads(1)
     try:
         return _run(cell, footage(cell.source))
     except InputError as error:
-        return Outcome(reason=str(error))
+        return CellResult(reason=str(error))
     except Exception as error:  # a fault of ours must not cost the rest of a long evaluation
-        return Outcome(reason=f"it ended with an internal error: {error!r}")
+        return CellResult(reason=f"it ended with an internal error: {error!r}")
 
 
-def _run(cell: GridCell, at_hand: Footage) -> Outcome:
+def _run(cell: GridCell, at_hand: Footage) -> CellResult:
     made: list[Follower] = []
 
     def make(start: Truth) -> Follower:
@@ -75,7 +75,7 @@ def _run(cell: GridCell, at_hand: Footage) -> Outcome:
     else:
         rows = list(make(cell.start.on(at_hand.truth)).rows(at_hand.frames()))
     metrics = measure(score_frames(rows, at_hand.truth, cell.max_diff))
-    return Outcome(tuple(rows), made[0].describe(at_hand.notices), metrics, "", restarts)
+    return CellResult(tuple(rows), made[0].describe(at_hand.notices), metrics, "", restarts)
 
 
 class Follower(Protocol):

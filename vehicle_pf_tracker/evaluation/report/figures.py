@@ -34,7 +34,7 @@ _ROW = 0.19
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class CurveLine:
     """A line of a figure.
 
     Attributes
@@ -83,7 +83,7 @@ def error_panel(errors: Sequence[Array], spans: Spans, highest: float) -> Figure
     return figure
 
 
-def curve_panel(lines: Sequence[Line], xlabel: str, ylabel: str) -> Figure:
+def curve_panel(lines: Sequence[CurveLine], xlabel: str, ylabel: str) -> Figure:
     """Draw shares over their thresholds."""
     with rc_context(STYLE):
         figure = Figure(figsize=_CURVE, layout="constrained")
@@ -139,7 +139,7 @@ def intervals_panel(rows: Sequence[Interval], xlabel: str) -> Figure:
     return figure
 
 
-def draw_lines(axes: Axes, lines: Sequence[Line]) -> None:
+def draw_lines(axes: Axes, lines: Sequence[CurveLine]) -> None:
     """Draw lines, the first of those with a style on top."""
     for line in reversed(lines):
         if line.slot is None:
@@ -246,7 +246,9 @@ def stretches(truths: Mapping[int, Truth], occlusion: Occlusion) -> list[tuple[i
     return found
 
 
-def _curve(evaluation: ScoredEvaluation, label: str, name: str, slot: int | None) -> Line | None:
+def _curve(
+    evaluation: ScoredEvaluation, label: str, name: str, slot: int | None
+) -> CurveLine | None:
     by_recording: dict[str, list[Array]] = {}
     thresholds: Array | None = None
     for run in evaluation.of(system=label):
@@ -256,7 +258,7 @@ def _curve(evaluation: ScoredEvaluation, label: str, name: str, slot: int | None
     if thresholds is None:
         return None
     means = [np.mean(shares, axis=0) for shares in by_recording.values()]
-    return Line(label, slot, thresholds, np.mean(means, axis=0))
+    return CurveLine(label, slot, thresholds, np.mean(means, axis=0))
 
 
 def _same_length(errors: Sequence[Array]) -> list[Array]:

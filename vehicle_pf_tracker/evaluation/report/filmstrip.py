@@ -17,7 +17,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.sources import at_hand
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
-from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, draw_overlay
+from vehicle_pf_tracker.evaluation.report.overlay import Crop, Mark, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
 from vehicle_pf_tracker.recordings.reader import Recording
 
@@ -187,7 +187,7 @@ def _worst(
 def _still(frame: Frame, shot: Shot) -> Still:
     boxes = [shot.truth, *(mark.box for mark in shot.marks)]
     image = draw_overlay(
-        frame, View.around(boxes, frame_size(frame), WIDTH), shot.truth, shot.marks
+        frame, Crop.around(boxes, frame_size(frame), WIDTH), shot.truth, shot.marks
     )
     quality = [cv2.IMWRITE_JPEG_QUALITY, _QUALITY]
     _, coded = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), quality)

@@ -32,7 +32,7 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class Crop:
     """A crop of an image, and the scale it is shown at.
 
     Attributes
@@ -50,13 +50,13 @@ class View:
     scale: float
 
     @classmethod
-    def whole(cls, frame: Frame, shown_width: int) -> View:
+    def whole(cls, frame: Frame, shown_width: int) -> Crop:
         """Show all of an image, `shown_width` px wide."""
         width, height = frame_size(frame)
         return cls(0, 0, width, height, shown_width / width)
 
     @classmethod
-    def around(cls, boxes: Sequence[Box], size: tuple[int, int], shown_width: int) -> View:
+    def around(cls, boxes: Sequence[Box], size: tuple[int, int], shown_width: int) -> Crop:
         """Show the part of 4 x 3 that holds `boxes` with room about them.
 
         Parameters
@@ -81,7 +81,7 @@ class View:
         return cls(int(x), int(y), int(width), int(height), shown_width / int(width))
 
 
-def draw_overlay(frame: Frame, view: View, truth: Box | None, marks: Sequence[Mark]) -> Frame:
+def draw_overlay(frame: Frame, view: Crop, truth: Box | None, marks: Sequence[Mark]) -> Frame:
     """Return the part of `frame` that `view` shows, as an image of its own, with the boxes."""
     part = frame[view.top : view.top + view.height, view.left : view.left + view.width]
     shown = (round(view.width * view.scale), round(view.height * view.scale))
@@ -103,7 +103,7 @@ def colour_of(slot: int | None) -> tuple[int, int, int]:
     return int(value[1:3], 16), int(value[3:5], 16), int(value[5:7], 16)
 
 
-def _shown(box: Box, view: View) -> tuple[int, int, int, int]:
+def _shown(box: Box, view: Crop) -> tuple[int, int, int, int]:
     """Return left, top, right and bottom in the shown image."""
     left, top = (box.x - view.left) * view.scale, (box.y - view.top) * view.scale
     corners = left, top, left + box.width * view.scale, top + box.height * view.scale

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.output_files import make_folder, replacing
 from vehicle_pf_tracker.evaluation.report.filmstrip import numbered_frames
-from vehicle_pf_tracker.evaluation.report.overlay import Mark, View, colour_of, draw_overlay
+from vehicle_pf_tracker.evaluation.report.overlay import Crop, Mark, colour_of, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun, typical
 
 FOLDER = "videos"
@@ -97,7 +97,7 @@ def _draw(
         for label, run in runs.items()
         if number <= len(run.boxes) and (box := run.boxes[number - 1]) is not None
     ]
-    return draw_overlay(frame, View.whole(frame, WIDTH), truth.box if truth else None, marks)
+    return draw_overlay(frame, Crop.whole(frame, WIDTH), truth.box if truth else None, marks)
 
 
 def _legend(number: int, labels: Iterable[str], slots: Mapping[str, int]) -> Frame:

@@ -23,7 +23,7 @@ Runs = Mapping[str, Sequence[float | None]]
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class ComparedMetric:
     """A metric on one recording, or the mean over several.
 
     Attributes
@@ -60,7 +60,7 @@ class Line:
 
 def compare(
     plan: Plan, folder: Path, held_out: Sequence[str], metrics: Sequence[str]
-) -> list[Line]:
+) -> list[ComparedMetric]:
     """Compare the two systems of `plan`, the base first, by their cells in `folder`.
 
     Parameters
@@ -90,14 +90,14 @@ def compare(
 
 def _lines(
     plan: Plan, folder: Path, metric: str, part: str, recordings: Sequence[str]
-) -> Iterator[Line]:
+) -> Iterator[ComparedMetric]:
     base, best = (_runs(plan, folder, system.label, metric) for system in plan.systems)
     for name in recordings:
         means = [mean_of_means({name: runs[name]}) for runs in (base, best)]
         spreads = [_spread(runs[name]) for runs in (base, best)]
-        yield Line(part, name, metric, *means, *spreads)
+        yield ComparedMetric(part, name, metric, *means, *spreads)
     over_all = [mean_of_means({name: runs[name] for name in recordings}) for runs in (base, best)]
-    yield Line(part, f"mean of {len(recordings)}", metric, *over_all)
+    yield ComparedMetric(part, f"mean of {len(recordings)}", metric, *over_all)
 
 
 def _runs(plan: Plan, folder: Path, label: str, metric: str) -> Runs:
@@ -115,7 +115,7 @@ def _spread(values: Sequence[float | None]) -> float | None:
     return statistics.stdev(known) if len(known) > 1 else None
 
 
-def to_markdown(lines: Sequence[Line]) -> str:
+def to_markdown(lines: Sequence[ComparedMetric]) -> str:
     """Return the comparison as Markdown."""
     rows = [
         "| | recording | metric | default | best | change |",
@@ -125,7 +125,7 @@ def to_markdown(lines: Sequence[Line]) -> str:
     return "\n".join(rows) + "\n"
 
 
-def to_rich(lines: Sequence[Line]) -> Table:
+def to_rich(lines: Sequence[ComparedMetric]) -> Table:
     """Return the comparison for a terminal."""
     table = Table()
     for name in ("", "recording", "metric"):
@@ -137,7 +137,7 @@ def to_rich(lines: Sequence[Line]) -> Table:
     return table
 
 
-def _cells(line: Line) -> tuple[str, ...]:
+def _cells(line: ComparedMetric) -> tuple[str, ...]:
     change = "-" if line.change is None else f"{line.change:+.3f}"
     base = _number(line.base, line.base_spread)
     best = _number(line.best, line.best_spread)
@@ -150,7 +150,7 @@ def _number(value: float | None, spread: float | None) -> str:
     return f"{value:.3f}" + ("" if spread is None else f" ± {spread:.3f}")
 
 
-def verdict(lines: Sequence[Line], objective: Objective) -> str:
+def verdict(lines: Sequence[ComparedMetric], objective: Objective) -> str:
     """State in a sentence whether the gain holds on held-out recordings."""
     change = {
         line.part: line.change

@@ -80,7 +80,7 @@ START_UP = 10
 
 
 @dataclass(frozen=True, slots=True)
-class Search:
+class SearchTask:
     """A search: the space, and the runs that score a point of it.
 
     Attributes
@@ -120,13 +120,13 @@ class Trial:
 
 
 def search(
-    what: Search, count: int, store: ResultStore, runner: Runner, on_progress: OnProgress
+    what: SearchTask, count: int, store: ResultStore, runner: Runner, on_progress: OnProgress
 ) -> list[Trial]:
     """Make `count` trials.
 
     Parameters
     ----------
-    what : Search
+    what : SearchTask
         The search.
     count : int
         Number of trials.
@@ -173,7 +173,7 @@ class _Scorer:
 
     def __init__(
         self,
-        what: Search,
+        what: SearchTask,
         count: int,
         store: ResultStore,
         runner: Runner,
@@ -235,7 +235,7 @@ class _Scorer:
         return mean_of_means(runs)
 
 
-def _study(what: Search) -> optuna.Study:
+def _study(what: SearchTask) -> optuna.Study:
     library = _optuna()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the options below count as experimental in some versions
@@ -250,7 +250,7 @@ def _study(what: Search) -> optuna.Study:
     return study
 
 
-def _ask(study: optuna.Study, what: Search) -> optuna.Trial:
+def _ask(study: optuna.Study, what: SearchTask) -> optuna.Trial:
     return study.ask({dimension.name: _distribution(dimension) for dimension in what.space})
 
 
@@ -264,7 +264,7 @@ def _distribution(dimension: Dimension) -> Any:
     return of.FloatDistribution(dimension.low, dimension.high, log=dimension.logarithmic)
 
 
-def _values(what: Search, trial: optuna.Trial) -> dict[str, Value]:
+def _values(what: SearchTask, trial: optuna.Trial) -> dict[str, Value]:
     return {d.name: d.tidy(trial.params[d.name]) for d in what.space}
 
 
