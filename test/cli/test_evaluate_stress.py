@@ -1,5 +1,6 @@
 import csv
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -53,8 +54,16 @@ def test_options_that_do_not_go_together_are_refused(footage, tmp_path, capsys):
     assert "--kinds does not go without --stress" in capsys.readouterr().err
     assert evaluate(tmp_path / "out", footage, "--stress", "quick", "--restarts") == 2
     assert "--restarts does not go with --stress" in capsys.readouterr().err
-    words = ["--stress", "quick", "--variants", f"{BASELINE}csrt"]
-    assert main(["evaluate", str(footage), *words, "-o", str(tmp_path / "out")]) == 2
+
+
+def test_baselines_are_run_too(footage, tmp_path):
+    words = ["--stress", "quick", "--kinds", "mirrored,plain", "--baselines-python", sys.executable]
+    args = ["evaluate", str(footage), *words, "--variants", f"{BASELINE}mil", "--workers", "1"]
+    assert main([*args, "-o", str(tmp_path / "out")]) == 0
+    results = json.loads((tmp_path / "out" / "stress.json").read_text())["results"]
+    assert [entry["system"] for entry in results] == [f"{BASELINE}mil"] * 4
+    assert min(entry["mean_iou"] for entry in results) > 0.2
+    assert {entry["fault"] for entry in results} == {""}
 
 
 def test_an_unknown_kind_is_named(footage, tmp_path, capsys):

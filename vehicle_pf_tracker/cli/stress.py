@@ -11,7 +11,6 @@ from vehicle_pf_tracker.cli.console import UsageError, print_table, tell_notices
 from vehicle_pf_tracker.cli.shared_options import positive
 from vehicle_pf_tracker.cli.system_options import chosen
 from vehicle_pf_tracker.cli.work_progress import telling
-from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.stress import Case, Result, StressSystem
@@ -29,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument_group("stress battery, instead of the grid").add_argument
     add(
         "--stress", choices=("quick", "full"),
-        help="run variants over cases made of the recordings or frame folders REC: quick, 8 short "
+        help="run systems over cases made of the recordings or frame folders REC: quick, 8 short "
         "ones of each; full, about 55; see docs/evaluation.md",
     )  # fmt: skip
     add("--kinds", metavar="NAME,…", help="only cases of these kinds")
@@ -89,10 +88,7 @@ def _systems(args: argparse.Namespace) -> list[StressSystem]:
 
     systems, notes = chosen(args)
     tell_notices(notes)
-    others = [system.label for system in systems if not isinstance(system, VariantSystem)]
-    if others:
-        raise UsageError(f"--stress runs variants of this package only, not {others[0]}")
-    return [StressSystem.of(each) for each in systems if isinstance(each, VariantSystem)]
+    return [StressSystem.of(system) for system in systems]
 
 
 def _cases(args: argparse.Namespace) -> list[Case]:

@@ -1,6 +1,7 @@
 """Which cases are run, and that results depend on nothing else."""
 
 import functools
+import importlib
 import json
 from pathlib import Path
 from types import SimpleNamespace
@@ -94,6 +95,18 @@ def test_other_parameters_and_seeds_are_other_results(few, tmp_path):
         run_battery(few[:1], [system], seeds=(0, 1), workers=0, store=store)
     keys = [json.loads(line)["key"] for line in store.read_text().splitlines()]
     assert len(set(keys)) == 4
+
+
+def test_a_change_of_the_code_that_makes_a_tracker_is_another_system(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    file = tmp_path / "mine_under_test.py"
+    file.write_text("def make(seed): ...")
+    system = StressSystem("mine", importlib.import_module("mine_under_test").make)
+    before = system.identity()
+    assert system.identity() == before
+    file.write_text("def make(seed): return 1")
+    assert system.identity() != before
+    assert StressSystem("mine", system.make, {"version": 2}).identity() != system.identity()
 
 
 class Perfect:

@@ -30,17 +30,10 @@ from vehicle_pf_tracker.evaluation.stress.calibration import Reliability
 from vehicle_pf_tracker.evaluation.stress.cases import Case, StressFrame
 from vehicle_pf_tracker.evaluation.stress.footage import StressSource, find_sequences
 from vehicle_pf_tracker.evaluation.stress.kinds import KINDS, Kind
-from vehicle_pf_tracker.evaluation.stress.running import (
-    Follower,
-    Result,
-    StressSystem,
-    follow,
-    run_battery,
-    run_case,
-    variant_system,
-)
+from vehicle_pf_tracker.evaluation.stress.running import Result, follow, run_battery, run_case
 from vehicle_pf_tracker.evaluation.stress.scoring import Score, score_case, score_estimates
 from vehicle_pf_tracker.evaluation.stress.summary import MEASURES, Group, difference, groups
+from vehicle_pf_tracker.evaluation.stress.systems import Follower, StressSystem, variant_system
 
 __all__ = [
     "KINDS",

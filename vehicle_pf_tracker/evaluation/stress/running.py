@@ -2,76 +2,25 @@
 
 from __future__ import annotations
 
-import functools
+import contextlib
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field, fields
+from collections.abc import Iterator, Sequence
+from dataclasses import fields
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
-from vehicle_pf_tracker.evaluation.identity import result_key, variant_modules
+from vehicle_pf_tracker.evaluation.estimates import EstimateRow
+from vehicle_pf_tracker.evaluation.identity import result_key
 from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress, run_in_processes
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.stress.cases import Case
 from vehicle_pf_tracker.evaluation.stress.scoring import Score, score_case
-from vehicle_pf_tracker.parameters.table import Value, from_mapping, to_mapping
+from vehicle_pf_tracker.evaluation.stress.systems import Follower, StressSystem
 from vehicle_pf_tracker.trackers.estimate import Estimate
-from vehicle_pf_tracker.trackers.registry import find_variant
 
 WORKERS = 2
 _THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
-
-
-class Follower(Protocol):
-    """A tracker under test: any of the package, or anything with the same two methods."""
-
-    def start(self, frame: Frame, box: Box) -> Estimate:
-        """Learn the target in the first frame."""
-        ...
-
-    def step(self, frame: Frame, elapsed: float = 1.0) -> Estimate:
-        """Find it in the next one."""
-        ...
-
-
-@dataclass(frozen=True)
-class StressSystem:
-    """A tracker under test.
-
-    Attributes
-    ----------
-    label : str
-        Its name in all tables.
-    make : callable
-        Makes a new tracker for a seed. For several processes it has to be picklable: a function or
-        a class of a module, or a `functools.partial` of one.
-    facts : mapping
-        Plain values that decide about its estimates besides `make`: parameters, a version.
-    modules : tuple of str
-        Modules of this package that it begins in; a change of their code invalidates kept scores.
-    is_deterministic : bool
-        The seed has no effect: it runs once.
-    """
-
-    label: str
-    make: Callable[[int], Follower]
-    facts: Mapping[str, Any] = field(default_factory=dict)
-    modules: tuple[str, ...] = ()
-    is_deterministic: bool = False
-
-    @classmethod
-    def of(cls, system: VariantSystem) -> StressSystem:
-        """Put a variant with its parameters to the test."""
-        variant = find_variant(system.variant)
-        facts = {"variant": system.variant, "parameters": dict(system.parameters)}
-        make = functools.partial(_make_variant, system)
-        modules = tuple(sorted(variant_modules(variant)))
-        return cls(system.label, make, facts, modules, system.is_deterministic)
 
 
 class Result(NamedTuple):
@@ -96,19 +45,22 @@ class _Task(NamedTuple):
         facts = {
             "sequence": self.case.origin.source.digest,
             "case": repr([(name, value) for name, value in _fields(self.case) if name != "origin"]),
-            "system": dict(self.system.facts),
-            "make": getattr(self.system.make, "__qualname__", self.system.label),
+            "system": self.system.identity(),
             "seed": self.seed,
         }
         return result_key(facts, {__name__, *self.system.modules})
 
 
 def run_case(case: Case, system: StressSystem, seed: int = 0) -> Score:
-    """Run a new tracker through a case and score it."""
-    estimates: list[Estimate] = []
+    """Run a new tracker through a case, and score it."""
+    estimates: list[Estimate | EstimateRow] = []
     fault = ""
     try:
-        estimates.extend(follow(case, system.make(seed)))
+        tracker = system.make(seed)
+        with contextlib.ExitStack() as stack:
+            if hasattr(tracker, "close"):
+                stack.callback(tracker.close)
+            estimates.extend(follow(case, tracker))
     except InputError as error:
         fault = str(error)
     except Exception as error:  # a fault of one tracker must not cost the rest of a long battery
@@ -116,7 +68,7 @@ def run_case(case: Case, system: StressSystem, seed: int = 0) -> Score:
     return score_case(case, estimates, fault)
 
 
-def follow(case: Case, tracker: Follower) -> Iterator[Estimate]:
+def follow(case: Case, tracker: Follower) -> Iterator[Estimate | EstimateRow]:
     """Run a tracker through a case: one estimate per frame."""
     if hasattr(tracker, "frame_period"):
         tracker.frame_period = 1.0 / case.fps
@@ -215,7 +167,7 @@ def _score(task: _Keyed) -> dict[str, Any]:
     return run_case(case, system, seed).to_json()
 
 
-@contextmanager
+@contextlib.contextmanager
 def _single_threaded() -> Iterator[None]:
     """Let processes that begin now compute on one thread each."""
     before = {name: os.environ.get(name) for name in _THREADS}
@@ -228,36 +180,6 @@ def _single_threaded() -> Iterator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
-
-
-def variant_system(
-    name: str, parameters: Mapping[str, Value] | None = None, label: str | None = None
-) -> StressSystem:
-    """Make the system of a variant from its registry name.
-
-    Parameters
-    ----------
-    name : str
-        As in the registry.
-    parameters : mapping of str to Value or None
-        Those that differ from the defaults, by their dotted names.
-    label : str or None
-        Its name in tables; None takes `name`.
-
-    Raises
-    ------
-    InputError
-        If there is no such variant, or a parameter does not fit.
-    """
-    kind = find_variant(name).parameters
-    values = to_mapping(from_mapping(kind, dict(parameters or {})))
-    values.pop("seed")
-    overrides = tuple(sorted((parameters or {}).items()))
-    return StressSystem.of(VariantSystem(label or name, name, "", overrides, tuple(values.items())))
-
-
-def _make_variant(system: VariantSystem, seed: int) -> Follower:
-    return find_variant(system.variant).tracker(system.tracker_parameters(seed))
 
 
 def _fields(case: Case) -> list[tuple[str, object]]:

@@ -6,7 +6,7 @@ import hashlib
 import itertools
 import statistics
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
@@ -170,7 +170,7 @@ def _modes(visible: Sequence[FrameScore], hidden: Sequence[FrameScore]) -> dict[
 
 def _row(number: int, stamp_ns: int, estimate: Estimate | EstimateRow) -> EstimateRow:
     if isinstance(estimate, EstimateRow):
-        return estimate
+        return replace(estimate, frame=number, stamp_ns=stamp_ns)
     return EstimateRow.from_scalars(number, stamp_ns, estimate.scalars())
 
 
