@@ -21,7 +21,7 @@ from vehicle_pf_tracker.evaluation.output_files import (
     write_text,
 )
 from vehicle_pf_tracker.evaluation.plots import save
-from vehicle_pf_tracker.evaluation.results import versions
+from vehicle_pf_tracker.evaluation.run_folder import versions
 
 DATA, FIGURE, VERDICT = "data.csv", "figure", "verdict"
 _PICTURES = "images/reproduction"

@@ -8,7 +8,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.evaluation.results import versions
+from vehicle_pf_tracker.evaluation.run_folder import versions
 
 _ROS = "ros-jazzy-rclpy"
 

@@ -9,7 +9,13 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import cell_folder, write_t
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
-from vehicle_pf_tracker.evaluation.results import ResultFolder, RunInfo, describe_run, versions
+from vehicle_pf_tracker.evaluation.run_folder import (
+    RunFolder,
+    RunInfo,
+    describe_run,
+    seal,
+    versions,
+)
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
@@ -74,10 +80,11 @@ def _run(folder, recording, truth, name, seed):
     tracker = OfflineTracker(variant, _parameters(variant, seed), first_truth=truth[0])
     hidden = HIDDEN[recording.name]
     rows = list(tracker.rows([(stamp_of(i), _frame(i, hidden)) for i in range(FRAMES)]))
-    results = ResultFolder(folder)
+    results = RunFolder(folder)
     info = RunInfo([], str(recording), "/camera/image_raw", tracker.start_frame, [])
     results.write_run(rows, describe_run(info, tracker.session))
     results.write_metrics(measure(score_frames(rows, truth)))
+    seal(folder)
 
 
 def _plan(folder):

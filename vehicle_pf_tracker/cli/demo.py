@@ -18,7 +18,7 @@ from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_text
 from vehicle_pf_tracker.evaluation.plots import overview_figure, save
-from vehicle_pf_tracker.evaluation.results import ResultFolder, RunInfo, describe_run
+from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
 from vehicle_pf_tracker.parameters.table import Value, from_mapping
@@ -151,7 +151,7 @@ def _write(
 ) -> None:
     recording = path.parent / "recording"
     info = RunInfo(command, str(recording), "", tracker.start_frame, ["estimated through ROS"])
-    folder = ResultFolder(path)
+    folder = RunFolder(path)
     folder.write_run(rows, describe_run(info, tracker.session))
     folder.write_metrics(metrics)
 

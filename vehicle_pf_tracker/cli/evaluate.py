@@ -97,7 +97,7 @@ def run(args: argparse.Namespace) -> int:
 def _run_grid(args: argparse.Namespace) -> int:
     plan = _plan(args)
     with telling("evaluate") as on_progress:
-        complete(plan, args.output, _runner(args), on_progress)
+        complete(plan, args.output, _runner(args), on_progress, _tell)
     if args.timing:
         with telling("timing") as on_progress:
             time_systems(plan, args.output, args.timing_frames, on_progress)
@@ -105,6 +105,10 @@ def _run_grid(args: argparse.Namespace) -> int:
     _show(summaries)
     report.write(args.output, args)
     return _judge(summaries, args.max_rmse)
+
+
+def _tell(notice: str) -> None:
+    tell_notices([notice])
 
 
 def _plan(args: argparse.Namespace) -> Plan:

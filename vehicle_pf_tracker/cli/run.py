@@ -15,7 +15,7 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.estimates import interpolated_columns
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
-from vehicle_pf_tracker.evaluation.results import ResultFolder, RunInfo, describe_run
+from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.tables import comparison
 from vehicle_pf_tracker.recordings.reader import Recording
@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
     tracker = OfflineTracker(
         variant, chosen.tracker, chosen.session, first_truth=first_truth, max_diff=args.max_diff
     )
-    folder = ResultFolder(args.output)
+    folder = RunFolder(args.output)
     with counting("tracked") as progress:
         rows = list(tracker.rows(_frames(recording, progress)))
     notices = [*recording.notices, *tracker.notices]

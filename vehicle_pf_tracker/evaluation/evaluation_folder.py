@@ -1,4 +1,14 @@
-"""A recording of the plan."""
+"""The folder of an evaluation: the plan, the truth, and the results of every cell of the grid.
+
+::
+
+    evaluation.json                                      the plan
+    recordings/<recording>/truth.csv
+    cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json, run.json and digests.json; or
+    cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
+    timings.json                                         of a serial pass, where it was asked for
+    robustness/<kind>/<recording>/<system>/seed-<n>/     where it was asked for
+"""
 
 from __future__ import annotations
 
@@ -15,7 +25,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.evaluation.output_files import write_text
-from vehicle_pf_tracker.evaluation.results import ESTIMATES, RUN
+from vehicle_pf_tracker.evaluation.run_folder import ESTIMATES, RUN, damage
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,9 +233,12 @@ class EvaluationFolder:
             return Cell(recording, system, seed, None, {}, reason)
         if not (folder / ESTIMATES).is_file():
             return Cell(recording, system, seed, None, {}, "it was not run")
+        fault = damage(folder)
+        if fault:
+            reason = f"its stored result is damaged: {fault}; the same `evaluate` runs it again"
+            return Cell(recording, system, seed, None, {}, reason)
         rows = tuple(read_estimates(folder / ESTIMATES))
-        run = read_document(folder / RUN) if (folder / RUN).is_file() else {}
-        return Cell(recording, system, seed, rows, run, "")
+        return Cell(recording, system, seed, rows, read_document(folder / RUN), "")
 
     def timings(self) -> Mapping[str, Any] | None:
         """Return `timings.json`; None where the speed was not measured."""
@@ -254,7 +267,7 @@ def read_document(path: Path) -> dict[str, Any]:
         document = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror}") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path} is not JSON: {error}") from error
     if not isinstance(document, dict):
         raise InputError(f"{path} does not hold a JSON object")

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.evaluation.results import versions
+from vehicle_pf_tracker.evaluation.run_folder import versions
 from vehicle_pf_tracker.trackers.registry import Variant
 
 

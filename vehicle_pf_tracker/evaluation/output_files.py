@@ -53,7 +53,9 @@ def replacing(path: Path) -> Iterator[Path]:
     with output_errors(path):
         try:
             yield partial
+            _flush(partial)
             partial.replace(path)
+            flush_folder(path.parent)
         finally:
             partial.unlink(missing_ok=True)
 
@@ -68,6 +70,19 @@ def write_json(path: Path, document: Any) -> None:
     """Write `document` as JSON, refusing numbers that JSON does not have."""
     text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
     write_text(path, text + "\n")
+
+
+def flush_folder(folder: Path) -> None:
+    """Wait until the names in `folder` are on the disk: a rename may otherwise outrun the data."""
+    _flush(folder)
+
+
+def _flush(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def _partial(path: Path) -> Path:

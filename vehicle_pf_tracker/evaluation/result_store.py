@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -11,13 +13,15 @@ from vehicle_pf_tracker.evaluation.output_files import make_folder, output_error
 
 Result: TypeAlias = dict[str, Any]
 """Plain values that JSON knows."""
+_DIGEST_LENGTH = 16
+"""Hexadecimal digits of a line's digest: 64 bits find accidents, and keep the lines short."""
 
 
 class ResultStore:
     """A file with one line of JSON for each result.
 
-    A line that a killed run left unfinished is dropped. Lines under keys that nobody asks for any
-    more stay; deleting the file only costs their time.
+    A line that a killed run left unfinished, or that fails its digest, is dropped. Lines under keys
+    that are no longer requested stay; deleting the file only costs their time.
 
     Parameters
     ----------
@@ -44,9 +48,12 @@ class ResultStore:
 
     def add(self, key: str, label: str, result: Result) -> None:
         """Keep `result` under `key`; `label` is for those who look into the file."""
-        line = json.dumps({"key": key, "label": label, "result": result}, allow_nan=False)
+        entry = {"key": key, "label": label, "digest": _digest(key, result), "result": result}
+        line = json.dumps(entry, allow_nan=False)
         with output_errors(self._path), self._path.open("a", encoding="utf-8") as file:
             file.write(line + "\n")
+            file.flush()
+            os.fsync(file.fileno())
         # As read back, so that a result is the same whether it was made now or before.
         self._results[key] = json.loads(line)["result"]
 
@@ -68,6 +75,12 @@ def _read(path: Path) -> Iterator[tuple[str, Result]]:
 def _parsed(line: bytes) -> tuple[str, Result] | None:
     try:
         entry = json.loads(line)
-        return entry["key"], entry["result"]
-    except (ValueError, KeyError, TypeError):
+        key, result = entry["key"], entry["result"]
+        return (key, result) if entry["digest"] == _digest(key, result) else None
+    except (ValueError, KeyError, TypeError, RecursionError):
         return None
+
+
+def _digest(key: str, result: Result) -> str:
+    text = json.dumps([key, result], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:_DIGEST_LENGTH]

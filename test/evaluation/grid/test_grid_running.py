@@ -84,6 +84,50 @@ def test_what_is_there_is_not_run_again(plan, out):
     assert {path: path.stat().st_mtime_ns for path in out.glob("cells/**/*")} == before
 
 
+def _lose_rows(cell):
+    path = cell / "estimates.csv"
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:-5]))
+
+
+def _change_a_number(cell):
+    path = cell / "metrics.json"
+    metrics = json.loads(path.read_text())
+    path.write_text(json.dumps({**metrics, "rmse_px": 0.5}, indent=2))
+
+
+@pytest.mark.parametrize(
+    "harm",
+    [
+        _lose_rows,
+        _change_a_number,
+        lambda cell: (cell / "estimates.csv").write_text(""),
+        lambda cell: (cell / "metrics.json").write_text(""),
+        lambda cell: (cell / "run.json").write_text("[" * 100_000),
+        lambda cell: (cell / "run.json").unlink(),
+        lambda cell: (cell / "digests.json").unlink(),
+        lambda cell: (cell / "digests.json").write_text("{}"),
+    ],
+)
+def test_a_damaged_cell_is_run_again_and_said(plan, out, harm):
+    complete(plan, out, here, silent)
+    whole = results(out)
+    harm(out / "cells" / "free" / "pf" / "seed-1")
+    assert "is damaged: " in EvaluationFolder(out).cell("free", "pf", 1).reason
+    notices = []
+    assert complete(plan, out, here, silent, notices.append) == 1
+    assert notices == ["stored results that were changed or damaged are run again: free pf 1"]
+    assert results(out) == whole
+
+
+def test_a_notice_of_many_damaged_cells_stays_short(plan, out):
+    complete(plan, out, here, silent)
+    for path in out.glob("cells/*/*/*/estimates.csv"):
+        path.write_text("")
+    notices = []
+    assert complete(plan, out, here, silent, notices.append) == 6
+    assert [notice.endswith(" and 1 more") for notice in notices] == [True]
+
+
 def test_only_what_changed_is_run_anew(recordings, plan, out):
     complete(plan, out, here, silent)
     changed = make_plan(recordings, [system("pf", sigma=3.0), system("ms")])

@@ -9,6 +9,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
 from vehicle_pf_tracker.evaluation.report.page_tables import speed_note, speed_table
 from vehicle_pf_tracker.evaluation.report.robustness import robustness_sections
+from vehicle_pf_tracker.evaluation.run_folder import seal
 
 ORDER = ("pf", "ms")
 
@@ -27,10 +28,18 @@ def folder(made_evaluation, tmp_path):
                 place = copy / "robustness" / kind / recording / "pf" / "seed-0" / f"s{number}"
                 metrics = {"success_auc": success, "precision_20px": None, "rmse_px": 8.0}
                 on_target = success + 0.1
-                write_json(make_folder(place) / "metrics.json", {**metrics, "on_target": on_target})
+                write_cell(place, {"metrics.json": {**metrics, "on_target": on_target}})
     place = make_folder(copy / "robustness" / "restarts" / "free" / "pf" / "seed-1")
-    write_json(place / "restarts.json", {"failures": 3, "accuracy": None, "robustness": 0.25})
+    write_cell(place, {"restarts.json": {"failures": 3, "accuracy": None, "robustness": 0.25}})
     return copy
+
+
+def write_cell(place, documents):
+    for name in ("estimates.csv", "metrics.json", "run.json"):
+        (make_folder(place) / name).write_text("")
+    for name, document in documents.items():
+        write_json(place / name, document)
+    seal(place)
 
 
 def texts(table):
@@ -62,6 +71,14 @@ def test_what_was_not_asked_for_is_not_shown(folder):
 def test_what_cannot_be_read_is_passed_over(folder):
     path = next(folder.glob("robustness/restarts/**/restarts.json"))
     path.write_text("{")
+    seal(path.parent)
+    titles = [s.title for s in robustness_sections(EvaluationFolder(folder), ORDER, {})]
+    assert titles == ["Shifted and scaled starts", "Other first frames"]
+
+
+def test_what_was_changed_is_passed_over(folder):
+    path = next(folder.glob("robustness/restarts/**/restarts.json"))
+    path.write_text(path.read_text().replace("3", "2"))
     titles = [s.title for s in robustness_sections(EvaluationFolder(folder), ORDER, {})]
     assert titles == ["Shifted and scaled starts", "Other first frames"]
 

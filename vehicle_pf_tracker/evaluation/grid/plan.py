@@ -28,7 +28,7 @@ from vehicle_pf_tracker.evaluation.grid.cells import (
 )
 from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
-from vehicle_pf_tracker.evaluation.results import versions
+from vehicle_pf_tracker.evaluation.run_folder import versions
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, GridCell
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
@@ -17,12 +16,13 @@ from vehicle_pf_tracker.evaluation.grid.tracking import CellResult, run_cell
 from vehicle_pf_tracker.evaluation.identity import scoring_digest
 from vehicle_pf_tracker.evaluation.output_files import (
     alone_in,
+    flush_folder,
     make_folder,
     output_errors,
     write_json,
 )
 from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress, Turn, run_in_processes
-from vehicle_pf_tracker.evaluation.results import ESTIMATES, METRICS, RUN, ResultFolder
+from vehicle_pf_tracker.evaluation.run_folder import METRICS, RUN, RunFolder, damage, seal
 
 RESTARTS = "restarts.json"
 _PARTIAL = ".partial"
@@ -55,13 +55,15 @@ class CellStore:
     def has(self, cell: GridCell) -> bool:
         """Return whether a valid result of the cell is stored; one that failed is tried again."""
         path = cell.folder(self._folder)
-        if not all((path / name).is_file() for name in (ESTIMATES, METRICS, RUN)):
+        if damage(path):
             return False
-        try:
-            run = read_document(path / RUN)
-        except InputError:
-            return False
+        run = read_document(path / RUN)
         return run.get("key") == cell.key() and run.get("scored_by") == self._scoring
+
+    def is_damaged(self, cell: GridCell) -> bool:
+        """Return whether something is stored for the cell that is not as it was written."""
+        path = cell.folder(self._folder)
+        return path.is_dir() and not (path / FAILED).is_file() and bool(damage(path))
 
     def drop_others(self, cells: Iterable[GridCell]) -> None:
         """Remove robustness runs that are not among `cells`: the report shows all it finds."""
@@ -81,6 +83,7 @@ class CellStore:
             self._write(partial, cell, outcome, command)
             shutil.rmtree(place, ignore_errors=True)
             partial.rename(place)
+            flush_folder(place.parent)
 
     def _write(self, path: Path, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
         if outcome.metrics is None:
@@ -92,11 +95,12 @@ class CellStore:
             "key": cell.key(),
             "scored_by": self._scoring,
         }
-        results = ResultFolder(path)
+        results = RunFolder(path)
         results.write_run(outcome.rows, run)
         results.write_metrics(outcome.metrics)
         if outcome.restarts is not None:
             write_json(path / RESTARTS, outcome.restarts)
+        seal(path)
 
 
 Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[Turn[GridCell, CellResult]]]
@@ -108,7 +112,13 @@ def on_this_machine(workers: int) -> Runner:
     return partial(run_in_processes, run_cell, workers=workers)
 
 
-def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) -> int:
+def complete(
+    plan: Plan,
+    folder: Path,
+    runner: Runner,
+    on_progress: OnProgress,
+    notify: Callable[[str], object] = lambda _: None,
+) -> int:
     """Run the cells of `plan` that `folder` does not have, and return how many those were.
 
     Parameters
@@ -121,6 +131,8 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
         Runs the missing cells.
     on_progress : callable
         Called whenever a run begins or ends.
+    notify : callable
+        Called with a sentence about stored cells that are damaged, and so run again.
 
     Raises
     ------
@@ -134,6 +146,9 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
         cells = plan.cells()
         store.drop_others(cells)
         missing = [cell for cell in cells if not store.has(cell)]
+        damaged = [cell.label for cell in missing if store.is_damaged(cell)]
+        if damaged:
+            notify(_damage_notice(damaged))
         done = 0
         for turn in runner(missing):
             if turn.ended is not None:
@@ -141,3 +156,13 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
                 done += 1
             on_progress(Progress(done, len(missing), tuple(cell.label for cell in turn.running)))
     return len(missing)
+
+
+_MOST_NAMED = 5
+"""Largest number of damaged cells that a notice names: it stays one readable line."""
+
+
+def _damage_notice(labels: Sequence[str]) -> str:
+    more = len(labels) - _MOST_NAMED
+    named = ", ".join(labels[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
+    return f"stored results that were changed or damaged are run again: {named}"

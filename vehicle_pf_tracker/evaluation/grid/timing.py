@@ -31,7 +31,7 @@ from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem
 from vehicle_pf_tracker.evaluation.offline import with_target
 from vehicle_pf_tracker.evaluation.output_files import write_json
 from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress
-from vehicle_pf_tracker.evaluation.results import versions
+from vehicle_pf_tracker.evaluation.run_folder import versions
 from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session
 

@@ -21,7 +21,7 @@ from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
 from vehicle_pf_tracker.evaluation.grid.systems import BaselineSystem, VariantSystem
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
-from vehicle_pf_tracker.evaluation.results import RunInfo, describe_run, versions
+from vehicle_pf_tracker.evaluation.run_folder import RunInfo, describe_run, versions
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.trackers.registry import find_variant
 

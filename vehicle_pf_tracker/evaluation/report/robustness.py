@@ -18,7 +18,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
 )
 from vehicle_pf_tracker.evaluation.report.columns import SUCCESS, number_text
 from vehicle_pf_tracker.evaluation.report.page_tables import Header, PageTable, Row, TableCell
-from vehicle_pf_tracker.evaluation.results import METRICS
+from vehicle_pf_tracker.evaluation.run_folder import METRICS, damage
 
 SHIFTED, FRAMES, RESTARTS = "shifted_starts", "start_frames", "restarts"
 """Names of the folders, and of the options that ask for them."""
@@ -165,7 +165,8 @@ def _usual(
 def _read(place: Path, pattern: str) -> Iterator[Document]:
     for path in sorted(place.glob(pattern)):
         with suppress(InputError):  # a cell that is being written
-            yield read_document(path)
+            if not damage(path.parent):
+                yield read_document(path)
 
 
 def _held(document: Document) -> float | None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json, write_text
-from vehicle_pf_tracker.evaluation.results import versions
+from vehicle_pf_tracker.evaluation.run_folder import versions
 from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
 from vehicle_pf_tracker.evaluation.stress.running import Result
 from vehicle_pf_tracker.evaluation.stress.summary import ALL, MEASURES, Group, faults, groups

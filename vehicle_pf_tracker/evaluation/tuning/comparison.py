@@ -13,7 +13,7 @@ from rich.text import Text
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import read_document
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
-from vehicle_pf_tracker.evaluation.results import METRICS
+from vehicle_pf_tracker.evaluation.run_folder import METRICS
 from vehicle_pf_tracker.evaluation.tuning.searching import Objective, mean_of_means
 
 TUNED, HELD_OUT = "tuned on", "held out"

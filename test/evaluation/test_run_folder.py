@@ -12,7 +12,7 @@ from vehicle_pf_tracker.evaluation.estimates import read_estimates
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
 from vehicle_pf_tracker.evaluation.output_files import write_json, write_text
-from vehicle_pf_tracker.evaluation.results import ResultFolder, RunInfo, describe_run
+from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.registry import VARIANTS
@@ -59,7 +59,7 @@ def test_the_drawn_seed_repeats_the_run(done):
 
 def test_the_three_files(tmp_path, done):
     rows, described, _ = done
-    folder = ResultFolder(tmp_path / "a" / "b")
+    folder = RunFolder(tmp_path / "a" / "b")
     folder.write_run(rows, described)
     folder.write_metrics(measure(score_frames(rows, [])))
     assert names_in(folder.path) == ["estimates.csv", "metrics.json", "run.json"]
@@ -70,7 +70,7 @@ def test_the_three_files(tmp_path, done):
 
 def test_metrics_of_an_earlier_run_are_not_left_beside_a_new_one(tmp_path, done):
     rows, described, _ = done
-    folder = ResultFolder(tmp_path)
+    folder = RunFolder(tmp_path)
     (tmp_path / "metrics.json").write_text("{}")
     (tmp_path / "notes.txt").write_text("mine")
     folder.write_run(rows, described)
@@ -80,18 +80,18 @@ def test_metrics_of_an_earlier_run_are_not_left_beside_a_new_one(tmp_path, done)
 def test_a_file_in_the_place_of_the_folder_is_named(tmp_path):
     (tmp_path / "out").write_text("")
     with pytest.raises(InputError, match=r"the output .*out is a file; name a folder"):
-        ResultFolder(tmp_path / "out")
+        RunFolder(tmp_path / "out")
     with pytest.raises(InputError, match=r"cannot write .*below: Not a directory"):
-        ResultFolder(tmp_path / "out" / "below")
+        RunFolder(tmp_path / "out" / "below")
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
 def test_a_folder_that_may_not_be_written_is_named(tmp_path):
     tmp_path.chmod(0o500)
     with pytest.raises(InputError, match="Permission denied"):
-        ResultFolder(tmp_path)
+        RunFolder(tmp_path)
     with pytest.raises(InputError, match="Permission denied"):
-        ResultFolder(tmp_path / "new")
+        RunFolder(tmp_path / "new")
 
 
 def test_a_file_stays_as_it_was_when_writing_fails(tmp_path):
