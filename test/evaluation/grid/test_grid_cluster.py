@@ -1,7 +1,12 @@
 """The grid on a cluster of this machine, of two worker processes."""
 
+import json
 import os
 import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
 
 import pytest
 from grid_samples import here, make_plan, results, silent, system, write_recordings
@@ -79,3 +84,47 @@ def test_a_cluster_without_workers_is_named(plan, tmp_path):
         pytest.raises(InputError, match="has no workers; start `dask worker`"),
     ):
         complete(plan, tmp_path, on_cluster(empty.scheduler_address), silent)
+
+
+def start_dask(module, *words):
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-m", f"distributed.cli.{module}", "--no-dashboard", *words]
+    return subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
+
+
+@pytest.fixture
+def scheduler(tmp_path):
+    """A scheduler in a process of its own, with one worker; gives its address and process."""
+    file = tmp_path / "scheduler.json"
+    with start_dask("dask_scheduler", "--port", "0", "--scheduler-file", str(file)) as process:
+        while process.poll() is None and not (file.exists() and file.read_text()):
+            time.sleep(0.05)
+        address = json.loads(file.read_text())["address"]
+        with start_dask("dask_worker", address, "--nthreads", "1", "--no-nanny") as worker:
+            with distributed.Client(address, set_as_default=False) as client:
+                client.wait_for_workers(1)
+            yield address, process
+            worker.kill()
+        process.kill()
+
+
+def test_a_scheduler_killed_halfway_is_one_sentence_and_the_results_are_kept(
+    scheduler, plan, tmp_path, capfd
+):
+    address, process = scheduler
+    ended = []
+
+    def kill(cells):
+        for turn in on_cluster(address)(cells):
+            ended.extend([turn.ended[0]] if turn.ended else [])
+            if len(ended) == 3:
+                process.kill()
+            yield turn
+
+    with pytest.raises(InputError, match=r"was lost on the way; start it .* again"):
+        complete(plan, tmp_path / "out", kill, silent)
+    assert "Traceback" not in capfd.readouterr().err
+    kept = list(Path(tmp_path / "out" / "cells").glob("*/*/*/metrics.json"))
+    assert len(kept) == len(ended)
+    rest = len(plan.cells()) - len(ended)
+    assert complete(plan, tmp_path / "out", here, silent) == rest

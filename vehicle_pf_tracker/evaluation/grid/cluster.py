@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
+import logging
 import socket
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent import futures
 from functools import partial
 from typing import Any
 
@@ -29,7 +32,7 @@ def on_cluster(address: str, seconds: float = 10.0) -> Runner:
     Raises
     ------
     InputError
-        From the runner, if the scheduler cannot be reached or has no worker.
+        From the runner, if the scheduler cannot be reached, has no worker, or is lost on the way.
     """
     return partial(_run, address, seconds)
 
@@ -52,6 +55,11 @@ def _run(
     client = _connected(address, seconds)
     try:
         yield from _results(client, cells)
+    except (OSError, futures.CancelledError, asyncio.CancelledError) as error:
+        raise InputError(
+            f"the Dask scheduler at {address} was lost on the way; start it and its workers again, "
+            "and run the same command: the results so far are kept"
+        ) from error
     finally:
         client.close()
 
@@ -63,6 +71,8 @@ def _connected(address: str, seconds: float) -> Any:
         raise InputError(
             "a Dask cluster needs the extra [cluster]: `pip install 'vehicle_pf_tracker[cluster]'`"
         ) from None
+    # Its log would print a traceback beside our sentence when the scheduler is lost.
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
     try:
         client = Client(address, timeout=seconds, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:  # a TimeoutError is an OSError
@@ -77,10 +87,10 @@ def _results(client: Any, cells: Sequence[GridCell]) -> Iterator[Turn[GridCell, 
     from distributed import as_completed  # noqa: PLC0415 - an extra
 
     by_key = {f"{cell.label}-{cell.key()}".replace(" ", "-"): cell for cell in cells}
-    futures = [client.submit(run_checked, cell, cell.key(), key=k) for k, cell in by_key.items()]
+    submitted = [client.submit(run_checked, cell, cell.key(), key=k) for k, cell in by_key.items()]
     yield Turn(None, _running(client, by_key))
-    waiting = as_completed(futures, loop=client.loop)
-    futures.clear()  # so that each result can go once it is here
+    waiting = as_completed(submitted, loop=client.loop)
+    submitted.clear()  # so that each result can go once it is here
     for future in waiting:
         yield Turn((by_key[future.key], _outcome(future)), _running(client, by_key))
 
