@@ -100,13 +100,13 @@ def can_run_directly() -> bool:
 
 
 class MessageSources:
-    """The subscriptions and timers of a node, in the form of a node with nothing else.
+    """The subscriptions, timers and services of a node, in the form of a node with nothing else.
 
     Looking through the node's two dozen event handlers for each image would take longer than
     waiting.
     """
 
-    clients = services = guards = waitables = ()
+    clients = guards = waitables = ()
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -121,9 +121,14 @@ class MessageSources:
         """The node's present timers."""
         return iter(self._node.timers)
 
+    @property
+    def services(self) -> Iterator[Service]:
+        """The node's present services."""
+        return iter(self._node.services)
+
 
 class DirectExecutor(SingleThreadedExecutor):  # type: ignore[misc]
-    """A single thread that runs the callbacks of subscriptions without tasks.
+    """A single thread that runs the callbacks of subscriptions and services without tasks.
 
     They have to be plain functions, no coroutines. Only where `can_run_directly` is true.
     """
@@ -154,7 +159,8 @@ class DirectExecutor(SingleThreadedExecutor):  # type: ignore[misc]
     ) -> Any:
         # rclpy's task triggers the executor's guard condition, for other threads that there are
         # none of here, and the next wait ends at once for it.
-        if not isinstance(entity, Subscription):
+        # One request at a time: clients keep ten answers by default and lose what comes faster.
+        if not isinstance(entity, Subscription | Service):
             return super()._make_handler(entity, node, take_from_wait_list)
         entity._executor_event = True
         return lambda: _handle(entity, take_from_wait_list)

@@ -2,7 +2,8 @@
 
 For each callback, rclpy puts every entity of the node into a new wait set, and then into another,
 since a callback wakes its executor: a managed node has over a dozen services and two dozen event
-handlers. That takes longer than all that a tracker node does with an image besides tracking.
+handlers. That takes longer than all that a tracker node does with an image besides tracking. Event
+handlers cost most, and can wait; requests cannot.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from vehicle_pf_tracker.ros.rclpy_internals import (
 )
 
 LOOK_EVERY = 0.2
-"""Longest time in s that a service or an event waits while messages flow."""
+"""Longest time in s that an event waits while messages flow."""
 
 
 def node_executor() -> Executor:
@@ -30,11 +31,11 @@ def node_executor() -> Executor:
 
 
 class ImageExecutor(DirectExecutor):
-    """A single thread that waits for messages and timers alone while messages keep coming.
+    """A single thread that waits for messages, timers and requests alone while images flow.
 
     Every `LOOK_EVERY` s it serves whatever else is ready. When no message came for so long, it
-    waits for everything, as its base class always does. The callbacks of subscriptions have to be
-    plain functions, no coroutines.
+    waits for everything, as its base class always does. The callbacks of subscriptions and services
+    have to be plain functions, no coroutines.
 
     Parameters
     ----------

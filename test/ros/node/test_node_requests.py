@@ -1,0 +1,71 @@
+"""Requests to a node that images keep busy: each is answered, and soon."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import Image
+from tracker_rig import header, road
+
+from vehicle_pf_tracker.ros.messages import image_message
+
+pytestmark = pytest.mark.ros
+
+RATE = 30.0
+
+
+class Camera:
+    """Publishes VGA images at `RATE` while the bench spins."""
+
+    def __init__(self, bench):
+        self.message = image_message(header(0), road(1, 640, 480)[0])
+        self.index = 0
+        self.publisher = bench.publisher(Image, "image", QoSProfile(depth=1))
+        self.answers = bench.collect(DiagnosticArray, "/pf_tracker/mode", 100)
+        bench.node.create_timer(1 / RATE, self.publish)
+        bench.wait_for(lambda: len(self.answers) > 10)
+
+    def publish(self):
+        self.index += 1
+        self.message.header = header(self.index)
+        self.publisher.publish(self.message)
+
+
+@pytest.fixture
+def client(bench, start_node):
+    target = {"x": 20.0, "y": 50.0, "width": 24.0, "height": 18.0}
+    start_node("pf", *(w for k, v in target.items() for w in ("-p", f"target.{k}:={v}")))
+    made = bench.node.create_client(SetParameters, "/pf_tracker/set_parameters")
+    bench.wait_for(made.service_is_ready, 60.0)
+    made.camera = Camera(bench)
+    return made
+
+
+def request(number: int) -> SetParameters.Request:
+    value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=3.0 + number * 1e-3)
+    return SetParameters.Request(parameters=[Parameter(name="sigma", value=value)])
+
+
+@pytest.mark.parametrize("count", [30, 50, 200])
+def test_every_request_of_a_burst_is_answered(bench, client, count):
+    futures = [client.call_async(request(number)) for number in range(count)]
+    bench.wait_for(lambda: all(future.done() for future in futures))
+    assert all(future.result().results[0].successful for future in futures)
+
+
+def test_calls_one_after_the_other_do_not_wait_for_a_gate(bench, client):
+    began, count = time.monotonic(), 100
+    for number in range(count):
+        future = client.call_async(request(number))
+        bench.wait_for(future.done)
+    rate = count / (time.monotonic() - began)
+    assert rate >= 50, f"{rate:.0f} calls a second"
+    assert client.camera.answers[-1].status[0].message == "TRACKING"
