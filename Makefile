@@ -9,18 +9,28 @@ FIGURES = all
 
 BIN := .venv/bin
 INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
-CORE_AND_NODE := $(wildcard $(addprefix test/,core parameters filtering image trackers scenes recordings ros))
+# What the versions of NumPy and OpenCV decide.
+CORE_AND_NODE := $(wildcard $(addprefix test/,core parameters filtering image trackers scenes recordings ros/node))
+# Share of the package's branches and lines that the tests must run through.
+COVERED := 92
 
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: demo test test-slow test-noble lint types format config colcon baselines peers bench reproduce clean
+.PHONY: demo test coverage test-slow test-noble lint types format config colcon baselines peers bench reproduce clean
 
 demo: .venv/installed
 	$(BIN)/vehicle-pf-tracker demo -o results/demo
 
 test: .venv/installed
 	$(BIN)/python -m pytest -m "not slow" $(PYTEST_ARGS)
+
+# What `make test` does, about half as fast.
+coverage: .venv/installed
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest -m "not slow" $(PYTEST_ARGS)
+	$(BIN)/coverage combine --quiet
+	$(BIN)/coverage report --fail-under=$(COVERED)
 
 # The slow tests try every way to install, colcon's too.
 test-slow: .venv/installed .venv/colcon
@@ -64,7 +74,7 @@ config: .venv/installed
 
 clean:
 	rm -rf .venv .venv-noble .venv-baselines build install log results *.egg-info
-	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf .coverage .coverage.* .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # A changed lock makes the environment anew; a changed description only installs the package again.
@@ -78,7 +88,7 @@ clean:
 .venv-baselines/locked: requirements/baselines.txt
 	.ci/make-venv --without-ros .venv-baselines requirements/baselines.txt $(PYTHON)
 
-.venv/installed .venv-noble/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml
+.venv/installed .venv-noble/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml vehicle_pf_tracker/trackers/registry.py
 	$*/bin/python $(INSTALL) --no-build-isolation --editable .
 	touch $@
 
