@@ -151,7 +151,7 @@ def test_truth_that_is_no_text_is_named(frame_folder, tmp_path):
 def test_a_faulty_frame_rate_is_named(frame_folder, tmp_path, fps):
     folder = frame_folder()
     (folder / "sequence.json").write_text(json.dumps({"fps": fps}))
-    with pytest.raises(InputError, match=r"sequence\.json.*above 0"):
+    with pytest.raises(InputError, match=r"sequence\.json must be a number from"):
         import_recording(folder, tmp_path / "bag")
 
 

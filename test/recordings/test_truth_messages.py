@@ -76,7 +76,7 @@ STAMP = stamp_of(1)
         (replaced(topics.TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [])), "not a polygon"),
         (
             replaced(topics.TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [(math.nan, 0)] * 4)),
-            "not a polygon of finite",
+            "not a polygon of corners within",
         ),
         (
             replaced(topics.TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [(5, 5)] * 4)),
@@ -84,7 +84,7 @@ STAMP = stamp_of(1)
         ),
         (
             replaced(topics.TRUTH_POSITION_TOPIC, messages.point_stamped(STAMP, math.nan, 0)),
-            "position .* not finite",
+            "position .* not within",
         ),
         (
             replaced(

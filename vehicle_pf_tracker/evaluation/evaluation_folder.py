@@ -16,7 +16,7 @@ import csv
 import io
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.evaluation.output_files import write_text
 from vehicle_pf_tracker.evaluation.run_folder import ESTIMATES, RUN, damage
+from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +124,8 @@ def _checked(path: Path, reader: csv.DictReader[str]) -> csv.DictReader[str]:
 def _row(path: Path, number: int, line: Mapping[str, str]) -> tuple[int, Truth]:
     try:
         box = Box(*(float(line[name]) for name in ("x", "y", "width", "height")))
+        if not all(abs(value) <= LARGEST_PX for value in astuple(box)):
+            raise ValueError(f"a box beyond {LARGEST_PX:.0f} px")
         occlusion = Occlusion[line["occlusion"].upper()]
         return int(line["frame"]), Truth(int(line["stamp_ns"]), box, occlusion)
     except (KeyError, TypeError, ValueError) as error:

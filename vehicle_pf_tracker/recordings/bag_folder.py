@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 import yaml
@@ -34,14 +34,18 @@ def recording_files(path: Path) -> tuple[list[Path], list[str]]:
     try:
         if not path.exists():
             raise InputError(f"there is no recording {path}")
-        return _folder_files(path) if path.is_dir() else ([path], [])
+        if path.is_dir():
+            return _folder_files(path)
+        if not path.is_file():
+            raise InputError(f"the recording {path} is not a regular file")
+        return [path], []
     except OSError as error:
         raise InputError(f"cannot read the recording {path}: {error.strerror}") from error
 
 
 def _folder_files(folder: Path) -> tuple[list[Path], list[str]]:
     metadata = folder / "metadata.yaml"
-    present = sorted(folder.glob("*.mcap"), key=_natural_order)
+    present = sorted(filter(Path.is_file, folder.glob("*.mcap")), key=_natural_order)
     if not metadata.exists():
         if not present:
             raise InputError(f"the folder {folder} holds no recording (metadata.yaml, *.mcap)")
@@ -57,22 +61,25 @@ def _folder_files(folder: Path) -> tuple[list[Path], list[str]]:
 
 def _information(metadata: Path) -> dict[str, Any] | None:
     try:
+        if not metadata.is_file():
+            return None
         information = yaml.safe_load(metadata.read_text())["rosbag2_bagfile_information"]
         files = information["relative_file_paths"]
-    except (yaml.YAMLError, UnicodeDecodeError, KeyError, TypeError):
+    # ValueError: bytes that are not text, numbers of thousands of digits, dates that are none.
+    except (yaml.YAMLError, ValueError, RecursionError, KeyError, TypeError):
         return None
     is_list = isinstance(files, list) and files and all(isinstance(name, str) for name in files)
     return information if is_list else None
 
 
 def _check_storage(folder: Path, information: dict[str, Any]) -> None:
-    storage = information.get("storage_identifier", "mcap")
+    storage = _word(folder, information, "storage_identifier") or "mcap"
     if storage != "mcap":
         raise InputError(
             f"the recording {folder} is stored as {storage}; "
             "convert it to MCAP with `ros2 bag convert`"
         )
-    mode = str(information.get("compression_mode") or "").lower()
+    mode = _word(folder, information, "compression_mode").lower()
     if mode not in {"", "none", "storage"}:
         raise InputError(
             f"the recording {folder} is compressed by {mode}; convert it with `ros2 bag convert`, "
@@ -80,8 +87,22 @@ def _check_storage(folder: Path, information: dict[str, Any]) -> None:
         )
 
 
+def _word(folder: Path, information: dict[str, Any], key: str) -> str:
+    """Return a text of the metadata; other types are not even printed: aliases may nest them."""
+    value = information.get(key)
+    if value is not None and not isinstance(value, str):
+        raise InputError(f"{key} in {folder / 'metadata.yaml'} is not text")
+    return value or ""
+
+
 def _listed_files(folder: Path, information: dict[str, Any]) -> tuple[list[Path], list[str]]:
-    listed = [folder / name for name in information["relative_file_paths"]]
+    names = [PurePath(name) for name in information["relative_file_paths"]]
+    for name in names:
+        if name.is_absolute() or ".." in name.parts:
+            raise InputError(
+                f"{folder / 'metadata.yaml'} lists the file {name}, which is outside of its folder"
+            )
+    listed = [folder / name for name in names]
     present = [path for path in listed if path.is_file()]
     if not present:
         raise InputError(f"the recording {folder} lacks its file {listed[0].name}")

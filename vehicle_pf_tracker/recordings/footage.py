@@ -16,6 +16,13 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 
 START_NS = 1_000_000_000
 """Stamp of the first image. Not 0, which many ROS programs take for "no time"."""
+LOWEST_FPS, HIGHEST_FPS = 1e-4, 1e6
+"""Frame rates that are believed, 1/s: from an image every three hours up to one per microsecond,
+which the fastest cameras reach."""
+LARGEST_PX = 2.0**24
+"""Largest coordinate of a true box, px: beyond it a polygon's single precision loses whole px."""
+_LAST_STAMP_NS = (2**31 - 1) * 10**9
+"""Last stamp: `builtin_interfaces/Time` has a signed 32-bit number of seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,8 +68,35 @@ class Footage(Protocol):
         ...
 
 
+def check_fps(fps: float, source: Path) -> float:
+    """Return the frame rate of `source`, in 1/s.
+
+    Raises
+    ------
+    InputError
+        If it is not between `LOWEST_FPS` and `HIGHEST_FPS`.
+    """
+    if not LOWEST_FPS <= fps <= HIGHEST_FPS:
+        raise InputError(
+            f"the frame rate (fps) in {source} must be a number from {LOWEST_FPS:g} to "
+            f"{HIGHEST_FPS:g} frames per second"
+        )
+    return float(fps)
+
+
 def stamp_of(index: int, fps: float) -> int:
-    """Return the stamp in ns of the picture `index` (from 0) at `fps` pictures per second."""
+    """Return the stamp in ns of the picture `index` (from 0) at `fps` pictures per second.
+
+    Raises
+    ------
+    InputError
+        If it is later than ROS can express.
+    """
+    if index * 1e9 / fps > _LAST_STAMP_NS - START_NS:
+        raise InputError(
+            f"image {index} at {fps:g} frames per second is later than the last time that ROS can "
+            "express, 2^31 s"
+        )
     return START_NS + round(index * 1e9 / fps)
 
 
@@ -90,6 +124,8 @@ def read_truth_table(path: Path) -> dict[int, TruthRow]:
         If the table cannot be read, lacks a column, holds no box, names a frame twice, or has a
         cell that is not a number.
     """
+    if path.exists() and not path.is_file():
+        raise InputError(f"the truth {path} is not a regular file")
     try:
         with path.open(newline="", encoding="utf-8-sig") as stream:
             return _rows(path, csv.DictReader(stream))
@@ -129,6 +165,8 @@ def _row(place: str, cells: dict[str, str]) -> tuple[int, TruthRow | None]:
     if not frame.is_integer():
         raise InputError(f"{place} has no integer as its frame")
     values = (x, y, width, height)
+    if any(abs(value) > LARGEST_PX for value in values if math.isfinite(value)):
+        raise InputError(f"{place} has a box beyond {LARGEST_PX:.0f} px")
     if not all(map(math.isfinite, values)) or width <= 0 or height <= 0:
         return int(frame), None
     return int(frame), TruthRow(Box(*values), _occlusion(place, cells))

@@ -10,7 +10,13 @@ from pathlib import Path
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
-from vehicle_pf_tracker.recordings.footage import Picture, TruthRow, read_truth_table, stamp_of
+from vehicle_pf_tracker.recordings.footage import (
+    Picture,
+    TruthRow,
+    check_fps,
+    read_truth_table,
+    stamp_of,
+)
 
 FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
 """The image files that are read, and what a CompressedImage calls them."""
@@ -43,6 +49,7 @@ class FrameFolder:
         self.images = _numbered_images(folder)
         self.total: int | None = len(self.images)
         self.fps = _frame_rate(folder / "sequence.json")
+        stamp_of(max(self.images) - min(self.images), self.fps)  # refuses what ROS cannot express
         truth_path = folder / "groundtruth.csv"
         self.truth = read_truth_table(truth_path) if truth_path.exists() else {}
         if self.truth and not self.truth.keys() & self.images.keys():
@@ -66,6 +73,8 @@ def _numbered_images(folder: Path) -> dict[int, Path]:
     for path in sorted((folder / "img").glob("*")):
         if path.suffix.lower() not in FORMATS or not path.stem.isdecimal():
             continue
+        if not path.is_file():
+            raise InputError(f"the image {path} is not a regular file")
         number = int(path.stem)
         if number in images:
             raise InputError(f"{path} and {images[number].name} have the same number")
@@ -76,6 +85,8 @@ def _numbered_images(folder: Path) -> dict[int, Path]:
 
 
 def _frame_rate(path: Path) -> float:
+    if path.exists() and not path.is_file():
+        raise InputError(f"{path} is not a regular file")
     try:
         fps = json.loads(path.read_text(encoding="utf-8"))["fps"]
     except OSError as error:
@@ -83,14 +94,12 @@ def _frame_rate(path: Path) -> float:
             f"cannot read {path}: {error.strerror}; the frame rate is needed, "
             'a file with {"fps": 30} will do'
         ) from error
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, RecursionError):
         raise InputError(
             f'{path} does not say the frame rate; it must hold {{"fps": 30}}'
         ) from None
     is_number = isinstance(fps, int | float) and not isinstance(fps, bool)
-    if not is_number or not math.isfinite(fps) or fps <= 0:
-        raise InputError(f"the fps in {path} is {fps!r}; it must be a number above 0")
-    return float(fps)
+    return check_fps(fps if is_number else math.nan, path)
 
 
 def _picture(path: Path, stamp_ns: int, row: TruthRow | None) -> Picture:

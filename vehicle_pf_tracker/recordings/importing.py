@@ -101,6 +101,8 @@ def _open(source: Path, truth: Path | None) -> Footage:
     is_bag = source.is_dir() and (source / "metadata.yaml").exists()
     if is_bag or source.suffix in {".mcap", ".db3", ".bag"}:
         raise InputError(f"{source} is a recording already")
+    if not source.is_dir() and not source.is_file():
+        raise InputError(f"{source} is not a regular file or a folder")
     if not source.is_dir():
         return VideoFile(source, truth)
     if truth is not None:

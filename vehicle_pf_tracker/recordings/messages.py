@@ -16,6 +16,7 @@ from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings import topics
 from vehicle_pf_tracker.recordings.cdr import message_class
+from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
 OK, WARN, ERROR = 0, 1, 2
 """Levels of a diagnostic status."""
@@ -145,16 +146,18 @@ def _truth_of(stamp_ns: int, by_topic: dict[str, Any]) -> Truth:
 def _box_of(stamp_ns: int, by_topic: dict[str, Any]) -> Box:
     points = by_topic[topics.TRUTH_BOX_TOPIC].polygon.points
     xs, ys = [point.x for point in points], [point.y for point in points]
-    if len(points) < 3 or not all(map(math.isfinite, xs + ys)):
-        raise InputError(f"the truth box at stamp {stamp_ns} ns is not a polygon of finite corners")
+    if len(points) < 3 or not all(abs(side) <= LARGEST_PX for side in xs + ys):
+        raise InputError(
+            f"the truth box at stamp {stamp_ns} ns is not a polygon of corners within 2^24 px"
+        )
     width, height = max(xs) - min(xs), max(ys) - min(ys)
     if width <= 0 or height <= 0:
         raise InputError(f"the truth box at stamp {stamp_ns} ns has no area")
     if topics.TRUTH_POSITION_TOPIC not in by_topic:
         return Box(min(xs), min(ys), width, height)
     point = by_topic[topics.TRUTH_POSITION_TOPIC].point
-    if not (math.isfinite(point.x) and math.isfinite(point.y)):
-        raise InputError(f"the truth position at stamp {stamp_ns} ns is not finite")
+    if not (abs(point.x) <= LARGEST_PX and abs(point.y) <= LARGEST_PX):
+        raise InputError(f"the truth position at stamp {stamp_ns} ns is not within 2^24 px")
     return Box.around((point.x, point.y), width, height)
 
 

@@ -14,7 +14,7 @@ import cv2
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.recordings.footage import Picture, read_truth_table, stamp_of
+from vehicle_pf_tracker.recordings.footage import Picture, check_fps, read_truth_table, stamp_of
 
 # The decoder's own complaints would go to the terminal beside our sentence.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
@@ -50,6 +50,7 @@ class VideoFile:
         video.release()
         if not math.isfinite(self.fps) or self.fps <= 0:
             raise InputError(f"the video {path} states no frame rate; convert it to MP4 first")
+        check_fps(self.fps, path)
 
     def pictures(self) -> Iterator[Picture]:
         """Yield the frames, stamped by their index."""
