@@ -131,8 +131,8 @@ def test_an_unknown_variant(run_fails, bag):
     ("assignment", "message"),
     [
         ("num_particels=5", "no parameter 'num_particels' (did you mean 'num_particles'?)"),
-        ("num_particles", "--set wants name=value, got 'num_particles'"),
-        ("num_particles=many", "num_particles must be a whole number, got 'many'"),
+        ("num_particles", "--set expects name=value, got 'num_particles'"),
+        ("num_particles=many", "num_particles must be an integer, got 'many'"),
         ("num_particles=0", "num_particles must be from 1 to 100000, got 0"),
         ("motion.sigma_w=nan", "motion.sigma_w must be finite"),
         ("resampling=magic", "resampling must be one of"),
@@ -153,13 +153,13 @@ def test_a_seed_out_of_range(run_fails, bag):
     [
         ("num_particels: 5", "no parameter 'num_particels' (did you mean 'num_particles'?)"),
         ("que_depth: 5", "no parameter 'que_depth' (did you mean 'queue_depth'?)"),
-        ("num_particles: many", "num_particles must be a whole number, got 'many'"),
-        ("num_particles: 2.5", "num_particles must be a whole number, got 2.5"),
-        ("num_particles: true", "num_particles must be a whole number, got True"),
+        ("num_particles: many", "num_particles must be an integer, got 'many'"),
+        ("num_particles: 2.5", "num_particles must be an integer, got 2.5"),
+        ("num_particles: true", "num_particles must be an integer, got True"),
         ("num_particles: 0", "num_particles must be from 1 to 100000, got 0"),
         ("queue_depth: 0", "queue_depth must be from 1"),
         ("motion: {sigma_w: [1]}", "motion.sigma_w must be a number, got [1]"),
-        ("seed: ", "seed must be a whole number, got None"),
+        ("seed: ", "seed must be an integer, got None"),
     ],
 )
 def test_a_parameter_file_that_does_not_fit(run_fails, bag, tmp_path, text, message):

@@ -67,8 +67,8 @@ def test_a_whole_number_does_for_a_real_one():
     [
         ({"cuont": 1}, "did you mean 'count'"),
         ({"count": 0}, "at least 1"),
-        ({"count": 1.5}, "whole number"),
-        ({"count": True}, "whole number"),
+        ({"count": 1.5}, "an integer"),
+        ({"count": True}, "an integer"),
         ({"quick": 1}, "true or false"),
         ({"inner.sigma": 10.0}, "from 0.5 to 9"),
         ({"inner.sigma": float("nan")}, "finite"),

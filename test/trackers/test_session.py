@@ -261,7 +261,7 @@ def test_stamps_that_never_agree_are_counted_by_images():
     # A recording played backwards.
     answers = [believes(at_work, street, t, -t * DAY_NS) for t in range(3, 40)]
     assert answers == [False] * PATIENCE + [True] * (37 - PATIENCE)
-    assert at_work.events == [StampEvent.SENSELESS.value]
+    assert at_work.events == [StampEvent.UNUSABLE.value]
     # A stamp that continues the old ones is believed at once.
     estimate = feed(at_work, street, [40])[0]
     assert at_work.events == []

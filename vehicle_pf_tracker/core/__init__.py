@@ -1,1 +1,1 @@
-"""The ground everything stands on: frames, boxes, stamps, truth and the user's mistakes."""
+"""Types and rules that every room uses: frames, boxes, stamps, ground truth, input errors."""

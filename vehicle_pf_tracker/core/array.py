@@ -1,4 +1,4 @@
-"""The array of numbers that most computations take and give."""
+"""Array type of most computations."""
 
 from __future__ import annotations
 
@@ -8,4 +8,4 @@ import numpy as np
 import numpy.typing as npt
 
 Array: TypeAlias = npt.NDArray[np.float64]
-"""Array of float64; its shape and unit are said where it is used."""
+"""Array of float64; shape and unit are documented where it is used."""

@@ -16,7 +16,8 @@ Position: TypeAlias = tuple[float, float]
 """Coordinates (x, y) in px."""
 
 _LARGEST_SHARE = 4
-"""Sides of the image that a target may be long: vehicles close to the camera overlap it."""
+"""Largest side of a target, in sides of the image. A vehicle close to the camera extends beyond the
+image; a box of more than four images is a mistake in its units or its order of numbers."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,29 +11,32 @@ from dataclasses import dataclass
 from enum import Enum
 
 _LEARNING_INTERVALS = 10
+"""Intervals whose median is the period: up to four outliers, such as dropped frames, do no harm,
+and at 10 frames/s the period is known after a second."""
 _LONGEST_GAP = 5.0
-"""Seconds; a longer gap counts as this long, since no motion can be carried over it."""
+"""Gap in s that counts in full. A longer one counts as this long: within it a vehicle has usually
+crossed the view, so that extrapolating further would predict nothing."""
 
 
 class StampEvent(str, Enum):
-    """What is remarkable about a stamp."""
+    """Irregularity of a stamp."""
 
     REPEATED = "repeated stamp"
     GAP = "gap in time"
     JUMP_BACK = "time jumped back"
-    SENSELESS = "stamps without sense, so each image counts as one period"
+    UNUSABLE = "unusable stamps, so each image counts as one period"
 
 
 @dataclass(frozen=True, slots=True)
 class Tick:
-    """Time since the frame before, in nominal frame periods, and what is remarkable about it."""
+    """Time since the previous frame in nominal frame periods, and irregularity of the stamp."""
 
     elapsed: float
     event: StampEvent | None = None
 
 
 class StampClock:
-    """Turns stamps into elapsed nominal frame periods.
+    """Conversion of stamps to elapsed nominal frame periods.
 
     Parameters
     ----------

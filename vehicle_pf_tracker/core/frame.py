@@ -1,4 +1,4 @@
-"""The image as every tracker sees it."""
+"""Type of the images that trackers take."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is known about the vehicle in a frame: where it is and how much of it can be seen."""
+"""Ground truth of the vehicle in a frame: its box and its visibility."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from enum import IntEnum
 from vehicle_pf_tracker.core.box import Box
 
 TOTAL_BELOW = 0.1
-"""A vehicle is totally occluded when less than this fraction of it is visible."""
+"""Visible fraction below which an occlusion is total: what remains is too little to be localised,
+and ground truth drawn by hand rarely distinguishes it from nothing."""
 
 
 class Occlusion(IntEnum):
-    """How far the vehicle is hidden, numbered as in `groundtruth.csv`."""
+    """Degree of occlusion, numbered as in `groundtruth.csv`."""
 
     NONE = 0
     PARTIAL = 1
@@ -28,18 +29,18 @@ class Occlusion(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """The vehicle's true state in one frame.
+    """True state of the vehicle in one frame.
 
     Attributes
     ----------
     stamp_ns : int
-        Stamp of the image this belongs to, in ns.
+        Stamp of the image that it belongs to, in ns.
     box : Box
-        The whole vehicle, hidden parts included, in px.
+        Box of the whole vehicle, occluded parts included, in px.
     occlusion : Occlusion
-        None, partial or total.
+        Degree of occlusion: none, partial or total.
     visible_fraction : float or None
-        Share (0 to 1) of the vehicle's pixels that can be seen; None where it is not known.
+        Share (0 to 1) of the vehicle's pixels that are visible; None where it is not known.
     """
 
     stamp_ns: int

@@ -1,1 +1,1 @@
-"""Particle filtering in plain numpy: weights, resampling, motion densities."""
+"""Particle filtering in plain numpy: weights, resampling, motion samplers."""

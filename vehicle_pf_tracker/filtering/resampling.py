@@ -1,10 +1,10 @@
 """Resampling schemes: functions ``(weights, count, rng) -> ancestor indices``.
 
 Every scheme draws `count` indices so that the expected number of times that `i` appears is
-``count * weights[i]``, and never draws a particle of weight zero. Weights that say nothing (all
-zero, negative or not finite) count as uniform. They differ in variance: systematic and stratified
-spread their draws evenly, residual keeps the whole part of each expected count for certain, and
-multinomial is the importance sampling of P1's Algorithm 2.
+``count * weights[i]``, and never draws a particle of weight zero. Weights without information (all
+zero, negative or not finite) count as uniform. The schemes differ in variance: systematic and
+stratified spread their draws evenly, residual keeps the integer part of each expected count for
+certain, and multinomial is the importance sampling of P1's Algorithm 2.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def residual(weights: Weights, count: int, rng: np.random.Generator) -> Ancestor
     """Keep ``floor(count * w)`` copies of each particle, and draw the rest multinomially."""
     weights, _ = normalise(weights)
     expected = count * weights
-    # 0.3 * 10 is 2.9999999999999996: a whole expectation must not lose a copy to rounding.
+    # 0.3 * 10 is 2.9999999999999996: an integer expectation must not lose a copy to rounding.
     kept = np.floor(expected + 1e-9 * np.maximum(expected, 1.0)).astype(np.intp)
     certain = np.repeat(np.arange(len(weights), dtype=np.intp), kept)[:count]
     missing = count - len(certain)
@@ -71,4 +71,4 @@ SCHEMES: Mapping[str, Scheme] = {
     "systematic": systematic,
     "stratified": stratified,
 }
-"""The schemes by the name that parameters use."""
+"""Resampling schemes by the name that parameters use."""

@@ -23,8 +23,8 @@ def normalise(weights: Weights) -> tuple[Weights, bool]:
     normalised : (N,) array
         Sums to one.
     sound : bool
-        False where the weights say nothing (all zero, negative, or not finite); they are uniform
-        then, and the caller's confidence has to say so.
+        False where the weights carry no information (all zero, negative, or not finite); they are
+        uniform then, and the caller has to report a confidence of zero.
     """
     weights = np.asarray(weights, dtype=np.float64)
     largest = weights.max()

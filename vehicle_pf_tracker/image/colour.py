@@ -105,6 +105,7 @@ class JointColour(CountedFeature):
 
 
 CHANNEL_BINS = 21
+"""Bins of each channel (P2, section III-C)."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """JPEG and PNG images as RGB frames, whose size is known before anything is decoded.
 
-A file of a few bytes may claim a picture, or a chunk, of gigabytes, for which OpenCV would make
-room. So lengths are checked and the size is read first, in the way of the decoders behind it
+A file of a few bytes may claim a picture, or a chunk, of gigabytes, for which OpenCV would allocate
+memory. So lengths are checked and the size is read first, in the way of the decoders behind it
 (libjpeg's `next_marker`, the chunks of a PNG one after the other), and what is too large, or longer
 than its data, never gets to them.
 """
@@ -33,7 +33,7 @@ def decode_compressed(format: str, data: Buffer) -> Frame:  # noqa: A002 (the RO
     Parameters
     ----------
     format : str
-        The message's format, for the error only: the data say themselves what they are.
+        The message's format, for the error only: the data identify themselves.
     data : buffer
         The file's bytes.
 
@@ -67,7 +67,7 @@ def _size_of(name: str, data: bytes) -> tuple[int, int]:
         raise InputError(f"{name} is cut off before its end")
     size = read_size(data)
     if size is None:
-        raise InputError(f"{name} cannot be decoded: it does not say its size")
+        raise InputError(f"{name} cannot be decoded: it does not state its size")
     return size
 
 
@@ -82,13 +82,13 @@ def _decoded(name: str, coded: Bytes) -> Frame:
 
 
 def _is_cut_png(data: bytes) -> bool:
-    """Tell whether a PNG lacks its last chunk, or has a chunk that is longer than the data."""
-    place = len(_PNG)
-    while place + _CHUNK_FRAME <= len(data):
-        kind = data[place + 4 : place + 8]
-        place += _CHUNK_FRAME + int.from_bytes(data[place : place + 4], "big")
+    """Test whether a PNG lacks its last chunk, or has a chunk that is longer than the data."""
+    offset = len(_PNG)
+    while offset + _CHUNK_FRAME <= len(data):
+        kind = data[offset + 4 : offset + 8]
+        offset += _CHUNK_FRAME + int.from_bytes(data[offset : offset + 4], "big")
         if kind == b"IEND":
-            return place > len(data)
+            return offset > len(data)
     return True
 
 
@@ -102,20 +102,20 @@ def _png_size(data: bytes) -> tuple[int, int] | None:
 
 def _jpeg_size(data: bytes) -> tuple[int, int] | None:
     """Width and height of the first frame header; None if the pixels begin without one."""
-    place = 2
+    offset = 2
     while True:
-        place = data.find(_FILL, place)
-        if place < 0:
+        offset = data.find(_FILL, offset)
+        if offset < 0:
             return None
-        while data[place : place + 1] == b"\xff":
-            place += 1
-        marker, place = data[place : place + 1], place + 1
+        while data[offset : offset + 1] == b"\xff":
+            offset += 1
+        marker, offset = data[offset : offset + 1], offset + 1
         if not marker or marker[0] in (_START_OF_SCAN, _END):
             return None
         if marker[0] in _FRAME_HEADERS:
-            return _frame_size(data[place : place + 7])
+            return _frame_size(data[offset : offset + 7])
         if marker[0] != 0 and marker[0] not in _ALONE:  # 0: no marker, but an escaped 255
-            place += int.from_bytes(data[place : place + 2], "big")
+            offset += int.from_bytes(data[offset : offset + 2], "big")
 
 
 def _frame_size(header: bytes) -> tuple[int, int] | None:
@@ -126,7 +126,7 @@ def _frame_size(header: bytes) -> tuple[int, int] | None:
 
 
 def _is_cut_jpeg(data: bytes) -> bool:
-    """Tell whether a JPEG has no end marker, which its decoder would fill up with grey.
+    """Test whether a JPEG has no end marker, which its decoder would fill up with grey.
 
     The marker cannot occur within the coded pixels; a thumbnail has its own in the first half.
     """

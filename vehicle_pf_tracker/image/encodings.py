@@ -27,10 +27,10 @@ MAX_SIDE = 32767
 
 @dataclass(frozen=True, slots=True)
 class _Encoding:
-    """How the bytes of an encoding lie in memory and become RGB.
+    """Memory layout of an encoding, and its conversion to RGB.
 
     `rows` is the height of the data in units of the image's height (NV12 has its colour plane
-    below the grey one); `even` says that chroma is shared by pixel pairs.
+    below the grey one); `even` marks chroma that is shared by pixel pairs.
     """
 
     pixel_bytes: int
@@ -148,4 +148,4 @@ ENCODINGS: dict[str, _Encoding] = {
     "yuyv": _by_opencv(cv2.COLOR_YUV2RGB_YUY2, 2, even=True),
     "nv12": _by_opencv(cv2.COLOR_YUV2RGB_NV12, 1, rows=1.5, even=True),
 }
-"""Every encoding that is read, by its ROS name."""
+"""Supported encodings by ROS name."""

@@ -23,9 +23,10 @@ from vehicle_pf_tracker.image.window_feature import Counted, CountedFeature, Gre
 from vehicle_pf_tracker.image.window_sums import areas, bin_counts, covered_region
 
 Strengths: TypeAlias = npt.NDArray[np.float32]
-"""Squared magnitude of the gradient; whole numbers below 2**24, so exact."""
+"""Squared magnitude of the gradient; integers below 2**24, so exact."""
 
 DIRECTION_BINS = 64
+"""Bins of the gradient's direction (P2, section III-C)."""
 
 
 def squared_strength(gx: npt.NDArray[Any], gy: npt.NDArray[Any]) -> Strengths:
@@ -63,7 +64,7 @@ def direction_bins(
     Parameters
     ----------
     gx, gy : arrays of one shape
-        Whole numbers, not both zero.
+        Integers, not both zero.
     signed : bool
         False takes ``atan(gy / gx)``, which knows no opposite directions.
 
@@ -169,7 +170,7 @@ class GradientDirections(CountedFeature):
         Take the gradient in the frame; False takes it in each window by itself, mirrored at its
         border, as printed (interpretation 14).
     signed : bool
-        Tell dark-to-light from light-to-dark; False takes the printed ``atan``, which folds
+        Distinguish dark-to-light from light-to-dark; False takes the printed ``atan``, which folds
         opposite directions into the middle 32 bins (interpretation 13).
     floor : float
         Gradient that an edge point has at least (a step of one grey level makes 4). Without one, a
@@ -210,7 +211,7 @@ class GradientDirections(CountedFeature):
 
 
 class EdgePoints(NamedTuple):
-    """What may be an edge point in some window: row, column, squared strength, bin; each (M,)."""
+    """Candidates for edge points: row, column, squared strength and bin, each of shape (M,)."""
 
     y: npt.NDArray[np.intp]
     x: npt.NDArray[np.intp]

@@ -1,7 +1,7 @@
-"""Straight edge segments, and how their lengths share out over directions in each window.
+"""Straight edge segments, and the distribution of their lengths over directions in each window.
 
-Segments are found once in the region that all windows cover. What each window holds of a segment
-is then its length after clipping, exactly and for all windows at once.
+Segments are found once in the region that all windows cover. The part of a segment inside each
+window is then computed by clipping, exactly and for all windows at once.
 """
 
 from __future__ import annotations
@@ -20,8 +20,11 @@ Segments = npt.NDArray[np.float64]
 """x, y of both ends in continuous px, shape (S, 4)."""
 
 _MARGIN = 3
-"""Pixels around the region that an edge on its border needs to be seen."""
+"""Pixels around the region that are needed to detect an edge on its border: one for the gradient,
+one for Canny's suppression of non-maxima, one for its hysteresis."""
 _ANGLE_STEP = np.pi / 36
+"""Resolution of directions in the Hough transform: 5 degrees, a quarter of the width of the default
+eight direction bins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +34,7 @@ class LineDetector:
     Attributes
     ----------
     edge_threshold : float
-        Gradient (levels of 255, 3x3 Sobel) from which an edge is sure; edges go on to a third.
+        Gradient (levels of 255, 3x3 Sobel) at which an edge starts; it continues down to a third.
     shortest : int
         Least length of a segment, in px.
     """
@@ -105,15 +108,15 @@ def _crossings(
 
 
 def direction_shares(segments: Segments, bins: int) -> Array:
-    """How each segment counts in bins over 180 degrees, shape (S, bins), rows summing to one.
+    """Share of each segment in each bin over 180 degrees, shape (S, bins), rows summing to one.
 
     A direction between the middles of two bins counts in both, so that a small turn changes little.
     Bin 0 has its middle at the horizontal, and follows on the last one.
     """
     x, y = (segments[:, 2:] - segments[:, :2]).T
-    place = np.mod(np.arctan2(y, x), np.pi) / np.pi * bins
-    lower = np.floor(place).astype(np.intp)
-    upper_share = place - lower
+    bin_position = np.mod(np.arctan2(y, x), np.pi) / np.pi * bins
+    lower = np.floor(bin_position).astype(np.intp)
+    upper_share = bin_position - lower
     shares, rows = np.zeros((len(segments), bins)), np.arange(len(segments))
     np.add.at(shares, (rows, lower % bins), 1.0 - upper_share)
     np.add.at(shares, (rows, (lower + 1) % bins), upper_share)

@@ -136,7 +136,7 @@ def _cells(frame: Frame, pixel: Centres, window: Window, active: Indices, bits: 
     """Cell of each kernel pixel in the flat table of masses, shape (N, P).
 
     The table has a row for each window. In a row the active bins come first, then one cell for all
-    other colours, and one for what lies outside the image.
+    other colours, and one for pixels outside the image.
     """
     table = np.full(bin_count(bits), len(active))
     table[active] = np.arange(len(active))
@@ -163,8 +163,8 @@ def _masses(cells: Indices, kernel: Kernel, bins: int) -> Array:
     return np.asarray(masses[:, :bins] / masses[:, :-1].sum(axis=1, keepdims=True))
 
 
-def _pixel_weights(masses: Array, wanted: Histogram, cells: Indices) -> Array:
+def _pixel_weights(masses: Array, reference: Histogram, cells: Indices) -> Array:
     """``sqrt(q / p)`` of each kernel pixel's colour (eq. 25), shape (N, P)."""
     table = np.zeros((len(masses), masses.shape[1] + 2))
-    np.divide(wanted, masses, out=table[:, :-2], where=masses > 0)
+    np.divide(reference, masses, out=table[:, :-2], where=masses > 0)
     return np.sqrt(table).ravel().take(cells)

@@ -38,7 +38,7 @@ Histogram: TypeAlias = npt.NDArray[np.float64]
 
 
 class Reference:
-    """A normalised histogram and its active bins.
+    """Normalised histogram that windows are compared with, and its active bins.
 
     Only bins that occur in the reference can add to a Bhattacharyya coefficient, so that only those
     are counted in windows. What follows from them is kept, since a reference may serve many frames.
@@ -51,7 +51,7 @@ class Reference:
     Attributes
     ----------
     kept : dict
-        What kernels made of it, by a key of their own.
+        Derived data that kernels keep with it, by a key of their own.
     """
 
     def __init__(self, histogram: Histogram) -> None:

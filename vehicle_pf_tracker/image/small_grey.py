@@ -1,4 +1,4 @@
-"""A frame made small and grey, for what needs neither colours nor details."""
+"""Reduced grey frames, for measurements that need neither colours nor details."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 
 _LARGEST_SIDE = 320
+"""Side in px that a frame is reduced to: the motion of its background is measured to a fraction of
+a pixel, so that a quarter of VGA's pixels suffice."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

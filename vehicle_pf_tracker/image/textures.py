@@ -22,6 +22,7 @@ from vehicle_pf_tracker.image.window_feature import (
 from vehicle_pf_tracker.image.window_sums import areas, bin_counts, covered_region
 
 LEVELS = 8
+"""Grey levels of co-occurrences (P2, section III-D)."""
 
 
 @dataclass(frozen=True)
@@ -52,15 +53,17 @@ def pair_bins(grey: Grey) -> Grey:
 
 
 DESCRIPTORS = ("maximum probability", "contrast", "homogeneity", "uniformity", "entropy")
+"""Statistics of a co-occurrence matrix (P2, section III-D)."""
 
 
 @dataclass(frozen=True)
 class HaralickStatistics(WindowFeature):
-    """Ten bins: each of the `DESCRIPTORS`, scaled to 0..1, beside what it lacks to 1.
+    """Ten bins: each of the `DESCRIPTORS`, scaled to 0..1, and its complement to 1.
 
-    P2 does not say how a vector of statistics is held against another one. Normalising the vector
-    itself would keep only the ratios of unlike things; here each descriptor is a histogram of two
-    bins, so that the coefficient is the mean of the descriptors' own and 1 only where all agree.
+    P2 does not define how vectors of statistics are compared. Normalising the vector itself would
+    keep only the ratios of quantities of different kinds; here each descriptor is a histogram of
+    two bins, so that the coefficient is the mean of the descriptors' own and 1 only where all
+    agree.
 
     References
     ----------

@@ -20,7 +20,7 @@ Centres = npt.NDArray[np.intp]
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """Half sizes w_x and w_y of a window, in px."""
+    """Size of a window: its half sizes w_x and w_y in px."""
 
     half_width: int
     half_height: int
@@ -100,6 +100,6 @@ def keep_inside(frame: Frame, positions: Positions) -> Positions:
 
 
 def is_outside(frame: Frame, x: float, y: float) -> bool:
-    """Tell whether a position lies beyond the border of `frame`."""
+    """Test whether a position lies beyond the border of `frame`."""
     width, height = frame_size(frame)
     return x < 0 or y < 0 or x > width or y > height

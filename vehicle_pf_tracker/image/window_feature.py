@@ -1,4 +1,4 @@
-"""What the image features of P2 have in common: histograms of windows, and their similarity."""
+"""Interface of image features: histograms of windows, and their similarity."""
 
 from __future__ import annotations
 

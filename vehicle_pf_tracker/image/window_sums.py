@@ -1,8 +1,8 @@
 """Counts of chosen bins in many windows at once, in numpy and OpenCV.
 
-Only the region that the windows cover is looked at, and only the bins asked for. Each bin is a
-plane of zeros and ones, integrated once; a window's count then costs four look-ups. A float64 holds
-whole numbers of 53 bits, so that several planes are integrated as one.
+Only the region that the windows cover is read, and only the bins asked for are counted. Each bin is
+a plane of zeros and ones, integrated once; a window's count then costs four look-ups. A float64
+represents integers of 53 bits exactly, so that several planes are integrated as one.
 """
 
 from __future__ import annotations
@@ -24,10 +24,11 @@ _MOST_PLANES = 48
 """Bins integrated at once: OpenCV 5 takes 128 channels at most, and small blocks stay cached."""
 
 _MOST_VALUES = 1 << 22
-"""Bins times pixels integrated at once, which bounds the memory where windows are huge."""
+"""Bins times pixels integrated at once: bounds the memory to 32 MB of sums where windows are
+huge."""
 
 _EXACT_BITS = 53
-"""Bits of a whole number that a float64 holds exactly."""
+"""Bits of an integer that a float64 represents exactly."""
 
 
 def covered_region(frame: Frame, windows: Bounds, margin: int = 0) -> tuple[Frame, Bounds]:
@@ -92,7 +93,7 @@ def bin_counts(indices: npt.NDArray[Any], active: Bins, bins: int, windows: Boun
 
 
 def _count(indices: npt.NDArray[Any], active: Bins, bins: int, windows: Bounds) -> Counts:
-    # A lane that holds the whole region's count never carries into the next one.
+    # A lane with room for the whole region's count never carries into the next one.
     lane_bits = int(indices.size).bit_length()
     lanes = max(_EXACT_BITS // lane_bits, 1)
     lookup = _lanes_of_bins(active.tobytes(), bins, lane_bits, lanes)
@@ -104,9 +105,9 @@ def _count(indices: npt.NDArray[Any], active: Bins, bins: int, windows: Bounds) 
 
 @functools.lru_cache(maxsize=8)
 def _lanes_of_bins(active: bytes, bins: int, lane_bits: int, lanes: int) -> npt.NDArray[np.float64]:
-    """Tell what a pixel of each bin adds to each plane, shape (bins, planes).
+    """Return the value that a pixel of each bin adds to each plane, shape (bins, planes).
 
-    It is the same for many frames. `active` are the bytes of the active bins' numbers.
+    The table is the same for many frames. `active` are the bytes of the active bins' numbers.
     """
     chosen = np.frombuffer(active, dtype=np.intp)
     order = np.arange(len(chosen))

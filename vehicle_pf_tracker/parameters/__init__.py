@@ -1,1 +1,1 @@
-"""Parameters: the table that everything else is derived from, its files, and a node's whole set."""
+"""Parameters: the table that everything else is derived from, its files, a node's configuration."""

@@ -22,12 +22,12 @@ from vehicle_pf_tracker.parameters.table import to_mapping as values_of
 
 @dataclass(frozen=True, slots=True)
 class PublishParameters:
-    """Which outputs are published; `~/position`, `~/mode` and `/diagnostics` always are."""
+    """Switches of the outputs; `~/position`, `~/mode` and `/diagnostics` are always published."""
 
     box: bool = parameter(True, "Publish ~/box; off saves a message per image.")
     velocity: bool = parameter(True, "Publish ~/velocity; off saves a message per image.")
-    particles: bool = parameter(True, "Publish ~/particles while somebody subscribes.")
-    overlay: bool = parameter(True, "Publish ~/overlay while somebody subscribes.")
+    particles: bool = parameter(True, "Publish ~/particles while it has subscribers.")
+    overlay: bool = parameter(True, "Publish ~/overlay while it has subscribers.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +58,7 @@ class NodeParameters:
 
 
 _LARGEST = 1e5
+"""Bound of target coordinates in px: three times the largest side of an image (32767 px)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +111,7 @@ class TargetParameters:
 
 @dataclass(frozen=True, slots=True)
 class SessionParameters:
-    """What a stream needs besides its variant's parameters."""
+    """Parameters of a stream, beside those of its variant."""
 
     target: TargetParameters = group(TargetParameters)
     reset_on_time_jump: bool = parameter(
@@ -130,7 +131,7 @@ class SessionParameters:
 
 
 class Parametrised(Protocol):
-    """A variant as the configuration sees it."""
+    """Part of a variant that the configuration uses."""
 
     @property
     def parameters(self) -> type[Any]:
@@ -145,7 +146,11 @@ class Configuration:
     Attributes
     ----------
     tracker : Any
-        An instance of the variant's parameter dataclass.
+        Parameters of the variant.
+    session : SessionParameters
+        Parameters of the stream.
+    node : NodeParameters
+        Parameters of the node.
     """
 
     tracker: Any
@@ -158,11 +163,11 @@ class Configuration:
         return cls(variant.parameters(), SessionParameters(), NodeParameters())
 
     def specs(self) -> dict[str, ParameterSpec]:
-        """Every parameter by name."""
+        """Return the specification of every parameter by name."""
         return {name: spec for part in self._parts() for name, spec in specs(type(part)).items()}
 
     def to_mapping(self) -> dict[str, Value]:
-        """Value of every parameter by name."""
+        """Return the value of every parameter by name."""
         return {name: value for part in self._parts() for name, value in values_of(part).items()}
 
     def updated(self, values: Mapping[str, object]) -> Configuration:

@@ -13,6 +13,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec, Value
 
 _WIDTH = 96
+"""Width of comments: with their indent of four and "# ", lines of at most about 100 characters."""
 
 
 def to_yaml(
@@ -34,8 +35,8 @@ def _comment(spec: ParameterSpec) -> str:
         facts.append(f"a change {EFFECTS[spec.effect]}")
     if spec.read_only:
         facts.append("set at start-up only")
-    told = "; ".join(fact for fact in facts if fact)
-    return spec.doc + (f" [{told}]" if told else "")
+    notes = "; ".join(fact for fact in facts if fact)
+    return spec.doc + (f" [{notes}]" if notes else "")
 
 
 def _scalar(value: Value) -> str:
@@ -51,7 +52,8 @@ def read_yaml(path: Path, node_name: str) -> dict[str, object]:
     Raises
     ------
     InputError
-        If there is no such file, it is no YAML, or it has no `ros__parameters` for this node.
+        If there is no such file, it is not valid YAML, or it has no `ros__parameters` for this
+        node.
     """
     try:
         document = yaml.safe_load(path.read_text(encoding="utf-8"))

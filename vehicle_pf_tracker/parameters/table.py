@@ -1,9 +1,10 @@
 """Parameters as frozen dataclasses: the one table everything else is derived from.
 
-A field made with `parameter` carries its default, bounds, unit, a line on what turning it does, and
-its source. A field whose type is another such dataclass (made with `group`) nests, and its fields
-get dotted names (`reference.alpha`). ROS descriptors, YAML files, ``--set key=value`` and the
-tables in the docs are all made from `specs`, and `tune` searches the fields marked as tuned.
+A field defined with `parameter` carries its default, bounds, unit, a line on the effect of turning
+it, and its source. A field whose type is another such dataclass (defined with `group`) nests, and
+its fields get dotted names (`reference.alpha`). ROS descriptors, YAML files, ``--set key=value``
+and the tables in the documentation are all derived from `specs`, and `tune` searches the fields
+marked as tuned.
 """
 
 from __future__ import annotations
@@ -31,29 +32,33 @@ EFFECTS: Mapping[Effect, str] = {
 }
 
 _KEY = "parameter"
-_TYPE_NAMES = {bool: "true or false", int: "a whole number", float: "a number", str: "a word"}
+_TYPE_NAMES = {bool: "true or false", int: "an integer", float: "a number", str: "a string"}
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterSpec:
-    """Everything there is to say about one parameter.
+    """Full description of one parameter.
 
     Attributes
     ----------
     name : str
         Dotted snake_case name.
     kind : type
-        `bool`, `int`, `float` or `str`.
+        Type of its value: `bool`, `int`, `float` or `str`.
+    default : bool, int, float or str
+        Default value.
     doc : str
-        What turning it does, in one line.
+        Effect of turning it, in one line.
     minimum, maximum : float or None
         Inclusive bounds, in `unit`; None is unbounded.
+    unit : str
+        Unit of its value; empty where it has none.
     choices : tuple of str
-        The words allowed; empty where any will do.
+        Strings allowed; empty where any string is.
     source : str
-        Paper and equation, or reading, it comes from.
+        Paper and equation, or interpretation, that it comes from.
     effect : {"keeps", "relearns", "restarts", "starts"}
-        What a change while tracking does (`EFFECTS`).
+        Consequence of a change while tracking (`EFFECTS`).
     read_only : bool
         True where it can be set at start-up only.
     tuned : bool or (float, float)
@@ -75,12 +80,13 @@ class ParameterSpec:
     tuned: bool | tuple[float, float] = False
 
     def check(self, value: object) -> Value:
-        """Return `value` in this parameter's type; whole numbers do for real ones.
+        """Return `value` in this parameter's type; integers are accepted for real numbers.
 
         Raises
         ------
         InputError
-            If the type is wrong, the number is not finite or out of bounds, or the word unknown.
+            If the type is wrong, the number is not finite or out of bounds, or the string is not
+            allowed.
         """
         if self.kind is float and isinstance(value, int) and not isinstance(value, bool):
             value = float(value)
@@ -103,7 +109,7 @@ class ParameterSpec:
 
     @property
     def bounds(self) -> str:
-        """The bounds in words, for messages and tables; empty where there are none."""
+        """Bounds in words, for messages and tables; empty where there are none."""
         if self.minimum is not None and self.maximum is not None:
             return f"from {_plain(self.minimum)} to {_plain(self.maximum)}"
         if self.minimum is not None:
@@ -163,7 +169,7 @@ def group(kind: type[Any], **changed: Value) -> Any:
 
 
 def specs(cls: type[object]) -> Mapping[str, ParameterSpec]:
-    """Every parameter of the dataclass `cls` by dotted name, in order of declaration."""
+    """Return every parameter of the dataclass `cls` by dotted name, in order of declaration."""
     key: Any = cls
     return _specs(key)
 
@@ -222,11 +228,11 @@ def from_mapping(
                 problems.append(str(error))
     if problems:
         raise InputError("; ".join(problems))
-    made = cast("ParametersT", _build(cls, checked, ""))
-    validate = getattr(made, "validate", None)
+    parameters = cast("ParametersT", _build(cls, checked, ""))
+    validate = getattr(parameters, "validate", None)
     if validate is not None:
         validate()
-    return made
+    return parameters
 
 
 def _build(cls: type[Any], values: Mapping[str, Value], prefix: str) -> Any:
@@ -242,7 +248,7 @@ def _build(cls: type[Any], values: Mapping[str, Value], prefix: str) -> Any:
 
 
 def unknown_name(name: str, known: Iterable[str]) -> str:
-    """Say that there is no parameter `name`, and which one may be meant."""
+    """Write that there is no parameter `name`, and which one may be meant."""
     close = difflib.get_close_matches(name, list(known), n=1)
     return f"there is no parameter {name!r}" + (f" (did you mean {close[0]!r}?)" if close else "")
 
@@ -261,7 +267,7 @@ def parse_assignments(
     for word in assignments:
         name, equals, text = word.partition("=")
         if not equals:
-            raise InputError(f"--set wants name=value, got {word!r}")
+            raise InputError(f"--set expects name=value, got {word!r}")
         if name not in table:
             raise InputError(unknown_name(name, table))
         values[name] = table[name].parse(text)

@@ -1,1 +1,1 @@
-"""One file per tracker variant, the contract they share, and the registry."""
+"""Trackers: their contract, the variants, and the registry."""

@@ -1,4 +1,4 @@
-"""What all trackers share around the step that makes each of them itself."""
+"""Common frame of all trackers, around the step in which they differ."""
 
 from __future__ import annotations
 
@@ -27,12 +27,15 @@ ParametersT = TypeVar("ParametersT", bound=CommonParameters)
 ParticleParametersT = TypeVar("ParticleParametersT", bound=ParticleParameters)
 
 DEFAULT_PERIOD = 1 / 30
-"""Frame period in s that is assumed until stamps or a parameter tell."""
+"""Frame period in s that is assumed until stamps or a parameter give it: that of common cameras."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cloud:
-    """Particle positions (N, 2) in px, normalised weights (N,), and whether those say anything."""
+    """Particle positions (N, 2) in px and normalised weights (N,).
+
+    `sound` is False where the weights carry no information.
+    """
 
     positions: Array
     weights: Array
@@ -51,16 +54,26 @@ class Cloud:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What a variant's step found; the base turns it into an `Estimate`.
+    """Result of a variant's step, which the base turns into an `Estimate`.
 
     Attributes
     ----------
     cloud : Cloud
-        After weighting, before the next resampling.
+        Particles after weighting, before the next resampling.
     position : (float, float)
-        Estimate in px.
+        Estimated centre in px.
+    velocity : (float, float)
+        Velocity in px per nominal frame period.
+    regime : str
+        Branch that the paper's algorithm is in.
     evidence : float
         Similarity of the image at `position` to the reference, 0 to 1.
+    similarities : mapping of str to float
+        Similarities that the algorithm decides by.
+    resampling_passes, resampled_particles : int
+        Number of resamplings in the step, and of particles that they replaced.
+    left_image : bool
+        True where the cloud's mean crossed the border before it was clipped.
     """
 
     cloud: Cloud
@@ -75,17 +88,19 @@ class Outcome:
 
 
 class BaseTracker(ABC, Generic[ParametersT]):
-    """Start, time, mode, reconfiguration; a variant adds `_learn` and `_advance`.
+    """Start, time, mode and reconfiguration of a tracker.
+
+    A variant adds `_learn`, `_scatter` and `_advance`.
 
     Parameters
     ----------
     parameters : ParametersT
-        The variant's own dataclass.
+        Parameters of the variant.
 
     Attributes
     ----------
     kernels : Kernels
-        What windows are measured with, ready for use.
+        Implementation that measures windows, ready for use.
     """
 
     def __init__(self, parameters: ParametersT) -> None:
@@ -101,12 +116,12 @@ class BaseTracker(ABC, Generic[ParametersT]):
 
     @property
     def seed(self) -> int:
-        """The seed in use."""
+        """Seed in use."""
         return self._seed
 
     @property
     def target(self) -> Target:
-        """The target as first seen.
+        """Target as it was in the first frame.
 
         Raises
         ------
@@ -119,7 +134,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
 
     @property
     def window(self) -> Window:
-        """The window that features are taken from."""
+        """Window that features are taken from."""
         return self._window or self.target.window(self.parameters.window)
 
     def start(self, frame: Frame, box: Box) -> Estimate:
@@ -169,14 +184,14 @@ class BaseTracker(ABC, Generic[ParametersT]):
 
     @abstractmethod
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        """Take the paper's step on the cloud `self._cloud`."""
+        """Take the algorithm's step from the cloud `self._cloud`."""
 
     @abstractmethod
     def _scatter(self, centre: tuple[float, float]) -> Array:
         """Draw the first particles around `centre`, shape (N, 2) in px."""
 
     def _move(self, frame: Frame, positions: Array, moves: Array) -> tuple[Array, bool]:
-        """Displace particles inside the image; tells whether their mean went over its border."""
+        """Displace particles inside the image; also True if their mean crossed its border."""
         proposed = positions + moves
         x, y = (proposed.sum(axis=0) / len(proposed)).tolist()
         return keep_inside(frame, proposed), is_outside(frame, x, y)

@@ -1,10 +1,10 @@
-"""Whether an image continues its stream, or is a stray in it.
+"""Test whether an image continues its stream.
 
 Cameras, drivers and networks now and then deliver one image that does not belong: of another size,
 without a stamp, with a stamp of yesterday or of tomorrow. A track must not pay for it. Real changes
-look the same at first, but they last. So an odd image is doubted, and only a second one that agrees
-with it makes both believed. A stamp that is ahead by no more than a gap cannot be told from one; it
-is noticed when the next image continues the one before it.
+appear the same at first, but they last. So an odd image is rejected, and accepted after all if a
+second one agrees with it. A stamp that is ahead by no more than a gap cannot be distinguished from
+one; it is noticed when the next image continues the one before it.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ from vehicle_pf_tracker.core.errors import InputError
 Size = tuple[int, int]
 
 LONGEST_GAP_NS = 5_000_000_000
-"""Stamps may always be this far apart."""
+"""Distance of stamps in ns that is always accepted: a camera that pauses for seconds is common."""
 
 _SLOWER = 3
-"""How many times the interval before a longer gap may be: slow cameras have long intervals too."""
+"""Intervals of the previous length that a gap may last: slow cameras have long intervals too, and
+may drop two images."""
 
 _LATE = 1.5
 """Usual intervals after which a stamp may be ahead: one that makes the next image go back, which
@@ -37,17 +38,17 @@ _AGREED = "; rejected unless the next image agrees with it"
 
 
 class StrayImageError(InputError):
-    """An image that does not continue the stream it came in."""
+    """Image that does not continue the stream it came in."""
 
 
 class Continuation(Enum):
-    """How an image goes with those before it."""
+    """Relation of an image to those before it."""
 
     CONTINUES = "continues the stream"
     LEAPS = "comes later than usual, so that its stamp may be ahead"
     CORRECTS = "continues the image before the last, whose stamp was ahead"
-    CONFIRMS = "agrees with the doubted image before it; both are believed"
-    UNTIMED = "has a stamp that says nothing, as all those before it"
+    CONFIRMS = "agrees with the rejected image before it; both are accepted"
+    UNTIMED = "has an unusable stamp, as all those before it"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +58,7 @@ class _Seen:
 
 
 class Continuity:
-    """Judges the images of one stream in their order."""
+    """Judge of the images of one stream, in their order."""
 
     def __init__(self) -> None:
         self._last: _Seen | None = None
@@ -71,7 +72,7 @@ class Continuity:
 
     @property
     def size(self) -> Size | None:
-        """Width and height in px of the believed images; None before the first."""
+        """Width and height in px of the accepted images; None before the first."""
         return self._last.size if self._last else None
 
     def judge(self, size: Size, stamp_ns: int, *, timed: bool) -> Continuation:
@@ -84,7 +85,7 @@ class Continuity:
         stamp_ns : int
             Its stamp in ns.
         timed : bool
-            Whether its stamp matters: not while nothing is tracked.
+            True where its stamp matters: not while nothing is tracked.
 
         Raises
         ------
@@ -130,7 +131,7 @@ class Continuity:
         return seen.size == doubted.size and 0 <= interval <= longest
 
     def _shows_last_ahead(self, seen: _Seen) -> bool:
-        """Tell whether leaving the last image out makes `seen` continue the stream."""
+        """Test whether `seen` continues the stream if the last image is left out."""
         assert self._last is not None
         if seen.size != self._last.size or seen.stamp_ns >= self._last.stamp_ns:
             return False

@@ -1,4 +1,4 @@
-"""The contract of all variants: a frame goes in, an estimate comes out."""
+"""Contract of all variants: a frame goes in, an estimate comes out."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from vehicle_pf_tracker.trackers.evidence import EvidenceParameters
 
 @dataclass(frozen=True, slots=True)
 class WindowParameters:
-    """The window that features are taken from."""
+    """Size of the window that features are taken from."""
 
     width: float = parameter(
         0.0,
@@ -37,11 +37,11 @@ class WindowParameters:
 
 @dataclass(frozen=True, slots=True)
 class CommonParameters:
-    """What every variant has."""
+    """Parameters of every variant."""
 
     seed: int = parameter(
         0,
-        "Same seed, frames and parameters give the same estimates; -1 draws one and says which.",
+        "Same seed, frames and parameters give the same estimates; -1 draws one and reports it.",
         minimum=-1,
         maximum=2**31 - 1,
         effect="restarts",
@@ -56,22 +56,22 @@ class CommonParameters:
     )
     lost_after: float = parameter(
         5.0,
-        "Longer: the mode stays OCCLUDED longer before it says LOST.",
+        "Longer: the mode stays OCCLUDED longer before it becomes LOST.",
         minimum=0.0,
         maximum=86_400.0,
         unit="s",
     )
     kernels: str = parameter(
         "auto",
-        "Code that measures windows: numba is several times faster, opencv always there; auto "
-        "takes numba where it is installed. Estimates may differ in their last digits.",
+        "Code that measures windows: numba is several times faster, opencv always available; "
+        "auto takes numba where it is installed. Estimates may differ in their last digits.",
         choices=CHOICES,
     )
     window: WindowParameters = group(WindowParameters)
     evidence: EvidenceParameters = group(EvidenceParameters)
 
     def validate(self) -> None:
-        """Check parameters against each other, and the kernels for being there."""
+        """Check parameters against each other, and that the kernels are available."""
         self.evidence.validate()
         if self.kernels == "numba":
             load_kernels(self.kernels)
@@ -79,7 +79,7 @@ class CommonParameters:
 
 @dataclass(frozen=True, slots=True)
 class ParticleParameters(CommonParameters):
-    """What every particle filter has."""
+    """Parameters of every particle filter."""
 
     num_particles: int = parameter(
         200,
@@ -90,23 +90,23 @@ class ParticleParameters(CommonParameters):
 
 
 class Tracker(Protocol):
-    """Follows one target through a stream of frames."""
+    """Tracker of one target through a stream of frames."""
 
     @property
     def seed(self) -> int:
-        """The seed in use, also where the parameter asked for a drawn one."""
+        """Seed in use, also where the parameter asks for a drawn one."""
         ...
 
     frame_period: float
-    """Nominal time between frames in s; whoever reads the stamps keeps it true."""
+    """Nominal time between frames in s; the reader of the stamps keeps it up to date."""
 
     def start(self, frame: Frame, box: Box) -> Estimate:
-        """Learn the target `box` in `frame`, with the random numbers begun afresh.
+        """Learn the target `box` in `frame`, with the random numbers restarted.
 
         Raises
         ------
         InputError
-            If the box is no target in this frame.
+            If the box cannot be a target in this frame.
         """
         ...
 

@@ -1,4 +1,4 @@
-"""What a tracker says about one frame."""
+"""Estimate of a tracker for one frame."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vehicle_pf_tracker.core.box import Box
 
 
 class Mode(str, Enum):
-    """The claim made to users, from evidence in the image."""
+    """Claim about the target's visibility, from evidence in the image."""
 
     TRACKING = "TRACKING"
     OCCLUDED = "OCCLUDED"
@@ -21,33 +21,33 @@ class Mode(str, Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Estimate:
-    """Where the vehicle is, how sure that is, and what the filter did to find out.
+    """Position of the vehicle with its confidence, and the state of the filter.
 
     Attributes
     ----------
     position : (float, float)
         Centre of the vehicle in px, always inside the image.
     box : Box
-        Its box in px.
+        Box of the vehicle in px.
     velocity : (float, float)
-        px per nominal frame period.
+        Velocity in px per nominal frame period.
     mode : Mode
-        Whether there is evidence for the vehicle at `position`.
+        Visibility of the vehicle at `position`, by the evidence there.
     regime : str
-        The branch that the paper's algorithm is in; not an occlusion detector.
+        Branch that the paper's algorithm is in; not an occlusion detector.
     confidence : float
-        Evidence relative to its clear level, 0 to 1; 0 where the weights said nothing.
+        Evidence relative to its clear level, 0 to 1; 0 where the weights carried no information.
     similarities : mapping of str to float
-        The similarities that the algorithm decides by, each 0 to 1; ratios of two (`lc_*`) may be
+        Similarities that the algorithm decides by, each 0 to 1; ratios of two (`lc_*`) may be
         larger.
     effective_sample_size : float
-        1 to N, before resampling.
+        Effective number of particles before resampling, 1 to N.
     resampling_passes, resampled_particles : int
-        How often the step resampled, and how many particles it replaced.
+        Number of resamplings in the step, and of particles that they replaced.
     particles : (N, 2) array
-        Read-only view, px.
+        Positions of the particles in px; read-only view.
     weights : (N,) array
-        Read-only view, normalised.
+        Normalised weights; read-only view.
     duration : float
         Time that the step took, in s.
     """
@@ -67,7 +67,7 @@ class Estimate:
     duration: float = 0.0
 
     def scalars(self) -> Mapping[str, float | int | str]:
-        """Every scalar by the name that `~/mode` and the tables use."""
+        """Return every scalar by the name that `~/mode` and the tables use."""
         return MappingProxyType(
             {
                 "mode": self.mode.value,
@@ -90,7 +90,7 @@ class Estimate:
 
 
 def read_only(array: Array) -> Array:
-    """View of `array` that cannot be written through."""
+    """Return a view of `array` that cannot be written through."""
     view: Array = array.view()
     view.flags.writeable = False
     return view

@@ -1,8 +1,8 @@
-"""Whether the vehicle is in sight: the mode of every variant, from evidence with hysteresis.
+"""Visibility of the vehicle: the mode of every variant, from evidence with hysteresis.
 
-The evidence is the similarity of the image at the estimate to the reference. It is held against
-its own running level in clear frames, because what counts as alike differs from vehicle to vehicle
-and from camera to camera. The regime of an algorithm takes no part in this.
+The evidence is the similarity of the image at the estimate to the reference. It is compared with
+its own running level in clear frames, because the similarity of a visible vehicle differs between
+vehicles and cameras. The regime of an algorithm takes no part in this.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from vehicle_pf_tracker.trackers.estimate import Mode
 
 @dataclass(frozen=True, slots=True)
 class EvidenceParameters:
-    """When evidence is lost and found again."""
+    """Thresholds of the evidence, relative to its clear level."""
 
     occluded_below: float = parameter(
         0.7,
@@ -28,7 +28,7 @@ class EvidenceParameters:
     )
     clear_above: float = parameter(
         0.8,
-        "Higher: more of the vehicle must be seen again before the mode returns to TRACKING.",
+        "Higher: more of the vehicle must be visible again before the mode returns to TRACKING.",
         minimum=0.0,
         maximum=1.0,
         unit="share of the clear level",
@@ -48,7 +48,7 @@ class EvidenceParameters:
     )
 
     def validate(self) -> None:
-        """Hold the two thresholds apart in the right order."""
+        """Check that the two thresholds are in order."""
         if self.occluded_below > self.clear_above:
             raise InputError(
                 f"evidence.occluded_below ({self.occluded_below:g}) must not be above "
@@ -57,7 +57,7 @@ class EvidenceParameters:
 
 
 class EvidenceJudge:
-    """Keeps the clear level and turns each frame's evidence into a mode."""
+    """Clear level of the evidence, and the mode that follows from each frame's."""
 
     def __init__(self) -> None:
         self.mode = Mode.TRACKING
@@ -83,23 +83,23 @@ class EvidenceJudge:
         Parameters
         ----------
         similarity : float
-            Of the image at the estimate to the reference, 0 to 1.
+            Similarity of the image at the estimate to the reference, 0 to 1.
         seconds : float
-            Time since the frame before.
+            Time since the previous frame, in s.
         parameters : EvidenceParameters
-            The thresholds.
+            Thresholds.
         lost_after : float
             Seconds without evidence after which the target counts as lost.
         left_image : bool
-            Whether the cloud's mean went over the border before it was clipped.
+            True where the cloud's mean crossed the border before it was clipped.
         """
         if self._is_evidence(similarity, parameters):
             self.mode, self.seconds_without = Mode.TRACKING, 0.0
             self._level.add(similarity, parameters.level_rate)
             return self.mode
         self.seconds_without += seconds
-        gone = left_image or self.seconds_without >= lost_after or self.mode is Mode.LOST
-        self.mode = Mode.LOST if gone else Mode.OCCLUDED
+        lost = left_image or self.seconds_without >= lost_after or self.mode is Mode.LOST
+        self.mode = Mode.LOST if lost else Mode.OCCLUDED
         return self.mode
 
     def confidence(self, similarity: float) -> float:
@@ -107,6 +107,6 @@ class EvidenceJudge:
         return min(similarity / self.level, 1.0) if self.level > 0 else 0.0
 
     def _is_evidence(self, similarity: float, parameters: EvidenceParameters) -> bool:
-        in_sight = self.mode is Mode.TRACKING
-        share = parameters.occluded_below if in_sight else parameters.clear_above
+        visible = self.mode is Mode.TRACKING
+        share = parameters.occluded_below if visible else parameters.clear_above
         return similarity >= max(parameters.minimum, share * self.level)

@@ -1,4 +1,4 @@
-"""The tracker variants, one entry each: the only place where they are listed.
+"""Registry of the tracker variants, one entry each: the only list of them.
 
 Executables (through setup.py), parameter files, SROS 2 enclaves and the tables in the documentation
 are derived from these entries by `make config`. A tracker is imported when its class is first asked
@@ -31,7 +31,7 @@ class Variant:
     name : str
         Name that users type.
     classes : str
-        ``module:Prefix``: the module below `trackers` that holds ``PrefixTracker`` and
+        ``module:Prefix``: the module below `trackers` that contains ``PrefixTracker`` and
         ``PrefixParameters``.
     summary : str
         Method and source, in one line.

@@ -1,6 +1,7 @@
 """One target followed through one stream of stamped images.
 
-Offline runs and the node both drive their tracker through this, and so give the same estimates.
+Offline runs and the node both drive their tracker through a session, and so give the same
+estimates.
 """
 
 from __future__ import annotations
@@ -20,26 +21,26 @@ from vehicle_pf_tracker.trackers.registry import Variant
 
 
 class Session:
-    """Starts, steps and restarts the tracker of one variant.
+    """Control of one variant's tracker: start, steps, restarts.
 
     One odd image, of another size or out of its time, is rejected and kept aside. If the next one
-    agrees with it, the stream has changed: then the tracker is shown both, and nothing but the
-    first one's estimate is missing. An image whose stamp proves to have been ahead when the next
+    agrees with it, the stream has changed: the tracker then processes both, and only the first
+    one's estimate is missing. An image whose stamp proves to have been ahead when the next
     one comes is taken back, as if it had never come.
 
     Parameters
     ----------
     variant : Variant
-        From the registry.
+        Variant from the registry.
     parameters : Any
-        An instance of `variant.parameters`.
+        Instance of `variant.parameters`.
     settings : SessionParameters
-        The configured target among them.
+        Parameters of the stream, the configured target among them.
 
     Attributes
     ----------
     events : list of str
-        What was remarkable about the last frame fed, for logs and diagnostics.
+        Irregularities of the last frame, for logs and diagnostics.
     """
 
     def __init__(
@@ -58,20 +59,20 @@ class Session:
 
     @property
     def waiting(self) -> bool:
-        """Whether there is no target to follow."""
+        """True while there is no target to follow."""
         return self._size is None and self._pending is None
 
     @property
     def size(self) -> tuple[int, int] | None:
-        """Width and height in px that images are expected to have; None where any will do."""
+        """Width and height in px that images are expected to have; None for any size."""
         return self._continuity.size
 
     def set_target(self, box: Box) -> None:
-        """Start, or start again, on `box` in the next frame that is believed."""
+        """Start, or start again, on `box` in the next accepted frame."""
         self._pending = box
 
     def reset(self) -> None:
-        """Go back to the configured target, or to waiting for one, and forget the stream."""
+        """Go back to the configured target, or to waiting for one, and discard the track."""
         self._clock = StampClock(self.tracker.parameters.frame_rate)
         self._continuity, self._aside, self._backup = Continuity(), None, None
         self._size, self._pending = None, self.settings.target.box
@@ -99,8 +100,8 @@ class Session:
         StrayImageError
             If the image does not continue the stream; the track is kept.
         InputError
-            If the frame is not usable, or the target to start on is none in it. Where there is a
-            track, such a target is told in `events` instead, and the track goes on.
+            If the frame is not usable, or the target to start on is not valid in it. Where there is
+            a track, such a target is reported in `events` instead, and the track continues.
         """
         self.events = []
         aside, self._aside = self._aside, None
@@ -141,7 +142,7 @@ class Session:
                 f"image size changed from {self._size[0]}x{self._size[1]} to {size[0]}x{size[1]}; "
                 "starting again on the configured target"
             )
-            self._forget()
+            self._discard_track()
         self.tracker.frame_period = self._clock.period or DEFAULT_PERIOD
         box, self._pending = self._pending, None
         if box is not None and self._is_usable(box, size):
@@ -150,14 +151,14 @@ class Session:
 
     def _tick(self, stamp_ns: int | None) -> Tick:
         if stamp_ns is None:
-            self.events.append(StampEvent.SENSELESS.value)
-            return Tick(1.0, StampEvent.SENSELESS)
+            self.events.append(StampEvent.UNUSABLE.value)
+            return Tick(1.0, StampEvent.UNUSABLE)
         tick = self._clock.tick(stamp_ns)
         if tick.event is not None:
             self.events.append(tick.event.value)
         if tick.event is StampEvent.JUMP_BACK and self.settings.reset_on_time_jump:
             self._clock = StampClock(self.tracker.parameters.frame_rate)
-            self._forget()
+            self._discard_track()
             tick = self._clock.tick(stamp_ns)
         return tick
 
@@ -176,7 +177,7 @@ class Session:
         self._size, self._backup = size, None
         return estimate
 
-    def _forget(self) -> None:
+    def _discard_track(self) -> None:
         # A box that was just set is newer than the one configured.
         self._size = None
         self._pending = self._pending or self.settings.target.box

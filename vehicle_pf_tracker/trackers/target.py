@@ -1,4 +1,4 @@
-"""The target as it was in the first frame."""
+"""Target as it was in the first frame."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ from vehicle_pf_tracker.image.window import Window
 from vehicle_pf_tracker.trackers.contract import WindowParameters
 
 _MARGIN = 64
-"""Least margin kept around the target, in px, so that a wider window can still be measured."""
+"""Least margin kept around the target, in px, so that a wider window can still be measured: of
+small targets, windows of several times their size."""
 
 
 class Target:
-    """The first frame's target, kept with a margin.
+    """Patch of the first frame around the target.
 
     References can be rebuilt from it when window, bins or features change while tracking, without
     learning whatever hides the target by then.
@@ -23,9 +24,9 @@ class Target:
     Parameters
     ----------
     frame : (H, W, 3) array
-        The first frame; the part that is kept is copied.
+        First frame; the part that is kept is copied.
     box : Box
-        The target in it.
+        Box of the target in it.
     """
 
     def __init__(self, frame: Frame, box: Box) -> None:
@@ -39,10 +40,10 @@ class Target:
         self.patch: Frame = frame[top:bottom, left:right].copy()
         self.centre = box.centre[0] - left, box.centre[1] - top
 
-    def window(self, wanted: WindowParameters) -> Window:
-        """Window of the given size; where that is 0, of the target's own."""
-        return Window.of_size(wanted.width or self.box.width, wanted.height or self.box.height)
+    def window(self, size: WindowParameters) -> Window:
+        """Return the window of the given size; where that is 0, of the target's own."""
+        return Window.of_size(size.width or self.box.width, size.height or self.box.height)
 
     def joint_histogram(self, window: Window, bits: int) -> Histogram:
-        """Joint RGB histogram of the target as first seen."""
+        """Return the joint RGB histogram of the target in the first frame."""
         return joint_histogram(self.patch, self.centre, window, bits)

@@ -108,7 +108,7 @@ def test_a_new_image_size_is_announced_and_starts_again(rig):
 
 @pytest.mark.parametrize(
     ("stamps", "event"),
-    [([0] * 8, "repeated stamp"), ([10**12 - i * 10**10 for i in range(16)], "without sense")],
+    [([0] * 8, "repeated stamp"), ([10**12 - i * 10**10 for i in range(16)], "unusable stamps")],
     ids=["all zero", "backwards"],
 )
 def test_a_camera_without_a_clock_is_followed(rig, stamps, event):

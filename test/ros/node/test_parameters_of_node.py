@@ -152,8 +152,8 @@ def test_nothing_is_warned_about_without_need(make, tmp_path, log):
     ("values", "words"),
     [
         ({"num_particles": 0}, "num_particles must be from 1 to 100000, got 0"),
-        ({"num_particles": 1.5}, "num_particles must be a whole number, got 1.5"),
-        ({"seed": True}, "seed must be a whole number, got True"),
+        ({"num_particles": 1.5}, "num_particles must be an integer, got 1.5"),
+        ({"seed": True}, "seed must be an integer, got True"),
         ({"motion__sigma_w": "wide"}, "motion.sigma_w must be a number, got 'wide'"),
         ({"motion__sigma_w": [1.0, 2.0]}, "motion.sigma_w must be a number"),
         ({"resampling": "best"}, "resampling must be one of"),

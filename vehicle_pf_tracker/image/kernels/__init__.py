@@ -1,1 +1,1 @@
-"""How windows are measured fast: one interface, in OpenCV and numpy, or in numba."""
+"""Fast measurement of windows: one interface, implemented in OpenCV and numpy, and in numba."""

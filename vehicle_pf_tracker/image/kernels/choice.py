@@ -1,4 +1,4 @@
-"""Which kernels are used."""
+"""Selection of the kernels."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _NUMBA = "vehicle_pf_tracker.image.kernels.numba_kernels"
 
 
 def load_kernels(choice: str) -> Kernels:
-    """Make kernels ready for use: what has to be compiled, or loaded, is so afterwards.
+    """Make kernels that are ready for use, with everything compiled or loaded.
 
     Parameters
     ----------
     choice : {"auto", "opencv", "numba"}
-        `auto` takes numba's where numba can be imported, else OpenCV's.
+        `auto` selects numba's where numba can be imported, else OpenCV's.
 
     Raises
     ------
@@ -42,13 +42,13 @@ def load_kernels(choice: str) -> Kernels:
 
 @functools.cache
 def _load_numba() -> Kernels:
-    # Imported late: it takes half a second, and only here is it known that somebody wants it.
-    made: Kernels = importlib.import_module(_NUMBA).NumbaKernels()
-    return made
+    # Imported late: it takes half a second, and only here is it known to be needed.
+    kernels: Kernels = importlib.import_module(_NUMBA).NumbaKernels()
+    return kernels
 
 
 def _fallback_notices(error: ImportError) -> list[str]:
-    """Numba that is not installed is nothing to be told; one that fails to load is."""
+    """Return no notice where numba is not installed, and one where it fails to load."""
     if isinstance(error, ModuleNotFoundError) and error.name == "numba":
         return []
-    return [f"numba is installed but cannot be imported ({error}); the OpenCV kernels serve"]
+    return [f"numba is installed but cannot be imported ({error}); the OpenCV kernels are used"]

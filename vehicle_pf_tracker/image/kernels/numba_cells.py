@@ -1,4 +1,4 @@
-"""Which active bin each pixel falls in, in numba.
+"""Active bin of each pixel, in numba.
 
 Cells are numbers from 0 to K, where K stands for all bins that are not active. They form planes,
 shape (P, H, W): a window's counts are those of all planes together.

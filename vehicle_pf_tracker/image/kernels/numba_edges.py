@@ -2,7 +2,7 @@
 
 All is laid out over the field: the smallest rectangle that has every window whole. Where it reaches
 beyond the image there is no gradient, not even one of zero, so that no window has to be cut.
-Squared magnitudes are whole numbers, and so are the limits that they are held against.
+Squared magnitudes are integers, and so are the limits that they are compared with.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ _NEVER = 1 << 62
 """Limit that nothing passes."""
 
 _RANGE = 4
-"""Windows whose limits are further apart than this ratio are counted from lists of their own: a
-window of faint edges alone lets almost every pixel pass, in which no other takes an interest."""
+"""Ratio of limits above which windows are counted from lists of their own: a window of faint edges
+lets almost every pixel pass, most of which other windows would then skip one by one."""
 
 TANGENTS: Tangents = np.tan(np.arange(1, DIRECTION_BINS // 4) * (2 * np.pi / DIRECTION_BINS))
 """Tangents of the directions between the bins of a quarter turn."""
@@ -49,7 +49,7 @@ TANGENTS.flags.writeable = False
 
 @inlined
 def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
-    """Bin 0 to 63, as `gradients.direction_bins` has it; whole numbers are never near a tangent."""
+    """Bin 0 to 63, as `gradients.direction_bins` has it; integers are never near a tangent."""
     if not signed and (gx < 0 or (gx == 0 and gy < 0)):
         gx, gy = -gx, -gy
     if gx > 0 and gy >= 0:
@@ -67,7 +67,7 @@ def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
 
 @inlined
 def _mirrored(index: int, length: int) -> int:
-    """Index beyond an end by one as seen in a mirror on the last pixel, as OpenCV does it."""
+    """Index mirrored at the last pixel where it is beyond an end by one, as OpenCV does it."""
     if index < 0:
         return min(1, length - 1)
     return index if index < length else max(length - 2, 0)
@@ -191,7 +191,7 @@ def _count_window(
     counts[:] = 0
     total = 0
     for y in range(top, bottom):
-        # An unsigned number needs no look at whether it counts from the end.
+        # An unsigned index needs no test for counting from the end.
         for point in range(np.uint32(index[y, left]), np.uint32(index[y, right])):
             passes = strengths[point] >= limit
             counts[cells[point]] += np.int32(passes)

@@ -32,7 +32,7 @@ from vehicle_pf_tracker.image.window_feature import WindowFeature
 def window_rectangles(
     pixels: Pixels, reach: Reach, origin: tuple[int, int], size: tuple[int, int]
 ) -> Rectangles:
-    """Left, top, right, bottom of windows as seen from `origin`, cut at the border; shape (N, 4).
+    """Left, top, right, bottom of windows relative to `origin`, cut at the border; shape (N, 4).
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def window_rectangles(
 
 
 class Placement(NamedTuple):
-    """Where windows lie in a frame.
+    """Positions of windows in a frame.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class Placement(NamedTuple):
         )
 
     def rectangles(self, origin: tuple[int, int]) -> Rectangles:
-        """Left, top, right, bottom of each window as seen from `origin`, shape (N, 4)."""
+        """Left, top, right, bottom of each window relative to `origin`, shape (N, 4)."""
         return window_rectangles(self.pixels, self.reach, origin, self.size)
 
 
@@ -115,7 +115,7 @@ _HISTOGRAM = types.Array(types.float64, 1, "A", readonly=True)
 
 
 class CellTable(NamedTuple):
-    """Which cell each bin has, and what a cell's count is worth.
+    """Cell of each bin, and the factor of each cell's count.
 
     Attributes
     ----------
@@ -159,7 +159,7 @@ def table_for_counting(active: npt.NDArray[np.intp], bins: int) -> CellTable:
 
 
 def table_of(reference: Reference) -> CellTable:
-    """Table of a reference, made once."""
+    """Return the table of a reference, computed once."""
     kept = reference.kept.get("cells")
     if not isinstance(kept, CellTable):
         kept = CellTable(*_number_cells(reference.histogram))

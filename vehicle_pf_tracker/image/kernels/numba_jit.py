@@ -1,4 +1,4 @@
-"""Compiling with numba, typed, and kept on disk wherever there is a place for it."""
+"""Typed compilation with numba, cached on disk where a folder can be written."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _notices: list[str] = []
 def compiled(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
     """Compile a function for these signatures at once, or load what was compiled before.
 
-    Numba looks for a writable folder beside the module, then in the user's cache folder. Sums may
+    Numba uses a writable folder beside the module, else the user's cache folder. Sums may
     be reordered (`reassoc`), which is the same in every run of one machine code; nothing else of
     IEEE arithmetic is given up.
 
     A function that is called by compiled ones (`inlined`) has to stand in the same file: numba
-    compiles anew what changed in a file, and does not look further.
+    recompiles a file that changed, and not those that call into it.
     """
 
     def compile_it(function: FunctionT) -> FunctionT:
@@ -41,15 +41,17 @@ def compiled(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
 
 def inlined(function: FunctionT) -> FunctionT:
     """Make a part of the compiled functions of the same file."""
-    made: FunctionT = numba.njit(fastmath={"reassoc", "contract"})(function)
-    return made
+    inner: FunctionT = numba.njit(fastmath={"reassoc", "contract"})(function)
+    return inner
 
 
 def notices() -> list[str]:
-    """Tell what was not as it should be while compiling, a sentence each."""
+    """Return the problems met while compiling, one sentence each."""
     return list(_notices)
 
 
 def _compile(function: FunctionT, signatures: list[Any], *, keep: bool) -> FunctionT:
-    made: FunctionT = numba.njit(signatures, cache=keep, fastmath={"reassoc", "contract"})(function)
-    return made
+    result: FunctionT = numba.njit(signatures, cache=keep, fastmath={"reassoc", "contract"})(
+        function
+    )
+    return result

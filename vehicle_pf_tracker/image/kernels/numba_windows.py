@@ -43,7 +43,7 @@ SCALE = types.UniTuple(types.Array(types.float64, 1, "C", readonly=True), 2)
 QUAD = types.UniTuple(types.int64, 4)
 _COUNTS = types.int32[:, ::1]
 
-# What things cost, roughly in cycles; they decide about the route, and not about the result.
+# Costs, roughly in cycles; they decide about the route, and not about the result.
 _PIXEL = 4
 _STEP = 10
 _BINS_AT_ONCE = 8
@@ -96,7 +96,7 @@ def _overlap(counts: Counts, values: Reals, total: int, roots: Reals) -> float:
 
 @inlined
 def _overlap_single(counts: Counts, values: Map, total: int) -> np.float32:
-    """Do the same with single precision, for all pixels of a map."""
+    """Bhattacharyya coefficient as by `_overlap`, in single precision for the pixels of a map."""
     overlap = np.float32(0.0)
     for k in range(len(values)):
         overlap += values[k] * math.sqrt(np.float32(counts[k]))
@@ -298,7 +298,7 @@ def compare_joint(
     scale: Scale,
     counts: Counts,
 ) -> Reals:
-    """Compare windows of joint colours from beginning to end, which most trackers' steps do.
+    """Compare windows of joint colours in one call, the main cost of most trackers' steps.
 
     `half` is the width and height of a window left and right of, above and below its middle; the
     rest is as for `joint_cells` and `compare_windows`.

@@ -1,7 +1,7 @@
 """`adaptive`: the particle filter with adaptive resampling of P3 (Khong et al., Table II).
 
-While the effective sample size is too small, only the particles of low weight are drawn anew;
-under occlusion all but the best one are, around it. Step numbers are those of Table II.
+While the effective sample size is too small, only the particles of low weight are replaced; under
+occlusion all but the best one are, by copies around it. Step numbers are those of Table II.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ OCCLUSION_TESTS = ("n_eff", "similarity")
 
 @dataclass(frozen=True, slots=True)
 class OcclusionTestParameters:
-    """When the best particle alone is kept."""
+    """Occlusion test, and the regeneration around the best particle that follows it."""
 
     test: str = parameter(
         "n_eff",
-        "Take a small effective sample size as occlusion, as printed, or a best particle unlike "
-        "the reference.",
+        "Take a small effective sample size as occlusion, as printed, or a low similarity "
+        "of the best particle.",
         choices=OCCLUSION_TESTS,
         source="P3 Table II step 15, interpretation 22",
     )
@@ -69,7 +69,7 @@ class AdaptiveParameters(RepeatedResamplingParameters):
 
     low_weight: float = parameter(
         1.0,
-        "Higher: more particles are drawn anew in each pass.",
+        "Higher: more particles are replaced in each pass.",
         minimum=0.0,
         maximum=100.0,
         unit="of the mean weight 1/N",
@@ -79,7 +79,7 @@ class AdaptiveParameters(RepeatedResamplingParameters):
     occlusion: OcclusionTestParameters = group(OcclusionTestParameters)
 
     def effective(self) -> AdaptiveParameters:
-        """Return the parameters in force: those of the print where `as_printed` is set."""
+        """Return the effective parameters: as printed where `as_printed` is set."""
         if not self.as_printed:
             return self
         occlusion = replace(self.occlusion, test="n_eff")

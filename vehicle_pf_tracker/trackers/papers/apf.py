@@ -1,7 +1,7 @@
 """`apf`: the adaptive particle filter of Scharcanski et al. 2011 (P1, Algorithms 1 and 2).
 
 In the regular regime particles are resampled and propagated with a Normal density; while the
-histogram at the estimate is unlike the first or the last one, they drift with a Normal-Rayleigh
+histogram at the estimate differs from the first or the last one, they drift with a Normal-Rayleigh
 density along the mean motion instead. Step numbers are those of Algorithm 1. Speeds and spreads
 are per nominal frame period, so that all of them scale with the elapsed time.
 """
@@ -38,11 +38,11 @@ from vehicle_pf_tracker.trackers.papers.shared_parameters import (
 
 @dataclass(frozen=True, slots=True)
 class ApfMotionParameters:
-    """How particles are propagated in the two regimes."""
+    """Propagation of particles in the two regimes."""
 
     sigma_w: float = parameter(
         6.0,
-        "About the vehicle's speed: less loses fast vehicles, more follows look-alikes.",
+        "About the vehicle's speed: less loses fast vehicles, more follows similar vehicles.",
         minimum=0.01,
         maximum=1000.0,
         unit="px/frame",
@@ -75,11 +75,11 @@ class ApfMotionParameters:
 
 @dataclass(frozen=True, slots=True)
 class ApfReferenceParameters:
-    """How the histogram that particles are held against follows the vehicle."""
+    """Adaptation of the reference histogram to the vehicle."""
 
     alpha: float = parameter(
         0.1,
-        "Higher: the reference follows changes of the vehicle's look faster. Counts with the fixed "
+        "Higher: the reference follows changes of appearance faster. Counts with the fixed "
         "occlusion rule.",
         minimum=0.0,
         maximum=1.0,
@@ -108,11 +108,11 @@ class ApfReferenceParameters:
 
 @dataclass(frozen=True, slots=True)
 class ApfOcclusionParameters:
-    """When the occlusion regime is entered and left."""
+    """Conditions of the occlusion regime."""
 
     rule: str = parameter(
         "relative",
-        "relative holds the similarities against their own clear level; fixed against tau, as "
+        "relative compares the similarities with their own clear level; fixed with tau, as "
         "printed, which takes most of a real video for an occlusion.",
         choices=("fixed", "relative"),
         source="P1 Algorithm 1 step 4",
@@ -135,7 +135,7 @@ class ApfOcclusionParameters:
 
 @dataclass(frozen=True, slots=True)
 class ApfVelocityParameters:
-    """The mean velocity that gives the direction of the drift."""
+    """Mean velocity that gives the direction of the drift."""
 
     window: int = parameter(
         16,
@@ -182,11 +182,11 @@ class ApfParameters(ParticleParameters):
 
     @property
     def drift_delay(self) -> int:
-        """Newest displacements that do not count for the drift yet, in frames."""
+        """Newest displacements that the drift leaves out, in frames."""
         return self.velocity.delay if self.occlusion.rule == "relative" else 0
 
     def effective(self) -> ApfParameters:
-        """Return the parameters in force: those of the print where `as_printed` is set."""
+        """Return the effective parameters: as printed where `as_printed` is set."""
         if not self.as_printed:
             return self
         return replace(
@@ -214,9 +214,9 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         self._levels = ClearLevel(), ClearLevel()
 
     def reconfigure(self, parameters: ApfParameters) -> None:
-        """Take new parameters; a new velocity window looks at the same history."""
-        wanted = parameters.effective()
-        self._velocity = self._velocity.resized(wanted.velocity.window, wanted.drift_delay)
+        """Take new parameters; a new velocity window applies to the same history."""
+        settings = parameters.effective()
+        self._velocity = self._velocity.resized(settings.velocity.window, settings.drift_delay)
         super().reconfigure(parameters)
 
     def _learn(self) -> None:
@@ -273,7 +273,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         return min(self._pi, self._pi_up) >= settings.occlusion.tau
 
     def _resample(self, settings: ApfParameters) -> Array:
-        """Run Algorithm 2."""
+        """Draw the parents of the next particles (Algorithm 2)."""
         scheme = SCHEMES[settings.resampling]
         ancestors = scheme(self._cloud.weights, settings.num_particles, self._rng)
         return self._cloud.positions.take(ancestors, axis=0)
@@ -292,7 +292,10 @@ class ApfTracker(ParticleTracker[ApfParameters]):
     def _compare_and_learn(
         self, settings: ApfParameters, histogram: Histogram, to_last: float
     ) -> None:
-        """Do steps 15 and 16; `to_last` is the histogram's similarity to the reference."""
+        """Update Pi, Pi_up and the reference (steps 15 and 16).
+
+        `to_last` is the similarity of the histogram to the reference.
+        """
         to_first = hellinger_similarity(histogram, self._first)
         alpha = self._follow_rate(settings, to_first)
         blended = alpha * histogram + (1 - alpha) * self._reference.histogram
@@ -301,7 +304,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         else:
             self._pi = hellinger_similarity(blended, self._first)
             self._pi_up = hellinger_similarity(blended, self._reference.histogram)
-        self._keep_levels(settings)
+        self._update_levels(settings)
         if self._is_clear(settings) or not settings.reference.frozen_while_occluded:
             self._reference = Reference(blended)
 
@@ -312,15 +315,15 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         good = settings.reference.steady_above * self._levels[0].value
         return settings.reference.steady_alpha * (to_first >= good)
 
-    def _keep_levels(self, settings: ApfParameters) -> None:
+    def _update_levels(self, settings: ApfParameters) -> None:
         """Judge Pi and Pi_up by their clear levels, which follow in frames where both are clear."""
         level = settings.occlusion.level
         similarities = self._pi, self._pi_up
-        for kept, similarity in zip(self._levels, similarities, strict=True):
-            kept.judge(similarity, level)
-        if all(kept.clear for kept in self._levels):
-            for kept, similarity in zip(self._levels, similarities, strict=True):
-                kept.follow(similarity, level)
+        for running, similarity in zip(self._levels, similarities, strict=True):
+            running.judge(similarity, level)
+        if all(running.clear for running in self._levels):
+            for running, similarity in zip(self._levels, similarities, strict=True):
+                running.follow(similarity, level)
 
     def _follow(
         self,

@@ -19,7 +19,7 @@ measured on 19 real sequences (0.011)."""
 
 @dataclass(frozen=True, slots=True)
 class ClearLevelParameters:
-    """When a similarity leaves its clear level, and when it is back."""
+    """Thresholds at which a similarity leaves its clear level and returns to it."""
 
     enter: float = parameter(
         6.0,
@@ -31,7 +31,7 @@ class ClearLevelParameters:
     )
     leave: float = parameter(
         4.0,
-        "Higher: the regular regime returns while less of the vehicle is seen again.",
+        "Higher: the regular regime returns while less of the vehicle is visible.",
         minimum=0.0,
         maximum=100.0,
         unit="mean deviations below the level",
@@ -54,7 +54,7 @@ class ClearLevelParameters:
 
 
 class ClearLevel:
-    """Level of one similarity in clear frames; `clear` says whether the last frame was at it."""
+    """Level of one similarity in clear frames; `clear` is true while the similarity is at it."""
 
     def __init__(self) -> None:
         self.clear = True

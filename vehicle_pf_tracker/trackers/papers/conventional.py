@@ -1,7 +1,7 @@
 """`conventional`: the particle filter that P3 improves on (Khong et al., Table I).
 
-While the effective sample size is too small, every particle is drawn anew from the weighted ones,
-jittered and weighed again. Step numbers are those of Table I.
+While the effective sample size is too small, every particle is replaced by a jittered copy drawn
+from the weighted ones, and weighted again. Step numbers are those of Table I.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class ConventionalParameters(RepeatedResamplingParameters):
     """Parameters of `conventional`."""
 
     def effective(self) -> ConventionalParameters:
-        """Return the parameters in force: those of the print where `as_printed` is set."""
+        """Return the effective parameters: as printed where `as_printed` is set."""
         return replace(self, criterion=1.0, weighted_mean=False) if self.as_printed else self
 
 

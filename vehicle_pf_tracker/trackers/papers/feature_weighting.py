@@ -1,4 +1,4 @@
-"""How P2 decides which features to believe: AS, LC and WF (section IV, eq. 16 to 18).
+"""Weighting of P2's features by their confidence: AS, LC and WF (section IV, eq. 16 to 18).
 
 Arrays have one row or entry for each feature, in the tracker's order.
 """
@@ -17,7 +17,7 @@ from vehicle_pf_tracker.filtering.resampling import Ancestors
 
 
 def average_similarities(distances: Array, best_share: float) -> Array:
-    """Average similarity AS of each feature over the particles most like its reference.
+    """Average similarity AS of each feature over the particles most similar to its reference.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def average_similarities(distances: Array, best_share: float) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class FeatureWeighting:
-    """What the features are worth in one frame; arrays of shape (F,).
+    """Confidence and weight of the features in one frame; arrays of shape (F,).
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class FeatureWeighting:
 
     @property
     def full_occlusion(self) -> bool:
-        """Whether every feature is below its threshold."""
+        """True if every feature is below its threshold."""
         return not self.factors.any()
 
     def combine(self, candidates: Array) -> Array:
@@ -87,17 +87,17 @@ def weigh_features(averages: Array, initial: Array, threshold: float) -> Feature
 def common_survivors(sets: Sequence[Ancestors], count: int, otherwise: Ancestors) -> Ancestors:
     """Keep the particles that survive in every feature's own resampling, as printed.
 
-    The paper does not say how the set is filled up again (interpretation 18); here its members are
-    repeated in turn.
+    The paper does not define how the set is filled up again (interpretation 18); here its members
+    are repeated in turn.
 
     Parameters
     ----------
     sets : sequence of arrays of ancestor indices
-        One for each feature.
+        Survivors of each feature's resampling.
     count : int
         Number of indices to return.
     otherwise : array of ancestor indices
-        Taken where no particle survives in all sets.
+        Result where no particle survives in all sets.
     """
     common = functools.reduce(np.intersect1d, sets)
     return np.resize(common, count) if len(common) else otherwise

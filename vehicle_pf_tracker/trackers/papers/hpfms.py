@@ -1,8 +1,8 @@
 """`hpfms`: the hybrid of particle filter and mean shift of Maggio and Cavallaro 2005 (P1's [17]).
 
-Few particles are spread as far as the vehicle's speed and the last frame's doubt ask for. Each then
-climbs a few mean-shift steps to a maximum near it, so that few are enough. It has no occlusion
-branch.
+Few particles are spread according to the vehicle's speed and the confidence in the last frame. Each
+then climbs a few mean-shift steps to a maximum near it, so that few are enough. It has no
+occlusion branch.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 
 @dataclass(frozen=True, slots=True)
 class TransitionParameters:
-    """How the spread of the particles adapts; `sigma` is its least."""
+    """Adaptation of the particles' spread, of which `sigma` is the minimum."""
 
     speed_share: float = parameter(
         1.0,
@@ -38,7 +38,7 @@ class TransitionParameters:
     )
     widest: float = parameter(
         2.0,
-        "Higher: the spread grows more while the last estimate was unlike the target; 1: never.",
+        "Higher: the spread grows more after an estimate of low similarity; 1: never.",
         minimum=1.0,
         maximum=20.0,
         unit="times",
@@ -99,8 +99,8 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         speed = float(np.hypot(*self._velocity.value))
         # After the start there is no clear level yet: the speed is unknown, and the spread wide.
         confidence = self._judge.confidence(self._evidence)
-        doubt = 1.0 / max(confidence, 1.0 / transition.widest)
-        return doubt * max(settings.sigma, transition.speed_share * speed)
+        widening = 1.0 / max(confidence, 1.0 / transition.widest)
+        return widening * max(settings.sigma, transition.speed_share * speed)
 
     def _similarity(self, frame: Frame, positions: Array) -> Array:
         feature, window = JointColour(self.parameters.histogram_bits), self.window

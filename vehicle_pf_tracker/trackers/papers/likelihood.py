@@ -14,7 +14,7 @@ from vehicle_pf_tracker.parameters.table import parameter
 
 @dataclass(frozen=True, slots=True)
 class LikelihoodParameters:
-    """How sharply weights fall with the distance of the histograms."""
+    """Decrease of the weights with the distance of the histograms."""
 
     sigma_v: float = parameter(
         0.1,

@@ -35,9 +35,9 @@ class MeanVelocity:
 
     @property
     def settled(self) -> Vector:
-        """The same without the newest displacements, though with half of all there are at least.
+        """Velocity without the newest displacements, but with at least half of all.
 
-        An occlusion drags the estimates along before it is noticed, and its drift must not follow
+        An occlusion pulls the estimates along before it is noticed, and the drift must not follow
         that.
         """
         count = len(self._moves)
@@ -58,14 +58,14 @@ class MeanVelocity:
                 self._older = _sum([self._older, oldest])
 
     def resized(self, window: int, delay: int = 0) -> MeanVelocity:
-        """Return the same history seen through another window."""
+        """Return the same history with another window."""
         other = MeanVelocity(window, delay)
         other._older, other._moves = self._older, self._moves.copy()
         return other
 
 
 def _sum(moves: Iterable[_Move]) -> _Move:
-    # Summed afresh each time, since a running sum would gather rounding over months.
+    # Summed again each time, since a running sum would gather rounding over months.
     x = y = elapsed = 0.0
     for move in moves:
         x, y, elapsed = x + move[0], y + move[1], elapsed + move[2]

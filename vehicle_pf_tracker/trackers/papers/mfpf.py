@@ -1,9 +1,9 @@
 """`mfpf`: the triple-feature particle filter of Abdulla et al. 2022 (P2, section IV).
 
-Each feature holds every particle's window against its own reference and finds its own position.
+Each feature compares every particle's window with its own reference and finds its own position.
 The positions are averaged by how well each feature does against its first frame; a feature that
 does badly drops out. Where all have dropped out the vehicle is predicted and the particles are
-dispersed anew around the prediction. Step numbers are those of the list in section IV. Speeds and
+dispersed again around the prediction. Step numbers are those of the list in section IV. Speeds and
 radii are per nominal frame period, so that all of them scale with the elapsed time.
 """
 
@@ -65,7 +65,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
     @abstractmethod
     def _make_features(self) -> Mapping[str, WindowFeature]:
-        """Make the features by name from the parameters in force."""
+        """Make the features by name from the effective parameters."""
 
     @property
     def _is_joint(self) -> bool:
@@ -74,7 +74,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     @property
     @abstractmethod
     def _settings(self) -> FilterParametersT:
-        """The parameters in force."""
+        """Effective parameters."""
 
     def reconfigure(self, parameters: FilterParametersT) -> None:
         """Take new parameters; see `Tracker.reconfigure`."""
@@ -92,13 +92,13 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         ]
         self._references = [Reference(first) for first in self._first]
         if self._initial is not None:
-            # The first frame after the start is gone; the start itself is the next best to it.
+            # The frame after the start is no longer available; the start itself is closest to it.
             radius, count = self._search_radius(1.0), self.parameters.num_particles
             around = centre + sample_disc(self._rng, count, radius)
             self._initial = self._averages(self._measure(self.target.patch, around))
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
-        """Do step 1."""
+        """Disperse the first particles (step 1)."""
         settings = self._settings
         self._velocity, self._position = MeanVelocity(settings.velocity_window), centre
         self._searching, self._weights, self._initial = 0.0, None, None
@@ -114,7 +114,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             self._initial = averages
         weighting = weigh_features(averages, self._initial, settings.confidence.threshold)  # step 4
         if weighting.full_occlusion:
-            cloud, position = Cloud.uniform(particles), self._foresee(frame, elapsed)
+            cloud, position = Cloud.uniform(particles), self._predict_position(frame, elapsed)
         else:
             cloud = self._weigh(particles, prior, rho, weighting)
             position = self._locate(particles, weighting)
@@ -126,7 +126,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             position,
             self._velocity.value,
             "prediction" if weighting.full_occlusion else "estimation",
-            # The majority counts: one feature that fails, or is fooled, does not decide.
+            # The median: one feature that fails, or is misled, does not decide.
             statistics.median(similarities.tolist()),
             self._report(weighting),
             resampling_passes=int(resample),
@@ -141,7 +141,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     def _predict(
         self, frame: Frame, elapsed: float, *, resample: bool
     ) -> tuple[Array, Array, bool]:
-        """Move the particles by equation 5, or disperse them anew around the prediction.
+        """Move the particles by equation 5, or disperse them again around the prediction.
 
         Returns
         -------
@@ -167,7 +167,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         return min(grown, max(nominal, dispersion.largest))
 
     def _resample(self) -> Array:
-        """Do step 5: draw the positions that the next particles come from."""
+        """Draw the positions that the next particles come from (step 5)."""
         ancestors = self._draw(self._cloud.weights)
         if self._weights is not None and not self._is_joint:
             sets = [self._draw(weights) for weights in self._weights]
@@ -213,7 +213,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         x, y = weighting.combine(candidates)
         return float(x), float(y)
 
-    def _foresee(self, frame: Frame, elapsed: float) -> tuple[float, float]:
+    def _predict_position(self, frame: Frame, elapsed: float) -> tuple[float, float]:
         """Position by equation 5 with the last increments before the occlusion."""
         moved = np.asarray(self._position) + np.asarray(self._velocity.value) * elapsed
         x, y = keep_inside(frame, moved)

@@ -1,4 +1,4 @@
-"""Parameters of `mfpf` and `sfpf_*` (P2), with a switch for every reading of the print."""
+"""Parameters of `mfpf` and `sfpf_*` (P2), with a switch for every interpretation."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ def texture_parameter() -> Any:
 
 @dataclass(frozen=True, slots=True)
 class DispersionParameters:
-    """How far particles are dispersed."""
+    """Dispersion of the particles."""
 
     radius: float = parameter(
         14.0,
-        "Larger: follows faster changes of speed, and more look-alikes.",
+        "Larger: follows faster changes of speed, and more similar vehicles.",
         minimum=0.01,
         maximum=1000.0,
         unit="px/frame",
@@ -76,7 +76,7 @@ class DispersionParameters:
 
 @dataclass(frozen=True, slots=True)
 class ConfidenceParameters:
-    """When a feature is believed."""
+    """Confidence that a feature needs in order to count."""
 
     best_share: float = parameter(
         0.1,
@@ -100,7 +100,7 @@ class ConfidenceParameters:
 
 @dataclass(frozen=True, slots=True)
 class EdgeParameters:
-    """Which pixels are edge points, and what their direction is."""
+    """Definition of edge points and of their direction."""
 
     threshold: float = parameter(
         0.3,
@@ -130,7 +130,7 @@ class EdgeParameters:
     )
     signed: bool = parameter(
         True,
-        "Tell light-to-dark from dark-to-light; off folds them by the printed arctangent.",
+        "Distinguish light-to-dark from dark-to-light; off folds them by the printed arctangent.",
         source="P2 eq. 7, interpretation 13",
         effect="relearns",
     )
@@ -138,7 +138,7 @@ class EdgeParameters:
 
 @dataclass(frozen=True, slots=True)
 class FeatureFilterParameters(ParticleParameters):
-    """What `mfpf` and its single-feature filters have in common."""
+    """Common parameters of `mfpf` and its single-feature filters."""
 
     as_printed: bool = as_printed_switch("interpretations 1, 12 to 19")
     reference_weight: float = parameter(
@@ -192,7 +192,7 @@ class MfpfParameters(FeatureFilterParameters):
     )
 
     def effective(self) -> MfpfParameters:
-        """Return the parameters in force: those of the print where `as_printed` is set."""
+        """Return the effective parameters: as printed where `as_printed` is set."""
         if not self.as_printed:
             return self
         return replace(common_print(self), edges=PRINTED_EDGES, joint_resampling=False)

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters, 
 
 @dataclass(frozen=True, slots=True)
 class LineParameters:
-    """What counts as a line, and how much lines count."""
+    """Definition of lines, and their part in the likelihood."""
 
     sigma_v: float = parameter(
         0.35,
@@ -95,7 +95,7 @@ class PfclTracker(ColourTracker[PfclParameters]):
     def _line_similarity(self, frame: Frame, positions: Array) -> Array:
         """Bhattacharyya coefficient of each window's lines with the reference's, shape (N,)."""
         if not self._line_reference.any():
-            return np.ones(len(positions))  # A target without lines is like every window.
+            return np.ones(len(positions))  # a target without lines is similar to every window
         histograms = self._line_histograms(frame, positions)
         return bhattacharyya_coefficient(histograms, self._line_reference)
 

@@ -1,7 +1,7 @@
-"""What `conventional` and `adaptive` share (P3, Tables I and II): resampling within one frame.
+"""Repeated resampling within a frame: common part of `conventional` and `adaptive` (P3).
 
-Particles are weighed, and while their effective sample size is too small they are replaced and
-weighed again. The two filters differ in which particles they replace.
+Particles are weighted, and while their effective sample size is too small they are replaced and
+weighted again (Tables I and II). The two filters differ in which particles they replace.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from vehicle_pf_tracker.trackers.papers.shared_parameters import as_printed_swit
 
 @dataclass(frozen=True, slots=True)
 class RepeatedResamplingParameters(ColourParameters):
-    """What both filters of P3 have."""
+    """Parameters of both filters of P3."""
 
     as_printed: bool = as_printed_switch("interpretations 21 and 22")
     sigma: float = parameter(
         14.0,
-        "About 1.75 times the vehicle's speed: less loses fast vehicles, more follows look-alikes.",
+        "About 1.75 times the speed: less loses fast vehicles, more follows similar vehicles.",
         minimum=0.01,
         maximum=1000.0,
         unit="px/frame",
@@ -77,12 +77,12 @@ RepeatedParametersT = TypeVar("RepeatedParametersT", bound=RepeatedResamplingPar
 
 @dataclass(frozen=True, slots=True)
 class WeighedParticles:
-    """Particles with what is known about them.
+    """Particles with their similarities and weights.
 
     Attributes
     ----------
     positions : (N, 2) array
-        In px.
+        Positions in px.
     coefficients : (N,) array
         Bhattacharyya coefficients with the reference.
     cloud : Cloud
@@ -100,13 +100,13 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
     @property
     @abstractmethod
     def _settings(self) -> RepeatedParametersT:
-        """The parameters in force."""
+        """Effective parameters."""
 
     @abstractmethod
     def _pass(
         self, frame: Frame, particles: WeighedParticles, elapsed: float
     ) -> tuple[WeighedParticles, int, str]:
-        """Replace particles once; returns also how many, and the branch taken."""
+        """Replace particles once; also returns their number, and the branch taken."""
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self._settings

@@ -20,11 +20,13 @@ from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, 
 from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 
 _PRECISION = 1e-4
+"""Relative precision of an annealing rate, far below the effect of a different random draw."""
 _MOST_HALVINGS = 60
+"""Bound of the bisection: after 53 halvings an interval of float64 cannot shrink any further."""
 
 
 def survival_rate(log_weights: Weights, beta: float) -> float:
-    """Tell which share of the particles survives resampling with ``w ** beta``, as expected.
+    """Compute the expected share of the particles that survive resampling with ``w ** beta``.
 
     Parameters
     ----------
@@ -51,10 +53,10 @@ def annealing_rate(log_weights: Weights, survival: float, largest: float) -> flo
     log_weights : (N,) array
         Logarithms of the weights in any offset, all finite.
     survival : float
-        Wanted survival rate alpha, 0 to 1.
+        Target survival rate alpha, 0 to 1.
     largest : float
-        Upper bound of the rate, taken where more than the wanted share survives even there: equal
-        weights survive at every rate.
+        Upper bound of the rate, returned where more than the target share survives even there:
+        equal weights survive at every rate.
 
     Returns
     -------

@@ -28,7 +28,7 @@ class SfpfColorParameters(FeatureFilterParameters):
     """Parameters of `sfpf_color`."""
 
     def effective(self) -> SfpfColorParameters:
-        """Return the parameters in force: those of the print where `as_printed` is set."""
+        """Return the effective parameters: as printed where `as_printed` is set."""
         return common_print(self) if self.as_printed else self
 
 
@@ -39,7 +39,7 @@ class SfpfEdgeParameters(FeatureFilterParameters):
     edges: EdgeParameters = group(EdgeParameters)
 
     def effective(self) -> SfpfEdgeParameters:
-        """Return the parameters in force: those of the print where `as_printed` is set."""
+        """Return the effective parameters: as printed where `as_printed` is set."""
         return replace(common_print(self), edges=PRINTED_EDGES) if self.as_printed else self
 
 
@@ -50,7 +50,7 @@ class SfpfTextureParameters(FeatureFilterParameters):
     texture: str = texture_parameter()
 
     def effective(self) -> SfpfTextureParameters:
-        """Return the parameters in force: those of the print where `as_printed` is set."""
+        """Return the effective parameters: as printed where `as_printed` is set."""
         return common_print(self) if self.as_printed else self
 
 

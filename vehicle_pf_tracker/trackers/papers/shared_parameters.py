@@ -9,10 +9,10 @@ from vehicle_pf_tracker.parameters.table import parameter
 
 
 def as_printed_switch(source: str) -> Any:
-    """Make the switch that takes the paper to the letter; `source` names the readings it undoes."""
+    """Make the switch that follows the paper to the letter; `source` names what it undoes."""
     return parameter(
         False,
-        "Follow the paper to the letter: overrides every reading below that departs from it.",
+        "Follow the paper to the letter: overrides every interpretation below.",
         source=source,
     )
 
