@@ -150,7 +150,7 @@ def test_windows_at_and_over_the_border(variant, box):
     for time in range(1, 6):
         estimate = tracker.step(street.frame(time))
         assert inside(estimate)
-        if "motion.scale" not in specs(variant.parameters):  # the papers keep the size
+        if "size.step" not in specs(variant.parameters):  # the papers keep the size
             assert (estimate.box.width, estimate.box.height) == (box.width, box.height)
 
 

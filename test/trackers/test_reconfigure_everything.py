@@ -26,12 +26,8 @@ SINKING = {time: abs(index - 6) / 6 for index, time in enumerate(range(HALT, HAL
 WITHOUT_EFFECT = {
     ("ms", "seed"): "mean shift draws no random numbers",
     ("fusion", "motion.camera"): "the camera of these images stands still",
-    (
-        "fusion",
-        "hiding.confirm",
-    ): "it halts while hidden, so looks decide; test_candidates.py has it",
-    ("fusion", "hiding.turns"): "the vehicle of these images does not turn; test_turning.py has it",
-    ("fusion", "hiding.patience"): "these images leave no long doubt; test_suspicion.py has it",
+    ("fusion", "evidence.occluded_below"): "visibility is nearly certain in these images",
+    ("fusion", "evidence.clear_above"): "visibility is nearly certain in these images",
     ("apf", "velocity.from_origin"): "says how a track begins, so it is obeyed by the next one",
 }
 

@@ -2,101 +2,115 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.image.small_grey import SmallGrey
 
-Points = npt.NDArray[np.float64]
-
 _LEAST_SIDE = 32
+"""Side of the reduced frame in px below which its corners are too close to tell anything."""
 _GRID = (8, 6)
 """Cells along x and y that give one corner each, so that no lorry gives most of them."""
 _BORDER = 6
+"""Margin in px without corners: half a flow window."""
 _LEAST_STRENGTH = 1e-4
+"""Smallest eigenvalue of a corner; below it a patch of road matches its whole surroundings."""
 _REFRESHED_AFTER = 5
-"""Frames that corners are followed before others are found."""
-_WEAR_IN_PLACE = 1 / 3
-"""What a frame counts for in this in which they stay where they are."""
+"""Frames that corners are followed before others are found; finding costs more than following."""
 _STANDS_AFTER = 30
-"""Frames of measured stillness after which the camera is taken to be mounted, and only"""
+"""Frames of measured stillness after which the camera is taken to be mounted (1 s at 30 Hz)."""
 _CHECKED_EVERY = 5
-"""every fifth frame is measured, unless corners change."""
+"""Frames between two measurements of a mounted camera, unless its corners change."""
+_WEAR_IN_PLACE = 1 / 3
+"""Share of a frame that the corners of a mounted camera age by in a frame."""
 _UNCHANGED = 4.0
 """Mean change around a corner in grey levels below which it has not moved: noise, no edge."""
 _NEIGHBOURHOOD = (5, 5)
 _CLEARANCE = 0.75
-"""Distance of corners from the target's centre, of its size."""
+"""Distance of corners from the target's centre, of its size: half of it, and a margin."""
 _AGREEING_PX = 0.7
-"""Distance to the model below which a corner takes part, in px of the reduced frame."""
+"""Residual of a corner that agrees with the motion, in px of the reduced frame."""
 _LEAST_CORNERS = 6
-_PREFERENCE = 0.6
-"""Share of the largest support with which standing still is believed."""
+"""Fewest corners that four numbers are fitted to."""
+_STILL_SHARE = 0.5
+"""Share of corners at rest from which the camera stands: a lorry moves many, not half."""
+_FITS = 5
+"""Reweighted fits; the weights change little after the third."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class CameraMotion:
-    """Where the background goes from one frame to the next: ``scale * p + shift``, px."""
+    """Movement of the background from one frame to the next: ``turn @ p + shift``.
 
-    shift: tuple[float, float] = (0.0, 0.0)
-    scale: float = 1.0
+    Attributes
+    ----------
+    turn : (2, 2) array
+        Rotation times scale.
+    shift : (2,) array
+        px.
+    """
 
-    def apply(self, positions: Points) -> Points:
-        """Take positions (..., 2) along."""
-        return np.asarray(positions * self.scale + np.array(self.shift))
+    turn: Array = field(default_factory=lambda: np.eye(2))
+    shift: Array = field(default_factory=lambda: np.zeros(2))
+
+    def apply(self, positions: Array) -> Array:
+        """Move positions (..., 2) with the background."""
+        return np.asarray(positions @ self.turn.T + self.shift)
+
+    def apply_to_velocities(self, velocities: Array) -> Array:
+        """Turn and scale velocities (..., 2) with the background."""
+        return np.asarray(velocities @ self.turn.T)
 
     @property
     def still(self) -> bool:
         """Whether nothing moves."""
-        return self == CameraMotion()
+        return bool(np.array_equal(self.turn, np.eye(2)) and not self.shift.any())
 
 
-def fit_camera_motion(before: Points, after: Points) -> CameraMotion:
-    """Fit shift and scale to most of the corners.
-
-    The support of standing still, of the median flow and of the densest flow are compared;
-    standing still is preferred, since a lorry that fills the view moves most corners but not the
-    camera. The best is refined on the corners that agree with it.
+def fit_camera_motion(before: Array, after: Array) -> CameraMotion:
+    """Fit a similarity to the motion that most corners share; none for a camera that stands.
 
     Parameters
     ----------
     before, after : (N, 2) arrays
         Corners in both frames, px.
     """
-    if len(before) < _LEAST_CORNERS:
-        return CameraMotion()
     flow = after - before
-    standing = int((np.hypot(flow[:, 0], flow[:, 1]) < 2 * _AGREEING_PX).sum())
-    if standing >= _PREFERENCE * len(flow):  # no other guess can have more than all
+    if len(flow) < _LEAST_CORNERS:
         return CameraMotion()
-    guesses = np.vstack([np.zeros(2), np.median(flow, axis=0), flow])
-    distances = np.linalg.norm(flow[np.newaxis] - guesses[:, np.newaxis], axis=2)
-    supports = (distances < 2 * _AGREEING_PX).sum(axis=1)
-    best = int(supports.argmax())
-    if supports[0] >= _PREFERENCE * supports[best]:
+    if (np.hypot(flow[:, 0], flow[:, 1]) < _AGREEING_PX).mean() >= _STILL_SHARE:
         return CameraMotion()
-    agreeing = distances[best] < 2 * _AGREEING_PX
+    # A zoom or a roll spreads the flow over the image, hence the wide neighbourhood.
+    apart = np.linalg.norm(flow[:, np.newaxis] - flow, axis=2)
+    densest = int((apart < 3 * _AGREEING_PX).sum(axis=1).argmax())
+    agreeing = apart[densest] < 5 * _AGREEING_PX
+    if agreeing.sum() < _LEAST_CORNERS:
+        return CameraMotion()
+    return _robust_similarity(before[agreeing], after[agreeing])
+
+
+def _robust_similarity(before: Array, after: Array) -> CameraMotion:
+    """Fit by least squares, reweighted so that corners far off count little."""
+    weights = np.ones(len(before))
     motion = CameraMotion()
-    for _ in range(3):
-        if agreeing.sum() < _LEAST_CORNERS:
-            return CameraMotion()
-        motion = _least_squares(before[agreeing], after[agreeing])
-        agreeing = np.linalg.norm(after - motion.apply(before), axis=1) < _AGREEING_PX
+    for _ in range(_FITS):
+        total = weights.sum()
+        middle, target = weights @ before / total, weights @ after / total
+        x, y = before - middle, after - target
+        spread = float(weights @ (x**2).sum(axis=1)) + 1e-9
+        along = float(weights @ (x * y).sum(axis=1)) / spread
+        across = float(weights @ (x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0])) / spread
+        turn = np.array([[along, -across], [across, along]])
+        motion = CameraMotion(turn, target - turn @ middle)
+        residual = np.linalg.norm(after - motion.apply(before), axis=1)
+        scale = max(1.5 * float(np.median(residual)), _AGREEING_PX / 2)
+        weights = 1 / (1 + (residual / scale) ** 2) ** 2
     return motion
-
-
-def _least_squares(before: Points, after: Points) -> CameraMotion:
-    middle, target = before.mean(axis=0), after.mean(axis=0)
-    centred = before - middle
-    spread = float((centred**2).sum())
-    scale = float((centred * (after - target)).sum()) / spread if spread > 0 else 1.0
-    scale = min(max(scale, 0.9), 1.1)
-    x, y = target - scale * middle
-    return CameraMotion((float(x), float(y)), scale)
 
 
 class CameraFlow:
@@ -138,9 +152,11 @@ class CameraFlow:
         self._corners = np.ascontiguousarray(moved[kept])
         before = corners[kept].reshape(-1, 2).astype(np.float64)
         motion = fit_camera_motion(before, moved[kept].reshape(-1, 2).astype(np.float64))
-        self._still = self._still + 1 if motion.still else 0
-        x, y = motion.shift
-        return CameraMotion((x / zoom, y / zoom), motion.scale)
+        if motion.still:
+            self._still += 1
+            return motion
+        self._still = 0
+        return CameraMotion(motion.turn, motion.shift / zoom)
 
     def _background(
         self, grey: npt.NDArray[np.uint8], target: Box, zoom: float
@@ -164,7 +180,7 @@ def _stand(
     places = np.rint(corners[:, 0]).astype(np.intp)
     places = np.clip(places, 0, (present.shape[1] - 1, present.shape[0] - 1))
     unchanged = change[places[:, 1], places[:, 0]] < _UNCHANGED
-    return bool(unchanged.mean() >= _PREFERENCE)
+    return bool(unchanged.mean() >= _STILL_SHARE)
 
 
 def _track(

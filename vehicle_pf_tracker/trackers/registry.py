@@ -139,7 +139,7 @@ _ENTRIES = (
     ),
     Variant(
         "fusion",
-        "fusion:Fusion",
+        "fusion.tracker:Fusion",
         "fused cues, scale, camera motion, return from total occlusions (this package)",
         "real video: changing size, a moving camera, total occlusions",
     ),

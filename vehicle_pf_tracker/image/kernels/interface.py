@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.colour import JointColour
+from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Positions, Window
 from vehicle_pf_tracker.image.window_feature import (
@@ -156,3 +157,7 @@ class Kernels(ABC):
         reference: Reference,
     ) -> Positions:
         """Move every position one mean-shift step; see `image.mean_shift`."""
+
+    @abstractmethod
+    def gradient_cells(self, grey: Grey) -> CellFeatures:
+        """Compute histograms of oriented gradients; see `image.gradient_cells`."""

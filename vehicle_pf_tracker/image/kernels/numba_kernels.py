@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
+from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey
 from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.kernels import numba_jit
 from vehicle_pf_tracker.image.kernels.interface import Kernels, PixelRange, SimilarityMap
@@ -19,6 +20,7 @@ from vehicle_pf_tracker.image.kernels.numba_cells import (
     stack_windows,
 )
 from vehicle_pf_tracker.image.kernels.numba_edges import count_directions
+from vehicle_pf_tracker.image.kernels.numba_gradient_cells import gradient_cells
 from vehicle_pf_tracker.image.kernels.numba_inputs import (
     CellTable,
     Placement,
@@ -138,6 +140,10 @@ class NumbaKernels(Kernels):
 
     def __init__(self) -> None:
         self.notices = numba_jit.notices()
+
+    def gradient_cells(self, grey: Grey) -> CellFeatures:
+        """Compute gradient histograms; see `Kernels.gradient_cells`."""
+        return gradient_cells(grey)
 
     def counts(
         self,

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import JointColour, bin_indices
+from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey, gradient_cells
 from vehicle_pf_tracker.image.kernels.interface import Kernels, PixelRange, SimilarityMap
 from vehicle_pf_tracker.image.mean_shift import kernel_similarity, mean_shift
 from vehicle_pf_tracker.image.similarity import Reference
@@ -35,6 +36,10 @@ class OpenCvKernels(Kernels):
 
     def __init__(self, notices: Sequence[str] = ()) -> None:
         self.notices = notices
+
+    def gradient_cells(self, grey: Grey) -> CellFeatures:
+        """Compute gradient histograms; see `Kernels.gradient_cells`."""
+        return gradient_cells(grey)
 
     def counts(
         self,

@@ -1,4 +1,4 @@
-"""Parameters of `fusion`; docs/fusion.md tells what each part is for."""
+"""Parameters of `fusion`; docs/fusion.md says what each part is for and how they were fitted."""
 
 from __future__ import annotations
 
@@ -10,137 +10,181 @@ from vehicle_pf_tracker.trackers.evidence import EvidenceParameters
 
 
 @dataclass(frozen=True, slots=True)
-class CueParameters:
-    """What the target is known by."""
+class FilterParameters:
+    """Learning of the correlation filter."""
 
-    anchor: bool = parameter(
-        True, "Off: the first frame's template takes no part, and slow drifts are not held."
+    stiffness: float = parameter(
+        5.0,
+        "Higher: each frame changes the filter less; steadier, but slower to follow a turn.",
+        minimum=0.0,
+        maximum=1000.0,
+        source="STRCF, mu",
+        tuned=(1.0, 30.0),
     )
-    following: bool = parameter(
-        True, "Off: no template follows the looks of the target, which change as it turns."
-    )
-    colour: bool = parameter(True, "Off: colours take no part.")
-    parts: bool = parameter(
-        True, "Off: halves of the template are not compared; half hidden counts as hidden sooner."
-    )
-    alignment: bool = parameter(
-        True, "Off: place and size are not refined to fractions of a pixel; the size lags behind."
-    )
-    adaptive: bool = parameter(
-        True,
-        "Off: all cues keep the same weight, also where one does not tell the target from its "
-        "surroundings.",
-        source="P2 (8)",
-    )
-    side: float = parameter(
-        32.0,
-        "Larger: the target is compared at a finer resolution, at more time per frame.",
-        minimum=8.0,
-        maximum=96.0,
-        unit="px",
+    penalty: float = parameter(
+        0.1,
+        "Higher: a smoother filter, which discriminates less and bears changed appearance longer.",
+        minimum=0.001,
+        maximum=100.0,
+        source="STRCF, first gamma",
         effect="relearns",
+        tuned=(0.03, 1.0),
     )
-    template_rate: float = parameter(
-        0.06,
-        "Higher: the following template takes on changed looks faster, and occluders too.",
+    colour: bool = parameter(True, "Off: luminance and colour take no part, only gradients do.")
+    level_rate: float = parameter(
+        0.05,
+        "Higher: the usual response follows the response of visible frames faster.",
         minimum=0.0,
         maximum=1.0,
         unit="per frame",
-    )
-    colour_rate: float = parameter(
-        0.05,
-        "Higher: the histograms take on changed colours faster, and occluders too.",
-        minimum=0.0,
-        maximum=1.0,
-        unit="per four frames",
+        tuned=(0.02, 0.2),
     )
 
 
 @dataclass(frozen=True, slots=True)
 class VehicleMotionParameters:
-    """How particles move."""
+    """Motion of the vehicle and of the camera."""
 
     camera: bool = parameter(
         True, "Off: the background is taken to stand still; saves time where it does."
     )
-    scale: bool = parameter(True, "Off: the box keeps its first size.")
-    sigma: float = parameter(
-        0.1,
-        "Larger: follows jumps of the place; steadier if smaller.",
+    position_sigma: float = parameter(
+        0.06,
+        "Larger: follows jumps of a visible vehicle; steadier if smaller.",
         minimum=0.001,
         maximum=2.0,
         unit="of the size, per frame",
+        tuned=(0.02, 0.15),
     )
     velocity_sigma: float = parameter(
-        0.04,
-        "Larger: follows swifter changes of speed; steadier if smaller.",
+        0.03,
+        "Larger: follows quicker changes of speed of a visible vehicle; steadier if smaller.",
         minimum=0.0,
         maximum=1.0,
-        unit="of the size, per frame and frame",
-    )
-    scale_sigma: float = parameter(
-        0.02,
-        "Larger: follows swifter changes of size; steadier if smaller.",
-        minimum=0.0,
-        maximum=0.5,
-        unit="of the size, per frame",
+        unit="of the size, per frame squared",
+        tuned=(0.01, 0.1),
     )
     gain: float = parameter(
-        0.35,
+        0.3,
         "Higher: the velocity takes on more of each displacement.",
         minimum=0.0,
         maximum=1.0,
+        tuned=(0.1, 0.7),
+    )
+    hidden_position_sigma: float = parameter(
+        0.02,
+        "Larger: the search for a hidden vehicle widens faster.",
+        minimum=0.001,
+        maximum=1.0,
+        unit="of the size, per frame",
+        tuned=(0.005, 0.06),
+    )
+    hidden_velocity_sigma: float = parameter(
+        0.012,
+        "Larger: a hidden vehicle is expected to change its speed more.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="of the size, per frame squared",
+        tuned=(0.003, 0.04),
+    )
+    perspective: bool = parameter(
+        True, "Off: a hidden vehicle keeps speed and size, though it drives into depth."
     )
 
 
 @dataclass(frozen=True, slots=True)
-class HidingParameters:
-    """How occlusions are entered, borne and left."""
+class VisibilityParameters:
+    """Evidence for the vehicle being visible, as calibrated log-likelihood ratios."""
 
-    retrospect: bool = parameter(
-        True,
-        "Off: the motion while hidden is fitted to the last frames too, which the occluder has "
-        "dragged along.",
+    response_slope: float = parameter(
+        12.0,
+        "Higher: the filter's response decides about visibility in fewer frames.",
+        minimum=0.1,
+        maximum=100.0,
+        unit="log ratio per usual response",
+        tuned=(5.0, 20.0),
     )
-    projective: bool = parameter(
-        True, "Off: velocity and size stay as they were, though the vehicle drives into depth."
+    response_middle: float = parameter(
+        0.5,
+        "Higher: a smaller fall of the response speaks for an occlusion.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="of the usual response",
+        tuned=(0.35, 0.7),
     )
-    drift: bool = parameter(
-        True,
-        "Off: hidden particles spread evenly to all sides, not along the motion.",
-        source="P1 (11)",
+    points_slope: float = parameter(
+        4.0,
+        "Higher: the survival of points on the vehicle counts more; 0: they are not tracked.",
+        minimum=0.0,
+        maximum=50.0,
+        unit="log ratio per usual survival",
+        tuned=(0.5, 8.0),
     )
-    gate: bool = parameter(
-        True,
-        "Off: particles are not held to the foretold motion in doubt, and leaving it tells of no "
-        "occlusion.",
+    points_middle: float = parameter(
+        0.5,
+        "Higher: a smaller loss of points speaks for an occlusion.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="of the usual survival",
+        tuned=(0.3, 0.8),
     )
-    background: bool = parameter(
-        True,
-        "Off: what a still camera saw at a place before the vehicle came there tells nothing.",
+    hiding_rate: float = parameter(
+        0.02,
+        "Probability that a visible vehicle is hidden in the next frame.",
+        minimum=1e-6,
+        maximum=0.5,
+        unit="per frame",
+        tuned=(0.003, 0.1),
     )
-    turns: bool = parameter(
-        True,
-        "Off: a vehicle that turns before a still camera is not followed by its outline, nor "
-        "looked for where it comes out of a turn.",
+    return_rate: float = parameter(
+        0.05,
+        "Probability that a hidden vehicle is visible in the next frame.",
+        minimum=1e-6,
+        maximum=0.5,
+        unit="per frame",
+        tuned=(0.01, 0.2),
     )
-    search: bool = parameter(
-        True, "Off: a hidden target is looked for at its predicted place alone."
+    learning_points: float = parameter(
+        0.4,
+        "Higher: nothing is learnt while fewer points have been lost.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="of the usual survival",
+        tuned=(0.1, 0.8),
     )
-    confirm: int = parameter(
-        3,
-        "More: a candidate has to agree in place, size, motion and looks for longer before it is "
-        "taken for the target.",
-        minimum=2,
-        maximum=24,
-        unit="frames",
+
+
+@dataclass(frozen=True, slots=True)
+class SizeParameters:
+    """Following the size of the box; width and height are free."""
+
+    step: float = parameter(
+        0.03,
+        "Size step that is tried; 0: the box keeps its first size.",
+        minimum=0.0,
+        maximum=0.2,
+        tuned=(0.015, 0.06),
     )
-    patience: int = parameter(
-        25,
-        "Longer: changed looks are doubted for longer before they are taken for the target's.",
-        minimum=1,
-        maximum=1000,
-        unit="frames",
+    gain: float = parameter(
+        0.7,
+        "Higher: the size takes on more of what the response says.",
+        minimum=0.0,
+        maximum=2.0,
+        tuned=(0.3, 1.2),
+    )
+    aspect_gain: float = parameter(
+        0.6,
+        "Higher: width and height follow the response separately; 0: only together.",
+        minimum=0.0,
+        maximum=2.0,
+        tuned=(0.1, 1.2),
+    )
+    points_gain: float = parameter(
+        0.5,
+        "Higher: the size takes on more of the spread of points on the vehicle.",
+        minimum=0.0,
+        maximum=1.0,
+        tuned=(0.0, 1.0),
     )
 
 
@@ -148,21 +192,17 @@ class HidingParameters:
 class FusionParameters(ParticleParameters):
     """Parameters of `fusion`."""
 
-    sharpness: float = parameter(
-        25.0,
-        "Higher: particles that are less alike lose weight faster.",
-        minimum=0.1,
-        maximum=1000.0,
+    num_particles: int = parameter(
+        60,
+        "More: a wider choice of paths behind an occluder, at more time per frame.",
+        minimum=1,
+        maximum=100_000,
     )
-    resampling_passes: int = parameter(
-        1,
-        "More: low weights are drawn anew more often within a frame, which sharpens the estimate; "
-        "0: never.",
-        minimum=0,
-        maximum=20,
-        source="P3 Table II",
-    )
-    cues: CueParameters = group(CueParameters)
+    filter: FilterParameters = group(FilterParameters)
     motion: VehicleMotionParameters = group(VehicleMotionParameters)
-    hiding: HidingParameters = group(HidingParameters)
-    evidence: EvidenceParameters = group(EvidenceParameters)
+    visibility: VisibilityParameters = group(VisibilityParameters)
+    size: SizeParameters = group(SizeParameters)
+    # The evidence is a probability, which needs no level of its own: even odds decide.
+    evidence: EvidenceParameters = group(
+        EvidenceParameters, occluded_below=0.5, clear_above=0.5, minimum=0.5
+    )

@@ -1,343 +1,373 @@
-"""`fusion`: a particle filter that takes the best idea of each paper and adds what they lack.
+"""`fusion`: a correlation particle filter with a posterior over visibility.
 
-While the target is seen: camera motion, constant velocity, fused cues on a canonical region,
-adaptive resampling, judgement, learning. In doubt nothing is learnt, and the particles are held
-to the motion that clear frames foretell. While it is hidden: that motion goes on, particles drift
-along it, and a search widens with them. In a turn before a still camera its blob is followed.
-docs/fusion.md tells what each part is for.
+Per frame: move with the camera, predict, observe, judge visibility, and then either
+
+- visible: climb to the peak, follow the size, learn; or
+- hidden: predict along the road, learn nothing, and wait until hypotheses gather evidence.
+
+The filter response at each hypothesis is a calibrated log-likelihood ratio of visible against
+hidden; points on the surface give a second one for all of them. docs/fusion.md has the model.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 
-from vehicle_pf_tracker.core.box import Position
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Box, Position
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.camera_motion import CameraFlow, CameraMotion
+from vehicle_pf_tracker.image.canonical_patch import Patch
+from vehicle_pf_tracker.image.small_grey import small_grey
 from vehicle_pf_tracker.image.window import is_outside, keep_inside
-from vehicle_pf_tracker.trackers.base import Outcome
-from vehicle_pf_tracker.trackers.fusion.appearance import Likeness
-from vehicle_pf_tracker.trackers.fusion.candidates import Chain
-from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
-from vehicle_pf_tracker.trackers.fusion.history import History, Trend
-from vehicle_pf_tracker.trackers.fusion.likelihood import Prior, log_likelihood
-from vehicle_pf_tracker.trackers.fusion.particles import Particles, Spread
-from vehicle_pf_tracker.trackers.fusion.search import Foretold, Search
-from vehicle_pf_tracker.trackers.fusion.state import FusionState
-from vehicle_pf_tracker.trackers.fusion.suspicion import Sight, Verdict
-from vehicle_pf_tracker.trackers.fusion.view import View
+from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
+from vehicle_pf_tracker.trackers.fusion.hypotheses import FASTEST_GROWTH, Hypotheses
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
+from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
+from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 
-_SIZES = tuple(1.07**step for step in (-1, 0, 1))
 _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
-_DEGENERATE = 0.4
-"""Share of the particles below which the effective sample size is too small (P3)."""
-_YOUNG_FRAMES = 6
-_YOUNG_SPREAD = 1.5
-_DOUBTED = 4.0
-"""Latest frames that no trend is fitted to in doubt: an occluder may have dragged them along."""
-_ROLLED_BACK = 6.0
-"""The same once the target is hidden."""
-_UNSIZED = 3.0
-"""Sightings before the doubt whose sizes are not believed: half covered it looks smaller."""
-_RATE_IN_TURNS = 0.2
-_LOOKED_EVERY = 3
-"""Clear frames between two looks at the target's blob."""
-_SIGHTINGS_IN_TURNS = 6
+_LARGEST_LOG_RATIO = 6.0
+"""Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
+_HIGHEST_RESPONSE = 1.2
+"""Response above which more of it tells nothing more."""
+_CLIMB_FREELY, _CLIMB_ON_PATH = (5, 3.0), (3, 1.0)
+"""Reach, and standard deviation paid for, in places of the response, within which a hypothesis is
+moved to a better place. Where the path is known better than the place it has to keep to it: while
+hidden, else all would gather at clutter; and after a first motion was measured, else a standing
+part of the first box would hold it."""
+_WIDE_FROM = 0.5
+"""Spread of the hypotheses, of the size, from which a wide patch is searched."""
+_PEAK_REACH = 6
+"""Places of the response around the mean within which its peak is the estimate: a third of the
+target's side."""
+_SAME_VEHICLE = 0.5
+"""Distance from the best hypothesis, of the size, within which others mean the same vehicle."""
+_STRONG = 0.8
+"""Probability of visibility from which the size is followed."""
+_WEAK_RESPONSE = 0.6
+"""Response below which sizes are not followed: a half-hidden vehicle looks smaller."""
+_LEAST_LEARNT = 0.5
+"""Response below which nothing is learnt: what is there differs in more than it agrees."""
+_WHOLE = 0.8
+"""Survival of points from which their spread tells the size: what an occluder covers, shrinks."""
+_LEAST_SIDE, _LARGEST_SHARE = 3.0, 1.5
+"""Bounds of the sides: px, and share of the image."""
+_NEW_VELOCITY = 3.0
+"""Spread of the first velocities in units of the change per frame: none is known yet."""
+_DOUBT = 0.02
+"""Probability of being visible that an occlusion begins with."""
+_PREDICTION_SIGMA = 0.04, 0.01
+"""Spread of the positions predicted from the last clear sighting, of the size, and per frame since:
+about the residual of the fit to sightings of real vehicles."""
+_SPEED_SIGMA = 0.05
+"""Spread of the predicted velocities, of the speed; about the error of the fit."""
+_GROWTH_SIGMA = 0.004
+"""Spread of the predicted rates of growth per frame; a step of the fit's grid is 0.0025."""
 
 
-class FusionTracker(FusionState):
+class FusionTracker(ParticleTracker[FusionParameters]):
     """The flagship."""
+
+    _particles: Hypotheses
+
+    def start(self, frame: Frame, box: Box) -> Estimate:
+        """Learn the target; see `Tracker.start`."""
+        self._size = np.array([box.width, box.height])
+        self._position = np.array(box.centre)
+        self._velocity = np.zeros(2)
+        self._frames = 0
+        self._visible = True
+        self._sightings = Sightings()
+        self._points = SurfacePoints()
+        self._camera = CameraFlow()
+        self._camera.measure(small_grey(frame), box)
+        estimate = super().start(frame, box)
+        self._points.keep(self._appearance.patch(frame, self._position, self._size))
+        return estimate
+
+    def reconfigure(self, parameters: FusionParameters) -> None:
+        """Take new parameters; see `Tracker.reconfigure`."""
+        recoloured = parameters.filter.colour != self.parameters.filter.colour
+        super().reconfigure(parameters)
+        if self._target is not None:
+            self._appearance.kernels = self.kernels
+            self._particles = self._particles.resampled(self._rng, parameters.num_particles)
+            if recoloured:
+                self._learn()
+
+    def _learn(self) -> None:
+        """Train a filter on the first frame's target."""
+        target, window = self.target, self.parameters.window
+        box = target.box
+        learnt = np.array([window.width or box.width, window.height or box.height])
+        self._padding = learnt / np.array([box.width, box.height])
+        options = self.parameters.filter
+        self._appearance = Appearance(self.kernels, learnt, options.penalty, colour=options.colour)
+        patch = self._appearance.patch(target.patch, np.array(target.centre), learnt)
+        self._appearance.learn_first(patch)
+
+    def _scatter(self, centre: Position) -> Array:
+        count, motion, extent = self.parameters.num_particles, self.parameters.motion, self._extent
+        spread = self._rng.normal(size=(2, count, 2)) * extent
+        velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
+        positions = np.asarray(centre) + spread[0] * motion.position_sigma
+        self._particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - _DOUBT)
+        return np.asarray(positions)
+
+    @property
+    def _extent(self) -> float:
+        """Geometric mean of the sides of the box, px."""
+        return float(np.sqrt(self._size.prod()))
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         _ = self.target  # says what is wrong before the start
         elapsed = min(elapsed, _LONGEST_STEP)
-        self._pass_time(frame, elapsed)
-        if self._search is not None and self._trend is not None:
-            return self._look_for(frame, self._trend, self._search, elapsed)
-        turned = self._turn(frame, elapsed) if self._turns.active else None
-        return turned or self._follow(frame, elapsed)
-
-    # ---- in sight
-
-    def _follow(self, frame: Frame, elapsed: float) -> Outcome:
-        particles, left_image = self._predicted(frame, elapsed)
-        expected_scale = particles.scale
-        view = self._look_around(frame, particles.place, expected_scale)
-        particles, sound, passes, redrawn = self._weighed(frame, view, particles)
-        place, scale = self._refined(frame, view, particles, expected_scale)
-        self._take(frame, particles, place, scale, elapsed)
-        likeness = self._appearance.compare(view, self._place, scale)
-        verdict = self._judge_looks(view, likeness)
-        self._learn_from(view, likeness, verdict)
-        if self._begins_to_turn(frame, verdict):
-            return self._turned(frame)
-        told = self._place
-        hidden = verdict.hidden and not self._turns.undecided
-        if hidden:
-            self._lose_sight(frame)
-            told = self._place
-        elif verdict.gone and self._trend is not None:
-            told = self._inside(frame, self._trend.now()[0])
-        return Outcome(
-            self._particles.cloud(sound=sound), told, self._velocity,
-            "hidden" if hidden else "seen", self._evidence(likeness, verdict),
-            _told(likeness), passes, redrawn, left_image,
-        )  # fmt: skip
-
-    def _predicted(self, frame: Frame, elapsed: float) -> tuple[Particles, bool]:
-        """Resample and drive all particles on (P1 eq. 1, constant velocity)."""
-        particles = self._particles.resampled(self._rng, len(self._particles.weights))
-        growth = self._history.growth() if self.parameters.motion.scale else 0.0
-        moved = particles.moved(self._rng, elapsed, growth, self._spread())
-        left_image = is_outside(frame, *moved.positions.mean(axis=0).tolist())
-        return self._kept(frame, moved), left_image
-
-    def _spread(self) -> Spread:
-        motion = self.parameters.motion
-        young = _YOUNG_SPREAD if self._frames <= _YOUNG_FRAMES else 1.0
-        return Spread(
-            young * motion.sigma * self._extent,
-            young * motion.velocity_sigma * self._extent,
-            motion.scale_sigma,
-        )
-
-    def _look_around(self, frame: Frame, place: Position, scale: float) -> View:
-        reach = 0.6 * max(self._size) * scale
-        sizes = _SIZES if self.parameters.motion.scale else (1.0,)
-        return self._appearance.look(frame, place, scale, reach, sizes)
-
-    def _weighed(
-        self, frame: Frame, view: View, particles: Particles
-    ) -> tuple[Particles, bool, int, int]:
-        """Weigh the particles; draw those of low weight anew while few carry all (P3)."""
-        doubted = self._suspicion.frames and self.parameters.hiding.gate
-        prior = Prior(
-            particles.place, self._extent, self._trend if doubted else None,
-            self._suspicion.innovation,
-        )  # fmt: skip
-        particles, sound = self._weigh(view, particles, prior)
-        passes = redrawn = 0
-        least = _DEGENERATE * len(particles.weights)
-        while (
-            passes < self.parameters.resampling_passes
-            and effective_sample_size(particles.weights) < least
-        ):
-            particles, drawn = particles.renewed(self._rng, self._spread().times(0.4))
-            particles, sound = self._weigh(view, self._kept(frame, particles), prior)
-            passes, redrawn = passes + 1, redrawn + drawn
-        return particles, sound, passes, redrawn
-
-    def _weigh(self, view: View, particles: Particles, prior: Prior) -> tuple[Particles, bool]:
-        logs = log_likelihood(view, particles, self.parameters.sharpness, prior)
-        weights, sound = from_log(logs)
-        return replace(particles, weights=weights), sound
-
-    def _refined(
-        self, frame: Frame, view: View, particles: Particles, expected_scale: float
-    ) -> tuple[Position, float]:
-        """Climb from the particles' mean to the peak, and align there while nothing is in doubt."""
-        scale = particles.scale
-        place = view.refine(particles.place, scale)
-        if not self.parameters.cues.alignment or self._suspicion.frames:
-            return place, scale
-        place, scale = self._alignment.improve(self._appearance, view, place, scale, expected_scale)
-        low, high = self._scale_bounds(frame)
-        return place, min(max(scale, low), high)
-
-    def _take(
-        self, frame: Frame, particles: Particles, place: Position, scale: float, elapsed: float
-    ) -> None:
-        """Move on to the estimate; the velocity takes its share of the displacement."""
-        gain, motion = self.parameters.motion.gain, self._velocity
-        gain = max(gain, 0.8 / self._frames)
-        x, y = keep_inside(frame, np.asarray(place)).tolist()
-        if elapsed > 0:
-            moved = (x - self._place[0]) / elapsed, (y - self._place[1]) / elapsed
-            self._velocity = (
-                motion[0] + gain * (moved[0] - motion[0]),
-                motion[1] + gain * (moved[1] - motion[1]),
+        self._frames += 1
+        before = self._position
+        self._move_with_camera(frame, elapsed)
+        self._on_path = not self._visible
+        if self._frames == 1:
+            self._take_first_motion(frame)
+        left_image = self._predict(frame, elapsed)
+        view = self._observe(frame, elapsed)
+        position, response = self._locate(frame, view)
+        if self._visible:
+            self._judge_points(
+                self._appearance.usual_patch(view.patch), position - before, position
             )
-        drawn = particles.drawn_towards((x, y), self._velocity, scale)
-        self._particles = self._kept(frame, drawn)
-        self._place, self._scale = (x, y), scale
+        was_visible = self._visible
+        self._visible = self._particles.probability_visible > 0.5
+        if self._visible:
+            self._take_sighting(frame, view, position, response, elapsed, again=not was_visible)
+        elif was_visible:
+            self._enter_occlusion()
+        if not self._visible:
+            self._position = self._kept_inside(frame, self._particles.mean)
+            self._velocity = self._particles.mean_velocity
+        self._points.keep(self._appearance.usual_patch(view.patch))
+        outcome = self._outcome(frame, response, left_image)
+        count = self.parameters.num_particles
+        self._particles = self._particles.resampled(self._rng, count)
+        return outcome
 
-    def _judge_looks(self, view: View, likeness: Likeness) -> Verdict:
-        self._suspicion.settle(likeness)
-        hiding = self.parameters.hiding
-        background = hiding.background and self._background.shows(
-            self._small, self._box(self._place)
-        )
-        if self._suspicion.is_clear(likeness) and not background:
-            self._trend = self._history.trend(1.0, projective=hiding.projective)
+    # Predict
+
+    def _move_with_camera(self, frame: Frame, elapsed: float) -> None:
+        """Move everything that is known with the background; its zoom never changes the size."""
+        camera = CameraMotion()
+        if self.parameters.motion.camera:
+            box = Box.around((self._position[0], self._position[1]), *self._size.tolist())
+            camera = self._camera.measure(small_grey(frame), box)
+        self._sightings.pass_time(elapsed, camera)
+        if not camera.still:
+            self._position = camera.apply(self._position)
+            self._particles = replace(
+                self._particles,
+                positions=camera.apply(self._particles.positions),
+                velocities=camera.apply_to_velocities(self._particles.velocities),
+            )
+
+    def _take_first_motion(self, frame: Frame) -> None:
+        """Give the hypotheses the velocity of what moves in the first box."""
+        patch = self._appearance.patch(frame, self._position, self._learnt_size)
+        move = self._points.first_motion(patch, self._size)
+        if move is not None:
+            self._on_path = True
+            spread = self._particles.velocities / _NEW_VELOCITY
+            self._particles = replace(self._particles, velocities=move + spread)
+
+    def _predict(self, frame: Frame, elapsed: float) -> bool:
+        """Drive all hypotheses on; tell whether their mean left the image."""
+        motion, extent = self.parameters.motion, self._extent
+        if self._visible:
+            sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
         else:
-            self._trend = self._history.trend(
-                1.0 + _DOUBTED, projective=hiding.projective, unsized=_UNSIZED
-            )
-        off = 0.0 if self._trend is None else math.dist(self._trend.now()[0], self._place)
-        sight = Sight(
-            likeness,
-            off / self._extent,
-            lambda: self._appearance.best_half(view, self._place, self._scale),
-            background,
-            self._appearance.grey,
-        )
-        return self._suspicion.judge(sight, gate=hiding.gate, patience=hiding.patience)
+            sigmas = motion.hidden_position_sigma * extent, motion.hidden_velocity_sigma * extent
+            growth = float(self._particles.weights @ self._particles.growths)
+            self._size = self._bounded(frame, self._size * np.exp(growth * elapsed))
+        driven = self._particles.driven(self._rng, elapsed, sigmas)
+        rates = self.parameters.visibility
+        driven = driven.passed(elapsed, rates.hiding_rate, rates.return_rate)
+        left_image = is_outside(frame, *driven.mean.tolist())
+        self._particles = replace(driven, positions=keep_inside(frame, driven.positions))
+        return left_image
 
-    def _learn_from(self, view: View, likeness: Likeness, verdict: Verdict) -> None:
-        place, scale = self._place, self._scale
-        if verdict.turning:
-            self._appearance.learn(view, place, scale, _RATE_IN_TURNS)
-        if verdict.renewed:
-            self._alignment.forget()
-        if verdict.clear:
-            self._history.see(place, scale)
-            self._background.keep(self._small, self._box(place))
-            self._appearance.learn(view, place, scale, self.parameters.cues.template_rate)
-            self._appearance.learn_colours(view, place, scale)
-            self._appearance.weigh_cues(view, place, scale)
-
-    def _evidence(self, likeness: Likeness, verdict: Verdict) -> float:
-        """Give what the mode is judged by: the looks, of their clear level, unless in doubt."""
-        share = self._suspicion.share(likeness)
-        if verdict.gone or self._suspicion.doubtful:
-            return min(share, self._ceiling)
-        return max(share, self.parameters.evidence.clear_above)
+    # Observe
 
     @property
-    def _ceiling(self) -> float:
-        """Evidence that no mode but `TRACKING` is left with."""
-        return 0.99 * self.parameters.evidence.occluded_below * self._judge.level
+    def _learnt_size(self) -> Array:
+        """Size in px of the part that the filter has learnt, which may be padded."""
+        return np.asarray(self._size * self._padding)
 
-    # ---- in a turn
+    def _observe(self, frame: Frame, elapsed: float) -> View:
+        """Weigh the hypotheses by the filter's response where they are, or close by."""
+        wide = not self._visible and self._particles.spread > _WIDE_FROM * self._extent
+        patch = self._appearance.patch(frame, self._particles.mean, self._learnt_size, wide=wide)
+        view = self._appearance.view(patch)
+        moves, log_ratios = self._climb(view)
+        positions = self._particles.positions + moves
+        self._particles = replace(self._particles, positions=positions).observed(log_ratios)
+        return view
 
-    def _begins_to_turn(self, frame: Frame, verdict: Verdict) -> bool:
-        """Look now and then how the target's blob lies; in doubt, whether it leaves its path."""
-        if not self.parameters.hiding.turns or (verdict.clear and self._frames % _LOOKED_EVERY):
-            return False
-        box = self._turns.notice(
-            frame, self._box(self._place), self._appearance.mean_share, clear=verdict.clear
-        )
-        if box is not None:
-            self._adopt(frame, box)
-        return box is not None
+    def _climb(self, view: View) -> tuple[Array, Array]:
+        """Best move (N, 2), px, of each hypothesis, paid for by its length; and its log ratio."""
+        reach, sigma = _CLIMB_ON_PATH if self._on_path else _CLIMB_FREELY
+        offsets = np.arange(-reach, reach + 1)
+        dy, dx = (grid.ravel() for grid in np.meshgrid(offsets, offsets, indexing="ij"))
+        places = view.places(self._particles.positions)
+        last = len(view.response) - 1
+        rows = np.clip(places[:, 1, np.newaxis] + dy, 0, last)
+        columns = np.clip(places[:, 0, np.newaxis] + dx, 0, last)
+        evidence = self.parameters.visibility
+        near = np.clip(view.response[rows, columns], 0, _HIGHEST_RESPONSE).astype(np.float64)
+        ratios = evidence.response_slope * (near - evidence.response_middle)
+        ratios -= 0.5 * (dx**2 + dy**2) / sigma**2
+        best = ratios.argmax(axis=1)
+        moves = np.column_stack([dx[best], dy[best]]) / view.steps
+        log_ratios = ratios[np.arange(len(best)), best]
+        return moves, np.clip(log_ratios, -_LARGEST_LOG_RATIO, _LARGEST_LOG_RATIO)
 
-    def _turn(self, frame: Frame, elapsed: float) -> Outcome | None:
-        """Follow the blob of a turning target; None where it is lost."""
-        (x, y), (u, v) = self._place, self._velocity
-        ahead = self._inside(frame, (x + u * elapsed, y + v * elapsed))
-        box = self._turns.follow(frame, self._box(ahead), self._appearance.mean_share)
-        if box is not None:
-            self._adopt(frame, box)
-            if elapsed > 0:
-                moved = (self._place[0] - x) / elapsed, (self._place[1] - y) / elapsed
-                self._velocity = 0.5 * (u + moved[0]), 0.5 * (v + moved[1])
-            self._history.keep(_SIGHTINGS_IN_TURNS)
-            self._history.see(self._place, 1.0)
-        elif self._turns.active:
-            self._place = ahead
+    def _locate(self, frame: Frame, view: View) -> tuple[Array, float]:
+        """Peak of the response at the best of the visible hypotheses, and its height."""
+        votes = self._particles.weights * self._particles.visible
+        best = self._particles.positions[int(votes.argmax())]
+        apart = np.linalg.norm(self._particles.positions - best, axis=1)
+        votes = np.where(apart < _SAME_VEHICLE * self._extent, votes, 0.0)
+        mean = votes @ self._particles.positions / votes.sum()
+        reach = _CLIMB_ON_PATH[0] if self._frames == 1 and self._on_path else _PEAK_REACH
+        position, response = view.peak_near(mean, reach)
+        return self._kept_inside(frame, position), response
+
+    def _judge_points(self, patch: Patch, move: Array, position: Array) -> None:
+        """Take the survival of points as evidence on visibility."""
+        evidence = self.parameters.visibility
+        if not evidence.points_slope:
+            return
+        survival = self._points.track(patch, move, position, self._size)
+        if survival is not None:
+            excess = min(survival, 1.0) - evidence.points_middle
+            self._particles = self._particles.witnessed(evidence.points_slope * excess)
+
+    # Visible
+
+    def _take_sighting(
+        self, frame: Frame, view: View, position: Array, response: float, elapsed: float, *,
+        again: bool,
+    ) -> None:  # fmt: skip
+        """Follow position, velocity and size to the peak, and learn."""
+        self._gather(frame, position, elapsed, again=again)
+        surely = self._particles.probability_visible > _STRONG
+        if surely and response > _WEAK_RESPONSE:
+            self._follow_size(frame, response, again=again)
+        self._sightings.add(self._position, self._size, response)
+        if again:
+            self._points.restart()
+        if surely and response > CLEAR_RESPONSE:
+            self._points.learn_usual()
+        if self.parameters.visibility.points_slope:
+            self._points.renew(self._position, self._size)
+        self._learn_appearance(frame, view, response)
+
+    def _gather(self, frame: Frame, position: Array, elapsed: float, *, again: bool) -> None:
+        """Centre the hypotheses on the sighting; their velocities take on the displacement."""
+        particles, motion = self._particles, self.parameters.motion
+        moved = (position - self._position) / max(elapsed, 1e-3)
+        if again:
+            count, velocity = self.parameters.num_particles, particles.mean_velocity
+            spread = self._rng.normal(size=(count, 2)) * motion.position_sigma * self._extent
+            still = np.zeros(count)
+            velocities = np.repeat(velocity[np.newaxis], count, axis=0)
+            visible = particles.probability_visible
+            self._particles = Hypotheses.around(position + spread, velocities, still, visible)
         else:
-            return None
-        return self._turned(frame)
+            gain = 1.0 if self._frames == 1 else motion.gain
+            velocities = particles.velocities + gain * (moved - particles.velocities)
+            centred = particles.positions + (position - particles.mean)
+            self._particles = replace(particles, positions=centred, velocities=velocities)
+        inside = keep_inside(frame, self._particles.positions)
+        self._particles = replace(self._particles, positions=inside)
+        self._position = position
+        self._velocity = self._particles.mean_velocity
 
-    def _turned(self, frame: Frame) -> Outcome:
-        self._draw_around(frame, 0.05)
-        evidence = max(self._judge.level, self.parameters.evidence.clear_above)
-        cloud = self._particles.cloud()
-        return Outcome(cloud, self._place, self._velocity, "turning", evidence, {})
+    def _follow_size(self, frame: Frame, response: float, *, again: bool) -> None:
+        options = self.parameters.size
 
-    def _emerges(self, frame: Frame, trend: Trend, elapsed: float) -> bool:
-        """Look whether the hidden target comes out of a turn, off its foretold path."""
-        if self._emergence is None or not self.parameters.hiding.turns:
-            return False
-        colour = self._appearance.mean_share
-        emerged = self._emergence.look(frame, trend, elapsed, colour)
-        if emerged is None:
-            return False
-        self._turns.begin(emerged.blob.area)
-        self._adopt(frame, self._turns.box_of(emerged.blob))
-        self._velocity = emerged.velocity
-        self._history = History(self._side)
-        return True
+        def peak(size: Array) -> float:
+            patch = self._appearance.patch(frame, self._position, size * self._padding)
+            return self._appearance.peak(patch)
 
-    # ---- hidden
-
-    def _lose_sight(self, frame: Frame) -> None:
-        """Go back to the confident frames, and foretell the motion from them."""
-        hiding = self.parameters.hiding
-        back = _ROLLED_BACK if hiding.retrospect else 0.0
-        unsized = _UNSIZED if hiding.retrospect else 0.0
-        self._trend = (
-            self._history.trend(back, projective=hiding.projective, unsized=unsized)
-            or self._history.trend(0.0, projective=hiding.projective)
-            or Trend.still(self._place, self._scale)
+        size = self._size
+        if not again and options.step and self._points.survival > _WHOLE:
+            size = size * np.exp(options.points_gain * self._points.stretch)
+        self._size = self._bounded(
+            frame, searched_size(size, self._frames, response, peak, options)
         )
-        self._search = Search(self._appearance, self._suspicion, self._background)
-        self._suspicion.reset()
-        self._foretell(frame, self._trend)
-        self._draw_around(frame, 0.1)
-        self._emergence = Emergence(self._turns, self._extent)
 
-    def _foretell(self, frame: Frame, trend: Trend) -> bool:
-        """Move on to the foretold state; tells whether its place is in the image."""
-        place, scale = trend.now()
-        low, high = self._scale_bounds(frame)
-        self._scale = min(max(scale, low), high)
-        self._velocity = trend.velocity()
-        x, y = keep_inside(frame, np.asarray(place)).tolist()
-        self._place = x, y
-        return not is_outside(frame, *place)
+    def _learn_appearance(self, frame: Frame, view: View, response: float) -> None:
+        """Train the filter, the less the less surely the vehicle is visible."""
+        options = self.parameters.filter
+        whole = self._points.survival > self.parameters.visibility.learning_points
+        if response <= _LEAST_LEARNT or not whole:
+            return
+        visible = self._particles.probability_visible
+        rate = max(options.level_rate, 1 / (self._frames + 1)) * visible
+        self._appearance.learn_usual(response, rate)
+        stiffness = options.stiffness / visible
+        self._appearance.learn(frame, view, self._position, self._learnt_size, stiffness)
 
-    def _look_for(self, frame: Frame, trend: Trend, search: Search, elapsed: float) -> Outcome:
-        """Let the particles drift on, and look for the target where they are."""
-        inside = self._foretell(frame, trend)
-        self._particles = self._particles.drifted(
-            self._rng, elapsed, self._velocity, self._scale, 0.03 * self._extent,
-            along=self.parameters.hiding.drift,
-        )  # fmt: skip
-        self._particles = self._kept(frame, self._particles)
-        parameters = self.parameters
-        foretold = Foretold(
-            self._place, self._velocity, self._scale, self._extent, self._particles.width
-        )
-        share = search.look(
-            frame, self._small, foretold,
-            wide=parameters.hiding.search, sizes=parameters.motion.scale,
-        )  # fmt: skip
-        chain = search.proof(foretold, parameters.hiding.confirm)
-        if chain is not None:
-            return self._come_back(frame, chain)
-        if self._emerges(frame, trend, elapsed):
-            return self._turned(frame)
+    # Hidden
+
+    def _enter_occlusion(self) -> None:
+        """Predict from the last clear sightings: the occluder has dragged later ones along."""
+        fitted = self._sightings.fit(perspective=self.parameters.motion.perspective)
+        if fitted is None:
+            self._particles = replace(
+                self._particles, visible=np.full(len(self._particles.visible), _DOUBT)
+            )
+            return
+        motion, last = fitted
+        self._size = last.size * motion.scale_at(last.age)
+        count, extent = self.parameters.num_particles, self._extent
+        velocity = motion.velocity_at(last.age)
+        draws = self._rng.normal(size=(2, count, 2))
+        spread = (_PREDICTION_SIGMA[0] + _PREDICTION_SIGMA[1] * last.age) * extent
+        positions = motion.position_at(last.age) + draws[0] * spread
+        speed_sigma = 2 * self.parameters.motion.hidden_velocity_sigma * extent
+        speed_sigma += _SPEED_SIGMA * float(np.hypot(*velocity))
+        velocities = velocity + draws[1] * speed_sigma
+        growths = np.zeros(count)
+        if self.parameters.motion.perspective:
+            growths = motion.growth_at(last.age) + self._rng.normal(size=count) * _GROWTH_SIGMA
+        growths = np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH)
+        self._particles = Hypotheses.around(positions, velocities, growths, _DOUBT)
+
+    # Report
+
+    def _bounded(self, frame: Frame, size: Array) -> Array:
+        return np.clip(size, _LEAST_SIDE, _LARGEST_SHARE * max(frame_size(frame)))
+
+    def _kept_inside(self, frame: Frame, position: Array) -> Array:
+        return np.asarray(keep_inside(frame, position))
+
+    def _outcome(self, frame: Frame, response: float, left_image: bool) -> Outcome:
+        particles = self._particles
+        positions = keep_inside(frame, particles.positions)
+        (x, y), (vx, vy) = self._position.tolist(), self._velocity.tolist()
         return Outcome(
-            self._particles.cloud(), self._place, self._velocity, "hidden",
-            min(share, self._ceiling), {}, left_image=not inside,
+            Cloud(positions, particles.weights), (x, y), (vx, vy),
+            "visible" if self._visible else "occluded", particles.probability_visible,
+            {"response": min(max(response, 0.0), 1.0), "points": min(self._points.survival, 1.0)},
+            left_image=left_image,
         )  # fmt: skip
 
-    def _come_back(self, frame: Frame, chain: Chain) -> Outcome:
-        """Follow a candidate from now on."""
-        found = chain.links[-1]
-        x, y = keep_inside(frame, np.asarray(found.place)).tolist()
-        self._place, self._scale = (x, y), found.scale
-        self._velocity = (
-            0.5 * (self._velocity[0] + chain.velocity[0]),
-            0.5 * (self._velocity[1] + chain.velocity[1]),
-        )
-        self._draw_around(frame, 0.05)
-        for one in chain.links:
-            self._history.see(one.place, one.scale, one.age)
-        self._search = self._emergence = self._trend = None
-        self._suspicion.reset()
-        cloud = self._particles.cloud()
-        return Outcome(cloud, self._place, self._velocity, "found", 1.0, {})
-
-
-def _told(likeness: Likeness) -> dict[str, float]:
-    return {
-        "anchor": likeness.anchor,
-        "following": likeness.following,
-        "colour": likeness.colour,
-    }
+    def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
+        width, height = self._size.tolist()
+        estimate = super()._estimate(outcome, mode, confidence, began)
+        return replace(estimate, box=Box.around(outcome.position, width, height))

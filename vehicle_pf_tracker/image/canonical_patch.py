@@ -1,0 +1,102 @@
+"""The surroundings of a target, resampled so that the target has a canonical size.
+
+What is measured there costs the same however large the target is in the frame.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+
+_REDUCED_FROM = 1.7
+"""Frame px per canonical px from which the frame is averaged first: bilinear sampling alone would
+skip pixels, and the patch would shimmer as the target moves."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Patch:
+    """A resampled square piece of a frame.
+
+    Attributes
+    ----------
+    image : (side, side, 3) array of uint8
+        RGB.
+    grey : (side, side) array of uint8
+        Its luminance.
+    centre : (2,) array
+        Point of the frame that the patch's centre shows, px.
+    zoom : (2,) array
+        Canonical px per px of the frame, along x and y.
+    """
+
+    image: Frame
+    grey: npt.NDArray[np.uint8]
+    centre: Array
+    zoom: Array
+
+    @property
+    def side(self) -> int:
+        """Side in canonical px."""
+        return len(self.grey)
+
+    def middle(self, side: int) -> Patch:
+        """Cut out the middle of the patch."""
+        margin = (self.side - side) // 2
+        part = slice(margin, margin + side)
+        return Patch(self.image[part, part], self.grey[part, part], self.centre, self.zoom)
+
+    def to_patch(self, positions: Array) -> Array:
+        """Positions (..., 2) in px of the frame as continuous px of the patch."""
+        return np.asarray((positions - self.centre) * self.zoom + self.side / 2)
+
+    def to_frame(self, positions: Array) -> Array:
+        """Positions (..., 2) in continuous px of the patch as px of the frame."""
+        return np.asarray((positions - self.side / 2) / self.zoom + self.centre)
+
+
+def cut_patch(frame: Frame, centre: Array, zoom: Array, side: int) -> Patch:
+    """Resample what lies around `centre`; beyond the border its outermost pixels are repeated.
+
+    Parameters
+    ----------
+    frame : (H, W, 3) array
+        RGB.
+    centre, zoom : (2,) arrays
+        See `Patch`.
+    side : int
+        Side of the patch in canonical px.
+    """
+    step = 1 / zoom
+    # Row of the affine map from pixel indices of the patch to those of the frame, x and y.
+    first = centre - side / 2 * step + 0.5 * step - 0.5
+    reduction = max(int(step.min() + 2 - _REDUCED_FROM), 1)
+    if reduction > 1:
+        frame, corner = _reduced(frame, centre, side * step, reduction)
+        first, step = (first - corner + 0.5) / reduction - 0.5, step / reduction
+    matrix = np.array([[step[0], 0.0, first[0]], [0.0, step[1], first[1]]])
+    image = cv2.warpAffine(
+        frame, matrix, (side, side), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+        borderMode=cv2.BORDER_REPLICATE,
+    )  # fmt: skip
+    grey = cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
+    return Patch(np.asarray(image, np.uint8), np.asarray(grey, np.uint8), centre, zoom)
+
+
+def _reduced(frame: Frame, centre: Array, size: Array, factor: int) -> tuple[Frame, Array]:
+    """Average blocks of `factor` px around `centre`; also the first px that was averaged."""
+    width, height = frame_size(frame)
+    low, high = centre - size / 2 - factor, centre + size / 2 + factor
+    left = min(max(math.floor(low[0]), 0), max(width - factor, 0))
+    top = min(max(math.floor(low[1]), 0), max(height - factor, 0))
+    columns = max(min(math.ceil(high[0]) - left, width - left) // factor, 1)
+    rows = max(min(math.ceil(high[1]) - top, height - top) // factor, 1)
+    piece = frame[top : top + rows * factor, left : left + columns * factor]
+    small = cv2.resize(np.ascontiguousarray(piece), (columns, rows), interpolation=cv2.INTER_AREA)
+    return np.asarray(small, np.uint8), np.array([left, top], float)

@@ -1,0 +1,127 @@
+"""The particles: where the vehicle may be, how it moves, and how surely it is visible there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.filtering.resampling import systematic
+from vehicle_pf_tracker.filtering.weights import effective_sample_size, normalise
+
+FASTEST_GROWTH = 0.04
+"""Bound of the growth rate per frame: a vehicle that doubles within 17 frames passes the camera."""
+_DEGENERATE = 0.5
+"""Share of the particles below which the effective sample size asks for resampling (usual)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hypotheses:
+    """A weighted set of hypotheses.
+
+    The visibility of each is a two-state Markov chain, {visible, hidden}, that is summed out
+    (Rao-Blackwell): a hypothesis gains weight by evidence only in so far as it says "visible".
+
+    Attributes
+    ----------
+    positions : (N, 2) array
+        Centres, px.
+    velocities : (N, 2) array
+        px per frame.
+    growths : (N,) array
+        Change of the logarithm of the size per frame.
+    visible : (N,) array
+        Probability that the vehicle is visible, given that this hypothesis is right.
+    weights : (N,) array
+        Normalised.
+    """
+
+    positions: Array
+    velocities: Array
+    growths: Array
+    visible: Array
+    weights: Array
+
+    @classmethod
+    def around(
+        cls, positions: Array, velocities: Array, growths: Array, visible: float
+    ) -> Hypotheses:
+        """Make hypotheses of equal weights."""
+        count = len(positions)
+        return cls(
+            positions, velocities, growths, np.full(count, visible), np.full(count, 1 / count)
+        )
+
+    @property
+    def probability_visible(self) -> float:
+        """Posterior probability that the vehicle is visible."""
+        return float(self.weights @ self.visible)
+
+    @property
+    def mean(self) -> Array:
+        """Mean position, px."""
+        return np.asarray(self.weights @ self.positions)
+
+    @property
+    def mean_velocity(self) -> Array:
+        """Mean velocity, px per frame."""
+        return np.asarray(self.weights @ self.velocities)
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the positions along the axis where it is larger, px."""
+        variance = self.weights @ (self.positions - self.mean) ** 2
+        return float(np.sqrt(variance.max()))
+
+    def driven(
+        self, rng: np.random.Generator, elapsed: float, sigmas: tuple[float, float]
+    ) -> Hypotheses:
+        """Move on for `elapsed` frames at constant velocity on the road.
+
+        In the image the velocity of a vehicle whose size grows at rate r grows at 2 r, and r at r
+        (`perspective.PerspectiveMotion`, differentiated).
+
+        Parameters
+        ----------
+        sigmas : (float, float)
+            Standard deviations of position (px) and velocity (px per frame), per frame.
+        """
+        root = np.sqrt(elapsed)
+        shape = self.positions.shape
+        faster = np.exp(2 * self.growths * elapsed)[:, np.newaxis]
+        velocities = self.velocities * faster + rng.normal(size=shape) * (sigmas[1] * root)
+        positions = self.positions + velocities * elapsed
+        positions += rng.normal(size=shape) * (sigmas[0] * root)
+        growths = self.growths * (1 + self.growths * elapsed)
+        growths = np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH)
+        return replace(self, positions=positions, velocities=velocities, growths=growths)
+
+    def passed(self, elapsed: float, hiding_rate: float, return_rate: float) -> Hypotheses:
+        """Let the chain of visibility pass `elapsed` frames."""
+        stays = (1 - hiding_rate) ** elapsed
+        returns = 1 - (1 - return_rate) ** elapsed
+        return replace(self, visible=self.visible * stays + (1 - self.visible) * returns)
+
+    def observed(self, log_ratios: Array) -> Hypotheses:
+        """Weigh by log-likelihood ratios (N,) of visible against hidden (Bayes' rule)."""
+        seen = self.visible * np.exp(log_ratios)
+        total = seen + 1 - self.visible
+        weights, _ = normalise(self.weights * total)
+        return replace(self, visible=seen / total, weights=weights)
+
+    def witnessed(self, log_ratio: float) -> Hypotheses:
+        """Take evidence on visibility that is the same for all hypotheses."""
+        seen = self.visible * np.exp(log_ratio)
+        return replace(self, visible=seen / (seen + 1 - self.visible))
+
+    def resampled(self, rng: np.random.Generator, count: int) -> Hypotheses:
+        """Draw `count` hypotheses by weight, where few carry most of it or their number differs."""
+        enough = effective_sample_size(self.weights) >= _DEGENERATE * len(self.weights)
+        if enough and count == len(self.weights):
+            return self
+        chosen = systematic(self.weights, count, rng)
+        return Hypotheses(
+            self.positions[chosen], self.velocities[chosen], self.growths[chosen],
+            self.visible[chosen], np.full(count, 1 / count),
+        )  # fmt: skip

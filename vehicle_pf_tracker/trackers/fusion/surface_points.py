@@ -1,0 +1,214 @@
+"""Points on the vehicle, tracked from frame to frame: evidence for a turn against an occlusion.
+
+Where a vehicle turns, the filter's response falls as it does behind an occluder; but most points of
+its surface live on, while an occluder ends them. Points that stay behind with a standing occluder,
+or go away with a moving one, leave their place in the box and count as ended too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.canonical_patch import Patch
+
+_GRID = 6
+"""Points along each axis of a set; 36 points give a survival to within 0.08."""
+_REACH = 0.4
+"""Outermost points from the centre, of the size: the box's rim is background."""
+_SEEDED_EVERY = 5
+"""Frames between two sets. A set is judged from this age on: younger ones have hardly lost any."""
+_OLDEST = 10
+"""Age in frames at which a set ends: two sets overlap, so that one is always of judging age."""
+_STRAYED = 0.2
+"""Distance from its first place in the box, of the size, at which a point has left the vehicle."""
+_ROUND_TRIP_PX = 1.0
+"""Largest error in canonical px of a point tracked forth and back (Kalal et al. 2010)."""
+_HEALTHY = 0.6
+"""Survival, of the usual one, below which no new set is placed: it would lie on the occluder."""
+_LEAST_USUAL = 0.3
+"""Usual survival below which points tell nothing: a vehicle of a few px, or motion blur."""
+_USUAL_RATE = 0.05
+"""Rate per frame at which the usual survival follows the present one in clear frames."""
+_FEWEST_PAIRS = 12
+"""Fewest tracked points that tell a change of size."""
+_APART = 0.25
+"""Least distance of two points that tell a change of size, of the size."""
+_LARGEST_STRETCH = 0.05
+"""Bound of the change of log size per frame."""
+_CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 8, 0.05)
+_FLOW = {"winSize": (9, 9), "maxLevel": 1, "criteria": _CRITERIA,
+         "flags": cv2.OPTFLOW_USE_INITIAL_FLOW}  # fmt: skip
+_FIRST_GRID = 10
+_FIRST_FLOW = {"winSize": (13, 13), "maxLevel": 3}
+"""The first step knows no velocity, hence larger windows and more pyramid levels."""
+_FIRST_MOVED_PX = 1.5
+"""Motion in canonical px above which a point moves against the background."""
+_FIRST_FEWEST = 8
+"""Fewest points that move alike for a first velocity: a twelfth of the box."""
+_FIRST_ALIKE_PX = 2.0
+
+
+@dataclass(slots=True, eq=False)
+class _PointSet:
+    """Points placed in one frame: places in the box, positions (px), whether each lives, age."""
+
+    places: Array
+    positions: Array
+    alive: npt.NDArray[np.bool_]
+    age: float = 0.0
+
+
+class SurfacePoints:
+    """Sets of points on the vehicle, and how many usually survive.
+
+    Attributes
+    ----------
+    survival : float
+        Share of the points that live, of the usual share; 1 where points tell nothing.
+    stretch : (2,) array
+        Change of the logarithm of width and height in the last frame by the points' spread.
+    """
+
+    def __init__(self) -> None:
+        self._usual = 0.0
+        self._latest = 1.0
+        self._previous: Patch | None = None
+        self.restart()
+
+    def restart(self) -> None:
+        """Discard all points, but not the usual survival."""
+        self._sets: list[_PointSet] = []
+        self.survival = 1.0
+        self.stretch = np.zeros(2)
+
+    def keep(self, patch: Patch) -> None:
+        """Keep the patch that the next frame's motion starts from."""
+        self._previous = patch
+
+    def first_motion(self, patch: Patch, size: Array) -> Array | None:
+        """Motion in px of what moves against the background inside the first box, if anything does.
+
+        `patch` shows the second frame around the first position, moved with the background.
+        """
+        previous = self._previous
+        assert previous is not None, "keep the first patch before"
+        grid = np.linspace(-0.45, 0.45, _FIRST_GRID)
+        places = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2)
+        start = (places * size * previous.zoom + previous.side / 2 - 0.5).astype(np.float32)
+        start = start[:, np.newaxis]
+        end, found = _flow(previous, patch, start, None, _FIRST_FLOW)
+        moves = (end - start)[found, 0].astype(np.float64)
+        moves = moves[np.hypot(moves[:, 0], moves[:, 1]) > _FIRST_MOVED_PX]
+        if len(moves) < _FIRST_FEWEST:
+            return None
+        alike = np.linalg.norm(moves[:, np.newaxis] - moves, axis=2) < _FIRST_ALIKE_PX
+        largest = alike[int(alike.sum(axis=1).argmax())]
+        if largest.sum() < _FIRST_FEWEST:
+            return None
+        return np.asarray(np.median(moves[largest], axis=0) / patch.zoom)
+
+    def track(self, patch: Patch, move: Array, position: Array, size: Array) -> float | None:
+        """Track all points into the present patch and judge how many survived.
+
+        Parameters
+        ----------
+        patch : Patch
+            Shows the present frame.
+        move : (2,) array
+            Displacement of the vehicle since the last frame, px; where the search starts.
+        position, size : (2,) arrays
+            Estimated centre, and width and height, px.
+
+        Returns
+        -------
+        float or None
+            `survival`; None where no set is old enough.
+        """
+        self.stretch = np.zeros(2)
+        self._move_points(patch, move, size)
+        shares = []
+        for points in self._sets:
+            points.age += 1
+            strayed = (points.positions - position) / size - points.places
+            points.alive &= np.hypot(strayed[:, 0], strayed[:, 1]) < _STRAYED
+            if points.age >= _SEEDED_EVERY:
+                shares.append(float(points.alive.mean()))
+        if not shares:
+            return None
+        self._latest = min(shares)
+        if not self._usual:
+            self._usual = self._latest
+        telling = self._usual >= _LEAST_USUAL
+        self.survival = self._latest / self._usual if telling else 1.0
+        return self.survival if telling else None
+
+    def learn_usual(self) -> None:
+        """Count the present survival as one of a clear frame."""
+        if any(points.age >= _SEEDED_EVERY for points in self._sets):
+            self._usual += _USUAL_RATE * (self._latest - self._usual)
+
+    def renew(self, position: Array, size: Array) -> None:
+        """End old sets, and place a new one if it is time and the vehicle is whole."""
+        self._sets = [points for points in self._sets if points.age < _OLDEST]
+        youngest = min((points.age for points in self._sets), default=None)
+        if youngest is None or (youngest >= _SEEDED_EVERY and self.survival > _HEALTHY):
+            grid = np.linspace(-_REACH, _REACH, _GRID)
+            places = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2)
+            alive = np.ones(len(places), bool)
+            self._sets.append(_PointSet(places, position + places * size, alive))
+
+    def _move_points(self, patch: Patch, move: Array, size: Array) -> None:
+        previous = self._previous
+        alive = [np.flatnonzero(points.alive) for points in self._sets]
+        if previous is None or not any(len(indices) for indices in alive):
+            return
+        before = np.concatenate(
+            [points.positions[i] for points, i in zip(self._sets, alive, strict=True)]
+        )
+        start = (previous.to_patch(before) - 0.5).astype(np.float32)[:, np.newaxis]
+        guess = (patch.to_patch(before + move) - 0.5).astype(np.float32)[:, np.newaxis]
+        end, found = _flow(previous, patch, start, guess, _FLOW)
+        after = patch.to_frame(end[:, 0].astype(np.float64) + 0.5)
+        self.stretch = _stretch(before[found], after[found], size)
+        place = 0
+        for points, indices in zip(self._sets, alive, strict=True):
+            part = slice(place, place + len(indices))
+            points.positions[indices] = after[part]
+            points.alive[indices[~found[part]]] = False
+            place += len(indices)
+
+
+def _flow(
+    before: Patch, after: Patch, start: npt.NDArray[np.float32],
+    guess: npt.NDArray[np.float32] | None, options: dict[str, object],
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.bool_]]:  # fmt: skip
+    """Track points (N, 1, 2) forth and back; also tell which came back to where they started."""
+    forth = None if guess is None else guess.copy()
+    back = None if guess is None else start.copy()
+    end, found, _ = cv2.calcOpticalFlowPyrLK(before.grey, after.grey, start, forth, **options)  # type: ignore[call-overload]
+    again, refound, _ = cv2.calcOpticalFlowPyrLK(after.grey, before.grey, end, back, **options)  # type: ignore[call-overload]
+    error = np.linalg.norm(again - start, axis=2).ravel()
+    good = (found.ravel() > 0) & (refound.ravel() > 0) & (error < _ROUND_TRIP_PX)
+    return np.asarray(end, np.float32), np.asarray(good, np.bool_)
+
+
+def _stretch(before: Array, after: Array, size: Array) -> Array:
+    """Median change of the log distance of points, along x and y."""
+    change = np.zeros(2)
+    if len(before) < _FEWEST_PAIRS:
+        return change
+    # Each point with the one half a list further: far apart for most, and N pairs instead of N².
+    other = np.roll(np.arange(len(before)), len(before) // 2)
+    for axis in (0, 1):
+        old = before[:, axis] - before[other, axis]
+        new = after[:, axis] - after[other, axis]
+        far = np.abs(old) > _APART * size[axis]
+        if far.sum() >= _FEWEST_PAIRS:
+            ratio = np.maximum(new[far] / old[far], 0.2)
+            change[axis] = float(np.median(np.log(ratio)))
+    return np.clip(change, -_LARGEST_STRETCH, _LARGEST_STRETCH)
