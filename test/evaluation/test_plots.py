@@ -4,7 +4,7 @@ import pytest
 from scoring_samples import NONE, PARTIAL, TOTAL, row, run_of, scored
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.plots import error_figure, overview_figure, path_figure, save
+from vehicle_pf_tracker.evaluation.plots import error_figure, overview_figure, save
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 
 FRAME = np.full((240, 320, 3), 128, np.uint8)
@@ -43,7 +43,7 @@ def test_runs_differ_in_colour_and_in_line():
 
 
 def test_paths_are_dashed_exactly_where_the_vehicle_is_hidden():
-    figure = path_figure(FRAME, {"one": RUNS["one"]})
+    figure = overview_figure(FRAME, {"one": RUNS["one"]})
     drawn = [
         (line.is_dashed(), len(line.get_xdata()))
         for line in figure.axes[0].lines
@@ -55,7 +55,7 @@ def test_paths_are_dashed_exactly_where_the_vehicle_is_hidden():
 
 def test_a_gap_breaks_the_path():
     frames = [scored(n, None if n == 5 else 1) for n in range(1, 10)]
-    figure = path_figure(FRAME, {"one": Scores(tuple(frames))})
+    figure = overview_figure(FRAME, {"one": Scores(tuple(frames))})
     lengths = [len(line.get_xdata()) for line in figure.axes[0].lines
                if line.get_color() == "#0072B2" and line.get_linestyle() == "-"]  # fmt: skip
     assert lengths[:2] == [4, 4]
@@ -64,7 +64,7 @@ def test_a_gap_breaks_the_path():
 @pytest.mark.parametrize("runs", [{}, {"no truth": score_frames([row(1, 5.0), row(2, 6.0)], [])}])
 def test_runs_without_truth_can_be_drawn(tmp_path, runs):
     save(error_figure(runs), tmp_path / "error.png")
-    save(path_figure(FRAME, runs), tmp_path / "path.png")
+    save(overview_figure(FRAME, runs), tmp_path / "path.png")
     assert cv2.imread(str(tmp_path / "path.png")).shape[1] == 1350
 
 

@@ -55,7 +55,7 @@ def error_figure(runs: Mapping[str, Scores], title: str = "") -> Figure:
     runs : mapping of str to Scores
         Runs on one recording, by the name in the legend.
     title : str
-        Stands over the figure.
+        Title above the figure.
     """
     figure = Figure(figsize=(9, 4), layout="constrained")
     axes = figure.add_subplot()
@@ -81,8 +81,10 @@ def draw_errors(axes: Axes, runs: Mapping[str, Scores], title: str) -> None:
     axes.set_axisbelow(True)
 
 
-def path_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Figure:
-    """Draw the true and the estimated paths over a frame, dashed where the vehicle is hidden.
+def overview_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Figure:
+    """Draw the true and estimated paths over a frame, and the error over time below.
+
+    Paths are dashed where the vehicle is hidden.
 
     Parameters
     ----------
@@ -91,16 +93,8 @@ def path_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Fi
     runs : mapping of str to Scores
         Runs on one recording, by the name in the legend.
     title : str
-        Stands over the figure.
+        Title above the figure.
     """
-    width, height = frame_size(frame)
-    figure = Figure(figsize=(9, 9 * height / width + 0.8), layout="constrained")
-    _draw_paths(figure.add_subplot(), frame, runs, title)
-    return figure
-
-
-def overview_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Figure:
-    """Draw what `path_figure` and `error_figure` draw, one above the other."""
     width, height = frame_size(frame)
     figure = Figure(figsize=(9, 9 * height / width + 4.5), layout="constrained")
     ratios = (9 * height / width + 0.8, 3.7)

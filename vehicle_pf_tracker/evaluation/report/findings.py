@@ -8,7 +8,6 @@ from vehicle_pf_tracker.evaluation.report.columns import (
     RANKED,
     RECOVERED,
     RMSE,
-    STEP,
     Column,
     counted,
     interval_text,
@@ -97,8 +96,3 @@ def _failed(evaluation: ScoredEvaluation) -> str:
     if not evaluation.failed:
         return f"All {counted(cells, 'cell')} of the grid have a result."
     return f"{len(evaluation.failed)} of {counted(cells, 'cell')} have no result; see Failed cells."
-
-
-def fastest(aggregates: Aggregates) -> str:
-    """Name the system with the shortest step."""
-    return _best(aggregates, STEP)

@@ -25,7 +25,6 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     Source,
     SystemEntry,
 )
-from vehicle_pf_tracker.evaluation.failures import first_failure
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 
@@ -48,8 +47,6 @@ class ScoredRun:
         Mode by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
-    first_failure : int or None
-        Number of the frame in which it first failed, see `failures`.
     """
 
     recording: str
@@ -60,7 +57,6 @@ class ScoredRun:
     boxes: Sequence[Box | None]
     modes: Sequence[str]
     curves: Mapping[str, Curve]
-    first_failure: int | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +158,6 @@ def _score(cell: Cell, truth: Mapping[int, Truth], max_diff: float) -> ScoredRun
         "success": success_curve(counted),
         "normalised": normalised_precision_curve(counted),
     }
-    failure = first_failure(frames)
     return ScoredRun(
         recording=cell.recording,
         system=cell.system,
@@ -172,7 +167,6 @@ def _score(cell: Cell, truth: Mapping[int, Truth], max_diff: float) -> ScoredRun
         boxes=[_box(frame) for frame in frames],
         modes=[frame.row.mode for frame in frames],
         curves={name: curve for name, curve in curves.items() if curve is not None},
-        first_failure=None if failure is None else frames[failure].row.frame,
     )
 
 
