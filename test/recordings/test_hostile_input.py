@@ -83,7 +83,7 @@ def test_frame_rates_at_the_limits(frames, tmp_path, fps):
 @pytest.mark.parametrize("text", [NESTED, '{"fps": ' + "1" * 5000 + "}", "{", '{"fps": ' + NESTED])
 def test_json_that_python_will_not_read(frames, tmp_path, text):
     (frames / "sequence.json").write_text(text)
-    refused("does not say the frame rate", import_recording, frames, tmp_path / "out")
+    refused("does not state the frame rate", import_recording, frames, tmp_path / "out")
 
 
 def test_an_image_number_of_forty_digits(frames, tmp_path):

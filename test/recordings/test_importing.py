@@ -159,7 +159,7 @@ def test_a_faulty_frame_rate_is_named(frame_folder, tmp_path, fps):
 def test_a_lacking_frame_rate_is_named(frame_folder, tmp_path, text):
     folder = frame_folder()
     (folder / "sequence.json").write_text(text)
-    with pytest.raises(InputError, match="does not say the frame rate"):
+    with pytest.raises(InputError, match="does not state the frame rate"):
         import_recording(folder, tmp_path / "bag")
     (folder / "sequence.json").unlink()
     with pytest.raises(InputError, match="frame rate is needed"):

@@ -104,7 +104,7 @@ def run(args: argparse.Namespace) -> int:
         raise
     told = comparison.verdict(lines, what.objective)
     file = _write_best(configuration.updated(best.values), variant, what, output)
-    head = f"# {variant.name}, tuned for {what.objective.told}\n\n"
+    head = f"# {variant.name}, tuned for {what.objective.description}\n\n"
     write_text(output / "tuning.md", f"{head}{comparison.to_markdown(lines)}\n{told}\n")
     document = {
         "command": args.command,

@@ -1,7 +1,7 @@
 """Failures in the manner of the VOT challenge: the estimate has nothing in common with the truth.
 
-A total occlusion is no failure, since nobody could see the vehicle: neither are its frames
-failures, nor is a tracker started anew in them. Source: Kristan et al. 2016, "A novel performance
+A total occlusion is not a failure, since the vehicle cannot be seen: its frames do not fail, and a
+tracker is not re-started in them. Source: Kristan et al. 2016, "A novel performance
 evaluation methodology for single-target trackers".
 """
 
@@ -150,15 +150,15 @@ def follow_restarted(
     blank = score_frames(waiting, footage.truth, max_diff).frames
     rows: list[EstimateRow] = []
     starts: list[int] = []
-    place = _first(stamps, footage.truth, max_diff)
-    while place is not None:
-        truth = blank[place].truth
+    begin = _first(stamps, footage.truth, max_diff)
+    while begin is not None:
+        truth = blank[begin].truth
         assert truth is not None
-        rows += waiting[len(rows) : place]
-        starts.append(place)
-        frames = itertools.islice(footage.frames(), place, None)
+        rows += waiting[len(rows) : begin]
+        starts.append(begin)
+        frames = itertools.islice(footage.frames(), begin, None)
         failure = _follow(make(truth), frames, blank, rows)
-        place = None if failure is None else restart_index(blank, failure)
+        begin = None if failure is None else restart_index(blank, failure)
     rows += waiting[len(rows) :]
     run = score_restarts(score_frames(rows, footage.truth, max_diff).frames, starts)
     return rows, {**asdict(run), "start_frames": [start + 1 for start in starts]}

@@ -66,7 +66,7 @@ def run_in_processes(
                 yield Turn((task, future.result()), tuple(running.values()))
     except BrokenProcessPool as error:
         raise InputError(
-            "a worker process was ended from outside, for want of memory perhaps; "
+            "a worker process was ended from outside, perhaps out of memory; "
             "run the command again to go on, with fewer --workers"
         ) from error
     finally:

@@ -148,10 +148,10 @@ def _rows(path: Path, reader: csv.DictReader[str]) -> dict[int, TruthRow]:
     table: dict[int, TruthRow] = {}
     seen: set[int] = set()
     for cells in reader:
-        place = f"line {reader.line_num} of the truth {path}"
-        number, row = _row(place, cells)
+        location = f"line {reader.line_num} of the truth {path}"
+        number, row = _row(location, cells)
         if number in seen:
-            raise InputError(f"{place} names frame {number} a second time")
+            raise InputError(f"{location} names frame {number} a second time")
         seen.add(number)
         if row is not None:
             table[number] = row
@@ -160,34 +160,34 @@ def _rows(path: Path, reader: csv.DictReader[str]) -> dict[int, TruthRow]:
     return table
 
 
-def _row(place: str, cells: dict[str, str]) -> tuple[int, TruthRow | None]:
-    frame, x, y, width, height = (_number(place, name, cells.get(name)) for name in _REQUIRED)
+def _row(location: str, cells: dict[str, str]) -> tuple[int, TruthRow | None]:
+    frame, x, y, width, height = (_number(location, name, cells.get(name)) for name in _REQUIRED)
     if not frame.is_integer():
-        raise InputError(f"{place} has no integer as its frame")
+        raise InputError(f"{location} has no integer as its frame")
     values = (x, y, width, height)
     if any(abs(value) > LARGEST_PX for value in values if math.isfinite(value)):
-        raise InputError(f"{place} has a box beyond {LARGEST_PX:.0f} px")
+        raise InputError(f"{location} has a box beyond {LARGEST_PX:.0f} px")
     if not all(map(math.isfinite, values)) or width <= 0 or height <= 0:
         return int(frame), None
-    return int(frame), TruthRow(Box(*values), _occlusion(place, cells))
+    return int(frame), TruthRow(Box(*values), _occlusion(location, cells))
 
 
-def _occlusion(place: str, cells: dict[str, str]) -> Occlusion:
-    if _number(place, "visible", cells.get("visible")) == 0:
+def _occlusion(location: str, cells: dict[str, str]) -> Occlusion:
+    if _number(location, "visible", cells.get("visible")) == 0:
         return Occlusion.TOTAL
-    occlusion = _number(place, "occ", cells.get("occ"))
+    occlusion = _number(location, "occ", cells.get("occ"))
     if math.isnan(occlusion):
         return Occlusion.NONE
     if occlusion not in set(Occlusion):
-        raise InputError(f"{place} has occ {occlusion:g}; it must be 0, 1 or 2")
+        raise InputError(f"{location} has occ {occlusion:g}; it must be 0, 1 or 2")
     return Occlusion(int(occlusion))
 
 
-def _number(place: str, name: str, cell: str | None) -> float:
+def _number(location: str, name: str, cell: str | None) -> float:
     """Read a cell; an empty or missing one is NaN."""
     if cell is None or not cell.strip():
         return math.nan
     try:
         return float(cell)
     except ValueError:
-        raise InputError(f"{place} has {cell!r} as {name}, which is not a number") from None
+        raise InputError(f"{location} has {cell!r} as {name}, which is not a number") from None

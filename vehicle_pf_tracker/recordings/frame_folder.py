@@ -96,7 +96,7 @@ def _frame_rate(path: Path) -> float:
         ) from error
     except (ValueError, KeyError, TypeError, RecursionError):
         raise InputError(
-            f'{path} does not say the frame rate; it must hold {{"fps": 30}}'
+            f'{path} does not state the frame rate; it must hold {{"fps": 30}}'
         ) from None
     is_number = isinstance(fps, int | float) and not isinstance(fps, bool)
     return check_fps(fps if is_number else math.nan, path)

@@ -71,7 +71,7 @@ class McapIndex:
 def read_index(path: Path) -> McapIndex:
     """Locate the messages of an MCAP file.
 
-    A whole file tells it in its summary. A file without one is read once from begin to end.
+    A complete file lists them in its summary; a file without one is read once from begin to end.
 
     Raises
     ------
@@ -224,8 +224,9 @@ _READERS = {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.CHUNK, Opcode.MESSAGE}
 _WHOLE_BLOCK = -1
 
 _Entry: TypeAlias = "tuple[int, int, int, int, Block | Message]"
-"""Log time, number of the file, offset of the block, place within it, and what is there. The first
-four are unique, so that a heap never compares the last."""
+"""Log time, number of the file, offset of the block, index within it, and the block or message.
+
+The first four are unique, so that a heap never compares the last."""
 
 
 def merged_messages(

@@ -47,7 +47,7 @@ class ReadNotices:
         return next(iter([*self._unreadable.values(), *self._damages.values()]))
 
     def add_files(self, files: Iterable[McapIndex]) -> None:
-        """Take what the indexes of the files, in order, say of damage."""
+        """Add the damage that the indexes of the files, in order, report."""
         frames = 0
         for index in files:
             frames += sum(
@@ -77,5 +77,5 @@ class ReadNotices:
         """Note images that should be there, unless a damage explains it."""
         if not self._damages:
             self._damages[self._path, -1] = (
-                f"recording {self._path}: {count} images that it says it has are missing"
+                f"recording {self._path}: {count} images that its index lists are missing"
             )

@@ -17,9 +17,9 @@ from vehicle_pf_tracker.recordings.topics import IMAGE_TYPES
 
 @dataclass(frozen=True, slots=True)
 class TopicInfo:
-    """A topic: its ROS type (empty where it is not said), what its messages are, and how many.
+    """A topic: its ROS type (empty where unknown), its encoding and its number of messages.
 
-    `is_cdr` says that the messages are serialized as ROS 2 does it, `has_header` that they begin
+    `is_cdr` is true where the messages are serialized as in ROS 2, `has_header` where they begin
     with a header.
     """
 

@@ -70,13 +70,13 @@ class VideoFile:
 
     def notices(self) -> list[str]:
         """Report fewer frames than the file states, and truth without a frame."""
-        told = []
+        notices = []
         if self.total is not None and self._read < self.total:
-            told.append(
+            notices.append(
                 f"the video {self._path} states {self.total} frames, {self._read} could be read"
             )
         lost = sum(not 1 <= number <= self._read for number in self._truth)
-        return told + ([f"frames of the truth without an image: {lost}"] if lost else [])
+        return notices + ([f"frames of the truth without an image: {lost}"] if lost else [])
 
     def _open(self) -> cv2.VideoCapture:
         with _quiet():

@@ -83,7 +83,7 @@ class Attached:
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """A place on the ground, and how a vehicle stands there.
+    """A position on the ground, and the heading of a vehicle there.
 
     Attributes
     ----------

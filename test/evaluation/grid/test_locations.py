@@ -3,7 +3,7 @@ from grid_samples import here, make_plan, results, silent, system, write_recordi
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.running import complete
-from vehicle_pf_tracker.evaluation.grid.sources import at_hand, find_recordings
+from vehicle_pf_tracker.evaluation.grid.sources import find_recordings, local_copy
 
 fsspec = pytest.importorskip("fsspec")
 
@@ -23,7 +23,7 @@ def test_urls_of_recordings_and_of_folders_are_found(far):
     assert find_recordings([far]) == both
     assert find_recordings([f"{far}/free", far]) == [both[1], both[0]]
     (file,) = find_recordings([f"{far}/free/free_0.mcap"])
-    assert at_hand(file).name == "free_0.mcap"
+    assert local_copy(file).name == "free_0.mcap"
 
 
 def test_what_comes_from_far_away_gives_the_same_results(far, tmp_path):

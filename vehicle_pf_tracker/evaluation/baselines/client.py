@@ -138,7 +138,7 @@ class Baseline:
             raise
 
     def start(self, frame: Frame, box: Box) -> BaselineAnswer:
-        """Start anew on `box` (rounded to whole px, as these trackers want it) of `frame`.
+        """Start anew on `box` (rounded to whole px, as these trackers require) of `frame`.
 
         Raises
         ------
@@ -209,8 +209,8 @@ class Baseline:
     def _death(self) -> InputError:
         status = self._process.wait()
         self._log.seek(0)
-        said = self._log.read().decode(errors="replace").strip().splitlines()
-        reason = said[-1] if said else f"status {status}"
+        lines = self._log.read().decode(errors="replace").strip().splitlines()
+        reason = lines[-1] if lines else f"status {status}"
         return InputError(
             f"the baseline {self.name}, run by {self._python}, ended: {reason}; "
             "`make baselines` builds an environment that has what it needs"
@@ -220,9 +220,9 @@ class Baseline:
 def _checked_models(name: str, models: Mapping[str, Path]) -> dict[str, Path]:
     if name not in MODELS:
         raise InputError(f"there is no baseline {name!r}; the baselines are {', '.join(MODELS)}")
-    wanted = MODELS[name]
-    if set(models) != set(wanted):
-        words = f"these model files: {', '.join(wanted)}" if wanted else "no model files"
+    required = MODELS[name]
+    if set(models) != set(required):
+        words = f"these model files: {', '.join(required)}" if required else "no model files"
         given = f"got {', '.join(sorted(models))}" if models else "got none"
         raise InputError(f"the baseline {name} needs {words}; {given}")
     for key, path in models.items():

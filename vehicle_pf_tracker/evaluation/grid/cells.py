@@ -99,16 +99,16 @@ def start_frames(truths: Sequence[Truth], count: int) -> list[Start]:
     The usual start is left out. Where the vehicle is hidden, even in part, the next frame in which
     it is not is taken; so there may be fewer.
     """
-    places: list[int] = []
+    indices: list[int] = []
     for number in range(1, count + 1):
-        place = round(number * _LAST_START * (len(truths) - 1) / count)
-        clear = (i for i in range(place, len(truths)) if truths[i].occlusion is Occlusion.NONE)
+        index = round(number * _LAST_START * (len(truths) - 1) / count)
+        clear = (i for i in range(index, len(truths)) if truths[i].occlusion is Occlusion.NONE)
         found = next(clear, None)
-        if found and found not in places:
-            places.append(found)
+        if found and found not in indices:
+            indices.append(found)
     return [
-        Start(FRAMES, f"start-{number}", truths[place].stamp_ns)
-        for number, place in enumerate(places, start=1)
+        Start(FRAMES, f"start-{number}", truths[index].stamp_ns)
+        for number, index in enumerate(indices, start=1)
     ]
 
 

@@ -31,7 +31,7 @@ _PARTIAL = ".partial"
 class CellStore:
     """Stores cells in an evaluation folder.
 
-    A cell is written beside its place and then moved there. What a killed run left half written is
+    A cell is written beside its folder and then moved there. What a killed run left half written is
     removed.
 
     Parameters
@@ -75,15 +75,15 @@ class CellStore:
                         shutil.rmtree(path.parent)
 
     def add(self, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
-        """Store the outcome of a cell, in place of that of an earlier run."""
-        place = cell.folder(self._folder)
-        partial = place.with_name(f".{place.name}.{os.getpid()}{_PARTIAL}")
+        """Store the outcome of a cell, replacing that of an earlier run."""
+        target = cell.folder(self._folder)
+        partial = target.with_name(f".{target.name}.{os.getpid()}{_PARTIAL}")
         with output_errors(partial):
             shutil.rmtree(partial, ignore_errors=True)
             self._write(partial, cell, outcome, command)
-            shutil.rmtree(place, ignore_errors=True)
-            partial.rename(place)
-            flush_folder(place.parent)
+            shutil.rmtree(target, ignore_errors=True)
+            partial.rename(target)
+            flush_folder(target.parent)
 
     def _write(self, path: Path, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
         if outcome.metrics is None:

@@ -46,7 +46,7 @@ def find_recordings(locations: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def at_hand(location: str) -> Path:
+def local_copy(location: str) -> Path:
     """Return a local path of the recording; what a URL names is copied, once per process.
 
     Raises
@@ -167,7 +167,7 @@ class Footage:
     """
 
     def __init__(self, source: Source) -> None:
-        path = at_hand(source.path)
+        path = local_copy(source.path)
         if _digest(path) != source.digest:
             raise InputError(f"the recording {source.path} has changed since it was planned")
         self._recording = Recording(path, source.topic)
@@ -234,7 +234,7 @@ def describe(
 def _describe(
     location: str, name: str, topic: str | None, max_diff: float
 ) -> tuple[Source, dict[int, Truth]]:
-    path = at_hand(location)
+    path = local_copy(location)
     recording = Recording(path, topic)
     truth = recording.truth()
     if not truth:

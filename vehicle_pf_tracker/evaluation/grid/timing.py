@@ -90,10 +90,10 @@ def _cell(source: Source, system: System, steps: Sequence[float]) -> dict[str, A
 
 def _time_on(source: Source, plan: Plan, count: int) -> dict[str, list[float]]:
     """Return the times (ms) of the steps of all systems that can run."""
-    at_hand = footage(source)
-    stamped = _frames(at_hand, plan.max_diff)
+    recording = footage(source)
+    stamped = _frames(recording, plan.max_diff)
     first = next(stamped)
-    box = at_hand.truth[0].box
+    box = recording.truth[0].box
     with ExitStack() as stack:
         running: dict[str, _Timed] = {}
         for system in plan.systems:
@@ -107,11 +107,11 @@ def _time_on(source: Source, plan: Plan, count: int) -> dict[str, list[float]]:
     return times
 
 
-def _frames(at_hand: Footage, max_diff: float) -> Iterator[tuple[int, Frame]]:
+def _frames(recording: Footage, max_diff: float) -> Iterator[tuple[int, Frame]]:
     """Give the frames that can be read, from that of the first truth on."""
     limit = max_diff_ns(max_diff)
-    first = at_hand.truth[0].stamp_ns
-    for stamp, frame in at_hand.frames():
+    first = recording.truth[0].stamp_ns
+    for stamp, frame in recording.frames():
         if frame is not None and stamp >= first - limit:
             yield stamp, frame
 

@@ -62,7 +62,7 @@ def run_cell(cell: GridCell) -> CellResult:
         return CellResult(reason=f"it ended with an internal error: {error!r}")
 
 
-def _run(cell: GridCell, at_hand: Footage) -> CellResult:
+def _run(cell: GridCell, recording: Footage) -> CellResult:
     made: list[Follower] = []
 
     def make(start: Truth) -> Follower:
@@ -71,11 +71,11 @@ def _run(cell: GridCell, at_hand: Footage) -> CellResult:
 
     restarts = None
     if cell.start.kind == RESTARTS:
-        rows, restarts = follow_restarted(at_hand, make, cell.max_diff)
+        rows, restarts = follow_restarted(recording, make, cell.max_diff)
     else:
-        rows = list(make(cell.start.on(at_hand.truth)).rows(at_hand.frames()))
-    metrics = measure(score_frames(rows, at_hand.truth, cell.max_diff))
-    return CellResult(tuple(rows), made[0].describe(at_hand.notices), metrics, "", restarts)
+        rows = list(make(cell.start.on(recording.truth)).rows(recording.frames()))
+    metrics = measure(score_frames(rows, recording.truth, cell.max_diff))
+    return CellResult(tuple(rows), made[0].describe(recording.notices), metrics, "", restarts)
 
 
 class Follower(Protocol):
@@ -112,8 +112,8 @@ class _VariantFollower:
 
     def describe(self, notices: list[str]) -> dict[str, Any]:
         source = self._cell.source
-        told = [*notices, *self._tracker.notices]
-        info = RunInfo([], source.path, source.topic, self._tracker.start_frame, told)
+        all_notices = [*notices, *self._tracker.notices]
+        info = RunInfo([], source.path, source.topic, self._tracker.start_frame, all_notices)
         return describe_run(info, self._tracker.session)
 
 

@@ -10,7 +10,7 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.estimates_recording import write_with_estimates
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, safe_name
-from vehicle_pf_tracker.evaluation.grid.sources import at_hand
+from vehicle_pf_tracker.evaluation.grid.sources import local_copy
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_text
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.recordings.reader import Recording
@@ -71,23 +71,23 @@ ESTIMATE_RECORDINGS = "estimates"
 
 
 def write_estimate_recordings(
-    evaluation: ScoredEvaluation, tell: Callable[[str], object]
+    evaluation: ScoredEvaluation, notify: Callable[[str], object]
 ) -> list[Path]:
     """Write a recording for each of the evaluation's, and return their folders.
 
-    The estimates are on ``/<system>/seed_<n>/position``, ``box`` and ``mode``. `tell` takes a
+    The estimates are on ``/<system>/seed_<n>/position``, ``box`` and ``mode``. `notify` takes a
     sentence for each recording that could not be made.
     """
     written = []
     for entry in evaluation.recordings:
         path = evaluation.folder.path / ESTIMATE_RECORDINGS / entry.name
         try:
-            recording = Recording(at_hand(entry.path), entry.topic)
+            recording = Recording(local_copy(entry.path), entry.topic)
             runs = _rows(evaluation, entry.name)
             write_with_estimates(path, recording, runs, overwrite=True)
             written.append(path)
         except InputError as error:
-            tell(f"there is no recording of {entry.name} with estimates: {error}")
+            notify(f"there is no recording of {entry.name} with estimates: {error}")
     return written
 
 

@@ -124,12 +124,12 @@ def intervals_panel(rows: Sequence[Interval], xlabel: str) -> Figure:
     with rc_context(STYLE):
         figure = Figure(figsize=(4.4, 0.55 + _ROW * len(rows)), layout="constrained")
         axes = figure.add_subplot()
-        for place, row in enumerate(rows):
-            heights = [place] * len(row.values)
+        for position, row in enumerate(rows):
+            heights = [position] * len(row.values)
             axes.plot(row.values, heights, ".", color=ink("muted"), ms=4, alpha=0.8, mew=0)
             if row.low is not None and row.high is not None:
-                axes.plot([row.low, row.high], [place, place], color=ink("accent"), lw=2.2)
-            axes.plot([row.mean], [place], "D", color=ink("accent"), ms=4.2)
+                axes.plot([row.low, row.high], [position, position], color=ink("accent"), lw=2.2)
+            axes.plot([row.mean], [position], "D", color=ink("accent"), ms=4.2)
         axes.set_yticks(range(len(rows)), [row.label for row in rows])
         axes.set(ylim=(len(rows) - 0.4, -0.6), xlabel=xlabel)
         axes.tick_params(axis="y", length=0, labelcolor=ink("ink"))

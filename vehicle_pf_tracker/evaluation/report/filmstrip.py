@@ -15,7 +15,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.grid.sources import at_hand
+from vehicle_pf_tracker.evaluation.grid.sources import local_copy
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.report.overlay import Crop, Mark, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
@@ -123,7 +123,7 @@ def numbered_frames(entry: Source) -> Iterator[tuple[int, Frame]]:
     InputError
         If the recording is gone, or its images are not those of the evaluation.
     """
-    recording = Recording(at_hand(entry.path), entry.topic)
+    recording = Recording(local_copy(entry.path), entry.topic)
     for number, stamped in enumerate(recording.frames(), start=1):
         if stamped.frame is None:
             continue

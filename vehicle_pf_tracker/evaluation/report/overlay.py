@@ -120,8 +120,8 @@ def _draw_mark(image: Frame, corners: tuple[int, int, int, int], slot: int | Non
     y = min(max(top + _TAG * (slot % 3), 0), image.shape[0] - _TAG)  # seldom over each other
     cv2.rectangle(image, (x, y), (x + _TAG, y + _TAG), colour_of(slot), cv2.FILLED)
     text = _WHITE if slot < _DARK_STYLES else _BLACK
-    place = (x + 3, y + _TAG - 3)
-    cv2.putText(image, str(slot + 1), place, _FONT, 0.42, text, 1, cv2.LINE_AA)
+    corner = (x + 3, y + _TAG - 3)
+    cv2.putText(image, str(slot + 1), corner, _FONT, 0.42, text, 1, cv2.LINE_AA)
 
 
 def _draw_corners(image: Frame, corners: tuple[int, int, int, int]) -> None:

@@ -142,8 +142,8 @@ def _found(
 ) -> dict[str, list[Document]]:
     found = {}
     for entry in folder.recordings:
-        place = folder.path / "robustness" / kind / entry.name / safe_name(system.label)
-        documents = list(_read(place, f"seed-*/{pattern}"))
+        root = folder.path / "robustness" / kind / entry.name / safe_name(system.label)
+        documents = list(_read(root, f"seed-*/{pattern}"))
         if documents:
             found[entry.name] = documents
     return found
@@ -155,15 +155,15 @@ def _usual(
     seed = folder.seeds_of(system)[0]
     found = {}
     for name in recordings:
-        place = folder.path / "cells" / name / safe_name(system.label) / f"seed-{seed}"
-        documents = list(_read(place, METRICS))
+        root = folder.path / "cells" / name / safe_name(system.label) / f"seed-{seed}"
+        documents = list(_read(root, METRICS))
         if documents:
             found[name] = documents
     return found
 
 
-def _read(place: Path, pattern: str) -> Iterator[Document]:
-    for path in sorted(place.glob(pattern)):
+def _read(root: Path, pattern: str) -> Iterator[Document]:
+    for path in sorted(root.glob(pattern)):
         with suppress(InputError):  # a cell that is being written
             if not damage(path.parent):
                 yield read_document(path)

@@ -26,7 +26,7 @@ _DEFAULT_RATE = 25.0
 
 
 def write_videos(
-    evaluation: ScoredEvaluation, slots: Mapping[str, int], tell: Callable[[str], object]
+    evaluation: ScoredEvaluation, slots: Mapping[str, int], notify: Callable[[str], object]
 ) -> list[Path]:
     """Write a video of each recording, and return the files.
 
@@ -36,7 +36,7 @@ def write_videos(
         The evaluation; of each system the run with the median error is shown.
     slots : mapping of str to int
         Systems to show, with the numbers of their styles.
-    tell : callable
+    notify : callable
         Called with a sentence for each video that could not be made.
     """
     written = []
@@ -48,7 +48,7 @@ def write_videos(
             _write(path, entry, evaluation.truths[entry.name], runs, slots)
             written.append(path)
         except InputError as error:
-            tell(f"there is no video of {entry.name}: {error}")
+            notify(f"there is no video of {entry.name}: {error}")
     return written
 
 

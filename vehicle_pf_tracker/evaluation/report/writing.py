@@ -212,7 +212,7 @@ class ReportOptions:
 def write_report(
     folder: Path,
     options: ReportOptions | None = None,
-    tell: Callable[[str], object] = lambda _: None,
+    notify: Callable[[str], object] = lambda _: None,
 ) -> list[Path]:
     """Write the report of the evaluation in `folder` there; returns what was written, page first.
 
@@ -224,7 +224,7 @@ def write_report(
         Folder of an evaluation.
     options : ReportOptions or None
         Parts to write; None writes the page and the summaries.
-    tell : callable
+    notify : callable
         Called with a sentence for each file that could not be made.
 
     Raises
@@ -241,9 +241,9 @@ def write_report(
     if options.trajectories:
         written += write_trajectories(evaluation)
     if options.recordings:
-        written += write_estimate_recordings(evaluation, tell)
+        written += write_estimate_recordings(evaluation, notify)
     if options.video:
-        written += write_videos(evaluation, styled(aggregates), tell)
+        written += write_videos(evaluation, styled(aggregates), notify)
     return written
 
 

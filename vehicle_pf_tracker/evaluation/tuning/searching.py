@@ -35,7 +35,7 @@ class Objective:
     """A metric of `evaluation.metrics` to maximise or minimise."""
 
     metric: str
-    told: str
+    description: str
     maximise: bool = True
 
     def better(self, one: float, other: float) -> bool:
@@ -164,7 +164,9 @@ def best_of(trials: Sequence[Trial], objective: Objective) -> Trial:
         if best is None or best.score is None or objective.better(trial.score, best.score):
             best = trial
     if best is None:
-        raise InputError("no trial could be scored on all recordings; `evaluate` says why")
+        raise InputError(
+            "no trial could be scored on all recordings; run `evaluate` on them to see why"
+        )
     return best
 
 
