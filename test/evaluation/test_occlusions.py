@@ -91,6 +91,14 @@ def test_exit_and_return_by_hand():
     assert (score.error_at_exit_px, score.frames_to_recover) == (40, 4)
 
 
+def test_an_error_at_the_threshold_is_off_the_vehicle():
+    # Half the diagonal is 20 px.
+    (score,) = judged((5, 0, TOTAL), (30, 20, NONE))
+    assert (score.recovered, score.frames_to_recover) == (False, None)
+    (score,) = judged((5, 0, TOTAL), (30, 19.9, NONE))
+    assert (score.recovered, score.frames_to_recover) == (True, 1)
+
+
 def test_at_once_is_one_frame():
     (score,) = judged((5, 0, TOTAL), (30, 2, NONE))
     assert (score.error_at_exit_px, score.frames_to_recover) == (2, 1)

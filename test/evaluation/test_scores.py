@@ -54,6 +54,11 @@ def test_the_last_estimate_stands_where_there_is_none():
     assert errors(rows) == [0, 1, 2, 3, 0]
 
 
+def test_an_estimate_with_half_a_position_is_none():
+    rows = [row(1, 101.0), row(2, 102.0, math.nan), row(3, 103.0, math.inf)]
+    assert errors(rows) == [0, 1, 2]
+
+
 def test_a_lost_estimate_is_scored_as_it_stands():
     assert errors([row(1, 101.0), row(2, 140.0, mode="LOST")]) == [0, 38]
 

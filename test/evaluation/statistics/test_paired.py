@@ -4,6 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.evaluation.statistics.paired import (
+    PairedTest,
     RunKey,
     compare_pairs,
     holm,
@@ -99,6 +100,11 @@ def test_pairs_are_adjusted_for_their_number():
     assert [(t.first, t.second) for t in tests] == [("a", "b"), ("a", "c"), ("b", "c")]
     assert [t.adjusted_p for t in tests] == holm([t.p_value for t in tests])
     assert smallest_adjusted_p(10, 3) == 3 * 2 / 1024
+
+
+def test_the_level_itself_is_not_significant():
+    tests = [PairedTest("a", "b", None, 0.01, adjusted) for adjusted in (0.049, 0.05, None)]
+    assert [test.significant for test in tests] == [True, False, False]
 
 
 def test_without_a_difference_few_tests_are_significant():

@@ -2,8 +2,9 @@
 
 Every recording ranks the systems; Friedman's test decides whether their mean ranks differ at all,
 and Nemenyi's critical difference which of them do. It corrects for the number of pairs with far
-more power than pairwise tests have on few recordings. Source: Demsar 2006, "Statistical comparisons of
-classifiers over multiple data sets", section 3.2.
+more power than pairwise tests have on few recordings.
+
+Source: Demsar 2006, "Statistical comparisons of classifiers over multiple data sets", section 3.2.
 """
 
 from __future__ import annotations
