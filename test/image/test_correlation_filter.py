@@ -1,0 +1,141 @@
+"""The correlation filter: its peak, its limits in space, and its memory."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.image.correlation_filter import CorrelationFilter, cells_of, half_spectrum
+
+SIDE = 32
+TARGET = np.array([8.0, 6.0])
+
+
+def features(seed=0, side=SIDE):
+    return np.random.default_rng(seed).normal(size=(5, side, side)).astype(np.float32)
+
+
+def trained(seed=0):
+    made = CorrelationFilter(SIDE, TARGET, 0.1)
+    made.train(made.spectrum(features(seed)), 0.0)
+    return made
+
+
+def peak(response):
+    y, x = np.unravel_index(int(response.argmax()), response.shape)
+    return x - response.shape[1] // 2, y - response.shape[0] // 2
+
+
+def test_the_peak_on_the_training_patch_is_in_its_middle():
+    made = trained()
+    response = made.respond(made.spectrum(features()))
+    assert response.shape == (2 * SIDE, 2 * SIDE)
+    assert peak(response) == (0, 0)
+    apart = np.abs(np.arange(2 * SIDE) - SIDE) > 4
+    assert np.abs(response[apart][:, apart]).max() < 0.4 * response.max()
+
+
+def test_the_filter_is_nearly_the_least_squares_solution():
+    """Of sum_k x_k * g_k = y with 5 x 48 unknowns, solved here directly."""
+    made = trained()
+    cells = cells_of(made.spectrum(features()), SIDE)
+    columns = [
+        np.roll(channel, (SIDE // 2 - row, SIDE // 2 - column), (0, 1)).ravel()
+        for channel in cells for row in range(13, 19) for column in range(12, 20)
+    ]  # fmt: skip
+    offsets = np.arange(SIDE) - SIDE // 2
+    sigma = np.sqrt(48) / 16
+    label = np.exp(-0.5 * (offsets[:, np.newaxis] ** 2 + offsets**2) / sigma**2)
+    matrix = np.column_stack(columns).astype(float)
+    solution = np.linalg.lstsq(matrix, label.ravel(), rcond=None)[0]
+    least = np.linalg.norm(matrix @ solution - label.ravel())
+    weights = made.weights.cells[:, 13:19, 12:20].ravel()
+    reached = np.linalg.norm(matrix @ weights - label.ravel())
+    response = made.respond(made.spectrum(features()))[::2, ::2]
+    # The upsampled response leaves out the highest frequency, which noise has.
+    assert matrix @ weights == pytest.approx(response.ravel(), abs=0.02)
+    assert reached < 1.02 * least < np.linalg.norm(label)
+
+
+@pytest.mark.parametrize(("x", "y"), [(1, 0), (-3, 2), (0.5, 0), (0, -0.5), (2.5, -1.5)])
+def test_the_peak_follows_a_shift_to_half_a_cell(x, y):
+    made = trained()
+    response = made.respond(made.shifted(made.spectrum(features()), x, y))
+    assert peak(response) == (2 * x, 2 * y)
+
+
+def test_shifting_a_spectrum_moves_its_cells():
+    made = trained()
+    spectrum = made.spectrum(features())
+    moved = cells_of(made.shifted(spectrum, 3, -2), SIDE)
+    assert moved == pytest.approx(np.roll(cells_of(spectrum, SIDE), (-2, 3), (1, 2)), abs=1e-5)
+
+
+def test_weights_are_zero_outside_the_target():
+    """Eight by six cells around the middle, which lies between cells 15 and 16."""
+    weights = trained().weights.cells
+    outside = np.ones((SIDE, SIDE), bool)
+    outside[13:19, 12:20] = False
+    assert not weights[:, outside].any()
+    assert (np.abs(weights).sum(axis=0) > 0)[~outside].all()
+
+
+def test_kept_spectrum_and_cells_are_the_same_filter():
+    weights = trained().weights
+    assert weights.spectrum == pytest.approx(half_spectrum(weights.cells), abs=1e-6)
+
+
+def test_a_single_channel_without_limit_is_ridge_regression():
+    """Without prior and limit, ADMM's fixed point inverts the patch wherever it has power."""
+    made = CorrelationFilter(SIDE, np.array([2.0 * SIDE, 2.0 * SIDE]), 1e-4)
+    spectrum = made.spectrum(features()[:1])
+    made.train(spectrum, 0.0)
+    offsets = np.arange(SIDE) - SIDE // 2
+    sigma = 2 * SIDE / 16
+    label = np.exp(-0.5 * (offsets[:, np.newaxis] ** 2 + offsets**2) / sigma**2)
+    response = made.respond(spectrum)[::2, ::2]
+    assert response == pytest.approx(label, abs=0.02)
+
+
+def test_great_stiffness_keeps_the_filter_and_none_learns_the_new_patch():
+    strangers = {}
+    for stiffness in (1e9, 1.0, 0.0):
+        made = trained()
+        before = made.weights.cells.copy()
+        made.train(made.spectrum(features(9)), stiffness)
+        strangers[stiffness] = np.linalg.norm(made.weights.cells - before) / np.linalg.norm(before)
+    assert strangers[1e9] < 1e-3
+    assert strangers[1e9] < strangers[1.0] < strangers[0.0]
+
+
+def test_learning_a_new_patch_raises_the_response_to_it():
+    made = trained()
+    new = made.spectrum(features(9))
+    at_middle = []
+    for _ in range(6):
+        at_middle.append(float(made.respond(new)[SIDE, SIDE]))
+        made.train(new, 0.1)
+    first = float(trained(9).respond(new)[SIDE, SIDE])
+    assert at_middle[0] < 0.2 * first
+    assert at_middle[-1] > 0.8 * first
+
+
+def test_training_is_deterministic():
+    assert np.array_equal(trained().weights.cells, trained().weights.cells)
+
+
+@pytest.mark.parametrize(("x", "y"), [(0, 0), (10, -6), (-14, 15)])
+def test_a_wide_patch_shows_the_target_wherever_it_is(x, y):
+    made = trained()
+    wide = 0.3 * features(4, 64)
+    row, column = 16 + y, 16 + x
+    wide[:, row : row + SIDE, column : column + SIDE] = cells_of(made.spectrum(features()), SIDE)
+    response = made.respond_wide(wide)
+    assert response.shape == (128, 128)
+    assert peak(response) == (2 * x, 2 * y)
+
+
+def test_empty_cells_give_a_finite_filter():
+    made = CorrelationFilter(SIDE, TARGET, 0.1)
+    nothing = made.spectrum(np.zeros((5, SIDE, SIDE), np.float32))
+    for stiffness in (0.0, 5.0):
+        made.train(nothing, stiffness)
+        assert np.array_equal(made.respond(nothing), np.zeros((64, 64)))
