@@ -215,3 +215,41 @@ def test_with_the_relative_rule_the_reference_follows_good_frames_only():
     for time in range(15, 30):
         tracker.step(street.frame(time))
         assert np.array_equal(tracker._reference.histogram, followed)
+
+
+def in_regime(regime, **values):
+    """A tracker of a vehicle that moves at 3 px a frame, before a step in the given regime."""
+    tracker = make(**PRINTED_RULE, num_particles=4000, **values)
+    follow(tracker, Street(speed=3.0), range(12))
+    tracker._pi = tracker._pi_up = 1.0 if regime == "regular" else 0.0
+    return tracker
+
+
+@pytest.mark.parametrize("similarities", [(0.5, 1.0), (1.0, 0.5)])
+def test_one_low_similarity_is_enough_for_the_occlusion_regime(similarities):
+    tracker = in_regime("regular")
+    tracker._pi, tracker._pi_up = similarities
+    assert tracker.step(Street(speed=3.0).frame(12)).regime == "occlusion"
+
+
+@pytest.mark.parametrize("sigma_n", [2.0, 10.0])
+def test_the_drift_spreads_across_the_motion_by_its_own_sigma(sigma_n):
+    tracker = in_regime("occlusion", **{"motion.sigma_n": sigma_n})
+    before = tracker._cloud.positions[:, 1].var()
+    after = tracker.step(Street(speed=3.0).frame(12)).particles[:, 1].var()
+    assert after - before == pytest.approx(sigma_n**2, rel=0.15)
+
+
+def test_the_drift_leaves_out_the_newest_displacements():
+    tracker = in_regime("occlusion")
+    tracker._velocity = MeanVelocity(4, delay=2)
+    for x in (10.0, 10.0, 10.0, 10.0, -20.0, -20.0):
+        tracker._velocity.add((0.0, 0.0), (x, 0.0), 1.0)
+    before = tracker._cloud.positions[:, 0].mean()
+    after = tracker.step(Street(speed=3.0).frame(12)).particles[:, 0].mean()
+    assert after - before == pytest.approx(10.0, abs=0.5)
+
+
+@pytest.mark.parametrize(("rule", "delay"), [("relative", 12), ("fixed", 0)])
+def test_only_the_relative_rule_notices_late_and_delays_the_drift(rule, delay):
+    assert from_mapping(ApfParameters, {"occlusion.rule": rule}).drift_delay == delay

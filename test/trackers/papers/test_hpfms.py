@@ -6,6 +6,7 @@ from street import Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.papers.hpfms import HpfmsParameters, HpfmsTracker
+from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 
 
 def make(**values):
@@ -73,3 +74,12 @@ def test_starting_again_knows_nothing_of_the_speed():
     follow(tracker, street, range(12))
     tracker.start(street.frame(0), street.box(0))
     assert tracker._spread() == pytest.approx(16.0)
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.0, 8.0), (0.5, 20.0), (1.0, 40.0)])
+def test_the_spread_is_a_share_of_the_speed_or_sigma(share, expected):
+    tracker = make(**{"sigma": 8.0, "transition.speed_share": share, "transition.widest": 1.0})
+    follow(tracker, Street(), range(2))
+    tracker._velocity = MeanVelocity(1)
+    tracker._velocity.add((0.0, 0.0), (24.0, 32.0), 1.0)
+    assert tracker._spread() == pytest.approx(expected)

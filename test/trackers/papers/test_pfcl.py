@@ -74,3 +74,13 @@ def test_the_window_relearns_the_lines_of_the_first_frame():
     assert learned.any()
     assert tracker._line_reference.any()
     assert len(tracker._line_reference) == 4
+
+
+def test_weights_are_the_product_of_both_likelihoods():
+    tracker = make(num_particles=50)
+    estimate = follow(tracker, Street(), range(2))[-1]
+    frame = Street().frame(1)
+    colour = tracker._similarity(frame, estimate.particles)
+    lines = tracker._line_similarity(frame, estimate.particles)
+    expected = np.exp(-(1 - colour) / (2 * 0.158**2) - (1 - lines) / (2 * 0.35**2))
+    assert estimate.weights == pytest.approx(expected / expected.sum())
