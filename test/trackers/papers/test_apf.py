@@ -1,4 +1,4 @@
-"""P1, Algorithms 1 and 2, and each of its readings."""
+"""P1, Algorithms 1 and 2, and each of its interpretations."""
 
 import itertools
 
@@ -80,14 +80,14 @@ def moved_while_hidden(**values):
     return estimates[29].particles[:, 0].mean() - estimates[22].particles[:, 0].mean()
 
 
-def test_reading_11_drift_is_the_velocity_or_the_printed_sigma():
+def test_interpretation_11_drift_is_the_velocity_or_the_printed_sigma():
     # Seven steps: at 3 px a frame, or at sqrt(pi / 2) * 6 px a frame.
     assert moved_while_hidden() == pytest.approx(7 * 3.0, rel=0.35)
     fixed = {"motion.drift_from_velocity": False, "motion.sigma_r": 6.0}
     assert moved_while_hidden(**fixed) == pytest.approx(7 * 7.52, rel=0.15)
 
 
-def test_reading_6_the_reference_is_frozen_while_occluded():
+def test_interpretation_6_the_reference_is_frozen_while_occluded():
     street = Street(speed=0.0, hidden=(10, 30))
     kept = make(**PRINTED_RULE)
     learned = make(**PRINTED_RULE, **{"reference.frozen_while_occluded": False})
@@ -101,7 +101,7 @@ def test_reading_6_the_reference_is_frozen_while_occluded():
     assert not np.allclose(learned._reference.histogram, before[1], atol=0.05)
 
 
-def test_reading_7_the_blended_histogram_notices_an_occlusion_late():
+def test_interpretation_7_the_blended_histogram_notices_an_occlusion_late():
     street = Street(speed=0.0, hidden=(10, 30))
     raw = follow(make(**PRINTED_RULE), street, range(14))
     values = {"occlusion.raw_histogram": False}
@@ -111,7 +111,7 @@ def test_reading_7_the_blended_histogram_notices_an_occlusion_late():
     assert min(e.similarities["pi_up"] for e in blended[1:]) > 0.7
 
 
-def test_reading_5_the_origin_counts_as_the_first_position():
+def test_interpretation_5_the_origin_counts_as_the_first_position():
     street = Street(speed=0.0)
     printed = make(**{"velocity.from_origin": True, "velocity.window": 0})
     x, y = follow(printed, street, range(2))[-1].velocity
@@ -120,7 +120,7 @@ def test_reading_5_the_origin_counts_as_the_first_position():
     assert follow(make(), street, range(2))[-1].velocity == pytest.approx((0, 0), abs=6)
 
 
-def test_as_printed_overrides_every_reading():
+def test_as_printed_overrides_every_interpretation():
     settings = from_mapping(
         ApfParameters, {"as_printed": True, "motion.sigma_w": 7.0, "motion.sigma_n": 2.0}
     ).effective()

@@ -18,7 +18,7 @@ def test_average_similarity_of_all_particles_as_printed():
     assert average_similarities(distances, 1.0) == pytest.approx([0.7, 0.5])
 
 
-def test_reading_19_average_similarity_of_the_best():
+def test_interpretation_19_average_similarity_of_the_best():
     distances = np.linspace(0.0, 0.95, 20)[np.newaxis, ::-1]
     # A tenth of 20 particles: 1 - 0.00 and 1 - 0.05.
     assert average_similarities(distances, 0.1) == pytest.approx([0.975])
@@ -64,3 +64,7 @@ def test_printed_resampling_keeps_what_survives_everywhere_and_repeats_it():
 def test_printed_resampling_without_a_common_survivor():
     sets = [np.array([0, 0]), np.array([1, 1])]
     assert common_survivors(sets, 2, np.array([7, 8])).tolist() == [7, 8]
+
+
+def test_the_best_share_is_rounded_up_to_a_particle():
+    assert average_similarities(np.array([[0.1, 0.3, 0.9]]), 0.5) == pytest.approx([0.8])

@@ -1,4 +1,4 @@
-"""P2: the fused and the single-feature filters, and each of their readings."""
+"""P2: the fused and the single-feature filters, and each of their interpretations."""
 
 import itertools
 
@@ -98,7 +98,7 @@ def test_claims_no_vehicle_while_only_one_feature_is_fooled():
     assert all(e.mode is Mode.OCCLUDED for e in estimates[21:])
 
 
-def test_reading_12_velocity_over_a_window_is_steadier_than_the_last_displacement():
+def test_interpretation_12_velocity_over_a_window_is_steadier_than_the_last_displacement():
     street = Street(speed=2.0)
     steps = {
         window: [e.velocity[0] for e in follow(make(velocity_window=window), street, range(40))]
@@ -107,7 +107,7 @@ def test_reading_12_velocity_over_a_window_is_steadier_than_the_last_displacemen
     assert np.std(steps[5][10:]) < 0.6 * np.std(steps[1][10:])
 
 
-def test_reading_15_the_reference_is_the_first_histogram_and_the_last_one():
+def test_interpretation_15_the_reference_is_the_first_histogram_and_the_last_one():
     street = Street()
     tracker = make(reference_weight=1.0)
     follow(tracker, street, range(5))
@@ -121,7 +121,7 @@ def test_reading_15_the_reference_is_the_first_histogram_and_the_last_one():
         assert reference.histogram == pytest.approx(0.25 * first + 0.75 * found)
 
 
-def test_reading_16_resamples_below_a_share_of_the_particles():
+def test_interpretation_16_resamples_below_a_share_of_the_particles():
     street = Street()
     for share in (0.0, 0.5, 1.0):
         estimates = follow(make(resample_below=share), street, range(12))
@@ -131,7 +131,7 @@ def test_reading_16_resamples_below_a_share_of_the_particles():
             assert now.resampled_particles == (200 if below else 0)
 
 
-def test_reading_17_the_best_particle_or_the_mean():
+def test_interpretation_17_the_best_particle_or_the_mean():
     best = follow(make(estimate="best"), Street(), range(8))[-1]
     distance = np.hypot(*(best.particles - best.position).T)
     # With one feature the estimate is a particle itself; with three it lies among their best.
@@ -142,7 +142,7 @@ def test_reading_17_the_best_particle_or_the_mean():
     assert np.hypot(*(estimate.particles - estimate.position).T).min() < 1e-9
 
 
-def test_reading_18_printed_resampling_repeats_the_common_survivors():
+def test_interpretation_18_printed_resampling_repeats_the_common_survivors():
     street = Street()
     joint, printed = make(resample_below=1.0), make(resample_below=1.0, joint_resampling=False)
     estimates = [follow(tracker, street, range(12))[-1] for tracker in (joint, printed)]
@@ -150,7 +150,7 @@ def test_reading_18_printed_resampling_repeats_the_common_survivors():
     assert not np.array_equal(estimates[0].particles, estimates[1].particles)
 
 
-def test_reading_19_the_mean_over_all_particles_is_lower():
+def test_interpretation_19_the_mean_over_all_particles_is_lower():
     street = Street()
     best = follow(make(), street, range(4))[-1].similarities
     every = follow(make(**{"confidence.best_share": 1.0}), street, range(4))[-1].similarities
@@ -182,7 +182,7 @@ def test_a_feature_changed_while_hidden_is_rebuilt_from_the_first_frame():
 @pytest.mark.parametrize(
     "cls", [MfpfParameters, SfpfColorParameters, SfpfEdgeParameters, SfpfTextureParameters]
 )
-def test_as_printed_overrides_every_reading(cls):
+def test_as_printed_overrides_every_interpretation(cls):
     assert cls().effective() == cls()
     settings = cls(as_printed=True, reference_weight=0.6).effective()
     assert settings.likelihood == LikelihoodParameters(sigma_v=1.5)
@@ -212,3 +212,35 @@ def test_a_single_feature_filter_has_the_whole_weight_or_predicts(name):
         assert estimate.similarities[f"wf_{name}"] == float(used)
         assert set(estimate.similarities) == {f"{c}_{name}" for c in ("as", "lc", "wf", "used")}
     assert {e.regime for e in estimates[15:20]} == {"prediction"}
+
+
+def test_weights_are_the_earlier_ones_times_the_likelihoods_of_the_features_in_use():
+    tracker = make(num_particles=50, resample_below=0.0)
+    street = Street()
+    estimates = follow(tracker, street, range(3))
+    references = list(tracker._references)
+    tracker.step(street.frame(3))
+    particles, before = tracker._cloud.positions, estimates[-1].weights
+    expected = np.log(before)
+    for feature, reference in zip(tracker._features.values(), references, strict=True):
+        rho = feature.similarity(street.frame(3), particles, tracker.window, reference)
+        expected = expected - (1 - rho) / (2 * 0.1**2)
+    weights = np.exp(expected - expected.max())
+    assert tracker._cloud.weights == pytest.approx(weights / weights.sum(), rel=1e-3, abs=1e-9)
+
+
+def test_the_evidence_is_the_median_of_the_features():
+    tracker, street = make(), Street()
+    follow(tracker, street, range(3))
+    tracker._similarities = lambda histograms: np.array([0.9, 0.2, 0.5])
+    assert tracker._advance(street.frame(3), 1.0).evidence == 0.5
+
+
+def test_the_search_grows_by_time_not_by_frames():
+    values = {"confidence.threshold": 1.0, "dispersion.growth": 10.0}
+    street, tracker = Street(speed=0.0, hidden=(5, 99)), make(**values)
+    follow(tracker, street, range(6))
+    radii = [tracker._search_radius(1.0)]
+    tracker.step(street.frame(6), 3.0)
+    radii.append(tracker._search_radius(1.0))
+    assert radii[1] - radii[0] == pytest.approx(min(30.0, 60.0 - radii[0]))

@@ -1,4 +1,4 @@
-"""P3, Tables I and II, and each of their readings."""
+"""P3, Tables I and II, and each of their interpretations."""
 
 import numpy as np
 import pytest
@@ -66,7 +66,7 @@ def test_a_cap_of_zero_never_resamples(make):
 
 
 @both
-def test_reading_21_the_printed_criterion_is_never_reached(make):
+def test_interpretation_21_the_printed_criterion_is_never_reached(make):
     estimates = follow(make(as_printed=True), Street(), range(6))[1:]
     assert {e.resampling_passes for e in estimates} == {20}
 
@@ -107,6 +107,20 @@ def test_only_particles_below_the_mean_weight_are_replaced():
     assert not np.any(after.positions[[1, 3]] == before.positions[[1, 3]])
 
 
+def test_the_limit_of_low_weights_is_a_multiple_of_the_mean_weight():
+    # Weights exp(-(1 - rho) / 0.08) of 0.88, 0.69 and about 0: 1.7, 1.3 and 0 of the mean weight.
+    coefficients = [0.99, 0.97, 0.2, 0.97, 0.99, 0.2]
+    assert [one_pass(coefficients, low_weight=limit)[2] for limit in (1.0, 1.5)] == [2, 4]
+
+
+def test_copies_are_made_of_kept_particles_only():
+    before, after, replaced, _ = one_pass(
+        [0.99, 0.97, 0.97, 0.97, 0.97, 0.97], low_weight=1.2, jitter=0.0
+    )
+    assert replaced == 5
+    assert np.array_equal(after.positions, np.tile(before.positions[0], (6, 1)))
+
+
 def test_particles_of_equal_weight_are_all_good():
     before, after, replaced, _ = one_pass([0.9] * 5)
     assert replaced == 0
@@ -121,12 +135,12 @@ def test_under_occlusion_only_the_best_particle_stays_and_the_rest_gathers_aroun
     assert np.std(after.positions - before.positions[9]) == pytest.approx(3.5, rel=0.3)
 
 
-def test_reading_22_the_test_by_similarity_ignores_peaked_weights():
+def test_interpretation_22_the_test_by_similarity_ignores_peaked_weights():
     _, _, _, regime = one_pass([0.2] * 9 + [0.99] + [0.2] * 30, **{"occlusion.test": "similarity"})
     assert regime == "regular"
 
 
-def test_reading_22_the_test_by_similarity_sees_that_nothing_is_like_the_vehicle():
+def test_interpretation_22_the_test_by_similarity_sees_that_nothing_is_like_the_vehicle():
     street, tracker = Street(), adaptive(**{"occlusion.test": "similarity"})
     follow(tracker, street, range(10))
     unlike = tracker._weigh(np.full((5, 2), 50.0), np.array([0.1, 0.2, 0.3, 0.2, 0.1]))
@@ -136,7 +150,7 @@ def test_reading_22_the_test_by_similarity_sees_that_nothing_is_like_the_vehicle
 
 
 @pytest.mark.parametrize("test", ["n_eff", "similarity"])
-def test_reading_22_a_hidden_vehicle_leaves_weights_flat_so_that_nothing_is_resampled(test):
+def test_interpretation_22_a_hidden_vehicle_leaves_weights_flat_so_that_nothing_is_resampled(test):
     street = Street(speed=0.0, hidden=(15, 30))
     estimates = follow(adaptive(**{"occlusion.test": test}), street, range(30))
     assert np.mean([e.resampling_passes for e in estimates[2:15]]) >= 1
@@ -151,7 +165,7 @@ def test_every_scheme_follows(make, scheme):
     assert error(estimates[-1], street, 19) < 8
 
 
-def test_reading_23_copies_are_jittered_by_a_share_of_sigma():
+def test_interpretation_23_copies_are_jittered_by_a_share_of_sigma():
     tracker, street = conventional(sigma=10.0, jitter=0.3, num_particles=4000), Street()
     tracker.start(street.frame(0), street.box(0))
     positions = np.tile([100.0, 60.0], (4000, 1))
@@ -172,7 +186,7 @@ def test_the_plain_mean_as_printed():
     assert weighted.position == pytest.approx(tuple(weighted.weights @ weighted.particles))
 
 
-def test_as_printed_overrides_every_reading():
+def test_as_printed_overrides_every_interpretation():
     settings = ConventionalParameters(as_printed=True).effective()
     assert (settings.criterion, settings.weighted_mean) == (1.0, False)
     values = {"as_printed": True, "occlusion.test": "similarity", "sigma": 9.0}
