@@ -23,22 +23,22 @@ from vehicle_pf_tracker.evaluation.scores import score_frames
 
 INTRODUCTION = """# The variants on real sequences
 
-Nine sequences of traffic video with truth, defaults throughout, the first true box, no help; made
-by
+Nine sequences of traffic video with truth: default parameters, started on the first true box,
+without re-starts; made by
 
 ```sh
 {commands}
 ```
 
-`csrt`, `kcf` and `mil` are OpenCV's trackers, which draw nothing and run once; where one gives a
-frame up, its last box counts. Each cell is the mean over the seeds, with the least and the most
-where they differ. The values of `apf`'s occlusion rule and of `mfpf` were chosen with these
-sequences in sight, and six of them served to develop `fusion` (all but car_e, red_car and
-cdnet_pole_partial), so those numbers are no test on unseen video.
+`csrt`, `kcf` and `mil` are OpenCV's deterministic trackers, run once; where one gives a frame up,
+its last box is scored. Each cell is the mean over the seeds, with the least and the largest value
+where they differ. The values of `apf`'s occlusion rule and of `mfpf` were tuned on these
+sequences, and six of them served to develop `fusion` (all but car_e, red_car and
+cdnet_pole_partial), so those numbers are not held-out results.
 """
 ON_TARGET = "Share of visible frames with an error below half the true box's diagonal:"
 RMSE = "RMSE of the centre in visible frames, px:"
-RECOVERED = "Total occlusions recovered from, of those that can be judged, over all seeds:"
+RECOVERED = "Total occlusions recovered from, of those judged, over all seeds:"
 
 Table = Mapping[str, Mapping[str, Sequence[Metrics]]]
 """Metrics of each seed, by recording and system."""

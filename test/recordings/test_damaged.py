@@ -180,9 +180,9 @@ def test_the_truth_of_a_cut_recording_is_whole_up_to_the_cut(record, tmp_path, s
         assert found.occlusion is truth_of(index).occlusion
 
 
-def image_bag(bare_mcap, broken):
+def image_bag(bare_mcap, broken, **options):
     """Ten images of which those in `broken` hold too few bytes."""
-    bag = bare_mcap()
+    bag = bare_mcap(**options)
     camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
     for index in range(10):
         message = messages.image(stamp_of(index), frame_of(index))
@@ -209,6 +209,51 @@ def test_images_of_which_none_can_be_read_are_an_input_error(bare_mcap):
     recording = Recording(image_bag(bare_mcap, set(range(10))))
     with pytest.raises(InputError, match=r"no image of /camera/image_raw .* can be read"):
         list(recording.frames())
+
+
+def test_nine_unreadable_images_at_the_beginning_are_not_the_end(bare_mcap):
+    images = list(Recording(image_bag(bare_mcap, set(range(9)))).frames())
+    assert [image.frame is None for image in images] == [True] * 9 + [False]
+
+
+def summary_records(data):
+    """Offset, opcode and content length of each record of the summary section."""
+    (offset,) = struct.unpack_from("<Q", data, len(data) - 28)
+    while offset < len(data) - 8:
+        opcode, length = struct.unpack_from("<BQ", data, offset)
+        yield offset, opcode, length
+        offset += 9 + length
+
+
+def test_a_summary_whose_checksum_is_wrong_is_not_believed(bare_mcap):
+    path = image_bag(bare_mcap, ())
+    data = bytearray(path.read_bytes())
+    start = next(summary_records(data))[0]
+    name = data.index(topics.IMAGE_TOPIC.encode(), start)
+    data[name + 1 : name + 7] = b"CAMERA"
+    path.write_bytes(data)
+    recording = Recording(path)
+    assert (recording.image_topic, recording.frame_count) == (topics.IMAGE_TOPIC, 10)
+
+
+def test_counts_that_do_not_add_up_are_counted_again(bare_mcap):
+    path = image_bag(bare_mcap, (), enable_crcs=False)
+    data = bytearray(path.read_bytes())
+    (end,) = [o + 9 + length for o, opcode, length in summary_records(data) if opcode == 0x0B]
+    assert data[end - 8] == 10  # the count of the last, and only, channel
+    data[end - 8] = 3
+    path.write_bytes(data)
+    assert Recording(path).frame_count == 10
+
+
+def test_a_chunk_that_the_summary_lacks_is_found(bare_mcap):
+    path = image_bag(bare_mcap, (), enable_crcs=False, chunk_size=5000)
+    data = bytearray(path.read_bytes())
+    indexes = [offset for offset, opcode, _ in summary_records(data) if opcode == 0x08]
+    assert len(indexes) > 2
+    data[indexes[1]] = 0x7F  # a record of an unknown kind, which MCAP says to skip
+    path.write_bytes(data)
+    assert stamps(Recording(path)) == [stamp_of(index) for index in range(10)]
 
 
 def test_a_broken_message_is_a_broken_image(bare_mcap):
