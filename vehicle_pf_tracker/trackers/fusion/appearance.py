@@ -36,6 +36,9 @@ _STEP_PX = CELL / UPSAMPLING
 _SHIFTABLE_PX = 6.0
 """Offset in canonical px up to which cells are moved circularly instead of measured again: what is
 wrapped around was faded out."""
+_LEAST_USUAL = 1e-3
+"""Least usual response: where nothing was learnt, as on a flat image, no ratio may become one of
+zeros."""
 _COLOURS = 3
 
 
@@ -131,7 +134,7 @@ class Appearance:
             spectrum = self._filter.spectrum(features)
             response = self._filter.respond(spectrum)
         if not self.usual_response:
-            self.usual_response = float(response.max())
+            self.usual_response = max(float(response.max()), _LEAST_USUAL)
         return View(patch, spectrum, response / np.float32(self.usual_response))
 
     def peak(self, patch: Patch) -> float:

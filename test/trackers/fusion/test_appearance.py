@@ -1,0 +1,179 @@
+"""The target's appearance: where the filter finds it, and what it learns."""
+
+import cv2
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.image.canonical_patch import Patch
+from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
+
+KERNELS = load_kernels("opencv")
+SIZE = np.array([48.0, 30.0])
+PLACE = np.array([160.0, 120.0])
+
+
+def texture(seed, shape, blur=2.0):
+    noise = np.random.default_rng(seed).integers(0, 256, (*shape, 3)).astype(np.uint8)
+    smooth = cv2.GaussianBlur(noise, (0, 0), blur).astype(float)
+    return np.clip(3 * (smooth - 128) + 128, 0, 255).astype(np.uint8)
+
+
+ROAD, VEHICLE, OTHER = texture(1, (240, 320)), texture(2, (30, 48)), texture(3, (30, 48))
+
+
+def frame(x=PLACE[0], y=PLACE[1], vehicle=VEHICLE):
+    """The vehicle around a whole number of px."""
+    picture = ROAD.copy()
+    left, top = round(x - SIZE[0] / 2), round(y - SIZE[1] / 2)
+    picture[top : top + 30, left : left + 48] = vehicle
+    return picture
+
+
+def learnt(*, colour=True, penalty=0.1):
+    appearance = Appearance(KERNELS, SIZE, penalty, colour=colour)
+    appearance.learn_first(appearance.patch(frame(), PLACE, SIZE))
+    return appearance
+
+
+def view_at(appearance, picture, position, size=SIZE, *, wide=False):
+    return appearance.view(appearance.patch(picture, np.array(position, float), size, wide=wide))
+
+
+def test_the_target_has_its_canonical_size_in_the_patch():
+    patch = learnt().patch(frame(), PLACE, SIZE)
+    assert patch.side == 128
+    assert np.sqrt((SIZE * patch.zoom).prod()) == pytest.approx(40)
+    assert (SIZE * patch.zoom)[0] / (SIZE * patch.zoom)[1] == pytest.approx(48 / 30)
+    twice = learnt().patch(frame(), PLACE, 2 * SIZE)
+    assert twice.zoom == pytest.approx(patch.zoom / 2)
+
+
+@pytest.mark.parametrize("size", [(1.0, 1.0), (3.0, 2.0), (4.0, 300.0), (900.0, 600.0)])
+def test_any_size_leaves_background_in_the_patch(size):
+    size = np.array(size)
+    patch = Appearance(KERNELS, size, 0.1, colour=True).patch(frame(), PLACE, size)
+    assert (size * patch.zoom).max() <= 0.6 * patch.side + 1e-9
+    assert patch.zoom.max() <= 8
+
+
+def test_the_first_view_sets_what_is_usual():
+    appearance = learnt()
+    assert view_at(appearance, frame(), PLACE).response.max() == pytest.approx(1)
+    assert appearance.usual_response > 0
+    appearance.learn_usual(1.5, 0.1)
+    assert view_at(appearance, frame(), PLACE).response.max() == pytest.approx(1 / 1.05, rel=1e-4)
+
+
+@pytest.mark.parametrize("colour", [True, False])
+@pytest.mark.parametrize("offset", [(0, 0), (5, -3), (-12, 4), (15, 10)])
+def test_the_peak_is_where_the_target_is(colour, offset):
+    appearance = learnt(colour=colour)
+    view = view_at(appearance, frame(), PLACE - offset)
+    found, height = view.peak_near(PLACE, 6)
+    assert found == pytest.approx(PLACE, abs=0.8)
+    assert height > 0.5
+    rows, columns = np.unravel_index(view.response.argmax(), view.response.shape)
+    assert view.places(PLACE) == pytest.approx([columns, rows], abs=1)
+
+
+def test_a_large_box_is_found_in_a_wide_patch_only():
+    appearance = learnt()
+    view_at(appearance, frame(), PLACE)
+    away = PLACE + np.array([70, 45])
+    wide = view_at(appearance, frame(*away), PLACE, wide=True)
+    assert wide.spectrum is None
+    assert wide.patch.side == 256
+    rows, columns = np.unravel_index(wide.response.argmax(), wide.response.shape)
+    assert wide.places(away) == pytest.approx([columns, rows], abs=1)
+    usual = appearance.usual_patch(wide.patch)
+    assert usual.side == 128
+    assert appearance.usual_patch(usual) is usual
+
+
+def test_another_vehicle_answers_less():
+    appearance = learnt()
+    view_at(appearance, frame(), PLACE)
+    assert view_at(appearance, frame(vehicle=OTHER), PLACE).response.max() < 0.5
+
+
+def test_a_wrong_size_answers_less():
+    appearance = learnt()
+    view_at(appearance, frame(), PLACE)
+    answers = [
+        appearance.peak(appearance.patch(frame(), PLACE, factor * SIZE))
+        for factor in (0.85, 0.93, 1.0, 1.08, 1.18)
+    ]
+    assert np.argmax(answers) == 2
+    assert answers == sorted(answers[:3]) + sorted(answers[3:], reverse=True)
+
+
+@pytest.mark.parametrize("away", [2.0, 14.0], ids=["shifted cells", "measured again"])
+def test_learning_adapts_the_filter_to_a_new_look(away):
+    appearance = learnt()
+    view_at(appearance, frame(), PLACE)
+    mixed = (0.5 * VEHICLE + 0.5 * OTHER).astype(np.uint8)
+    picture = frame(vehicle=mixed)
+    before = view_at(appearance, picture, PLACE).response.max()
+    for _ in range(5):
+        view = view_at(appearance, picture, PLACE - [away, 0])
+        appearance.learn(picture, view, PLACE, SIZE, 0.5)
+    view = view_at(appearance, picture, PLACE)
+    assert view.response.max() > before + 0.1
+    assert view.peak_near(PLACE, 6)[0] == pytest.approx(PLACE, abs=1)
+
+
+def test_shifted_cells_and_cells_measured_again_teach_nearly_the_same():
+    answers = []
+    for away in (1.0, 14.0):
+        appearance = learnt()
+        view_at(appearance, frame(), PLACE)
+        picture = frame(vehicle=OTHER)
+        view = view_at(appearance, picture, PLACE - [away, 0])
+        appearance.learn(picture, view, PLACE, SIZE, 0.0)
+        answers.append(view_at(appearance, picture, PLACE).response)
+    assert answers[0].max() == pytest.approx(answers[1].max(), rel=0.15)
+
+
+def parabola(top, width=40):
+    """A view of 1 px per place whose response is a parabola with its vertex at `top`."""
+    y, x = np.mgrid[:width, :width].astype(float)
+    response = (1 - 0.001 * ((x - top[0]) ** 2 + (y - top[1]) ** 2)).astype(np.float32)
+    grey = np.zeros((2 * width, 2 * width), np.uint8)
+    patch = Patch(
+        np.zeros((2 * width, 2 * width, 3), np.uint8), grey, np.full(2, 100.0), np.full(2, 2.0)
+    )
+    return View(patch, None, response)
+
+
+def test_the_vertex_of_a_parabola_is_found_exactly():
+    """The middle, place 20, is at 100 px; places are 2 canonical px, here 1 px, apart."""
+    view = parabola((23.3, 17.6))
+    assert view.steps == pytest.approx([1, 1])
+    position, height = view.peak_near(np.array([102.0, 99.0]), 6)
+    assert position == pytest.approx([103.3, 97.6], abs=0.01)
+    assert height == pytest.approx(1 - 0.001 * (0.3**2 + 0.4**2))
+
+
+def test_the_peak_is_sought_within_reach_only_and_inside_the_patch():
+    view = parabola((30.0, 20.0))
+    position, _ = view.peak_near(np.array([100.0, 100.0]), 3)
+    assert position[0] == pytest.approx(103.5)
+    for far in (-1e4, 1e4):
+        position, height = view.peak_near(np.array([far, far]), 6)
+        assert np.isfinite(position).all()
+        assert np.isfinite(height)
+        assert (view.places(np.array([[far, far]])) == (0 if far < 0 else 39)).all()
+
+
+@pytest.mark.parametrize("level", [0, 119, 255])
+@pytest.mark.parametrize("colour", [True, False])
+def test_an_image_without_any_contrast_gives_finite_responses(level, colour):
+    blank = np.full((120, 160, 3), level, np.uint8)
+    appearance = Appearance(KERNELS, SIZE, 0.1, colour=colour)
+    appearance.learn_first(appearance.patch(blank, np.array([80.0, 60.0]), SIZE))
+    view = view_at(appearance, blank, (80, 60))
+    assert np.isfinite(view.response).all()
+    assert np.isfinite(appearance.peak(view.patch))
+    appearance.learn(blank, view, np.array([80.0, 60.0]), SIZE, 5.0)
+    assert np.isfinite(view_at(appearance, blank, (80, 60)).response).all()
