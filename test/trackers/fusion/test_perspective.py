@@ -1,0 +1,127 @@
+"""Motion on the road: recovered from sightings, and continued."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.trackers.fusion.perspective import (
+    CLEAR_RESPONSE,
+    PerspectiveMotion,
+    Sightings,
+    fit_motion,
+)
+
+TIMES = np.arange(-20.0, 1.0)
+
+
+def course(motion, size):
+    """Positions and sizes of the motion at `TIMES`."""
+    positions = np.array([motion.position_at(time) for time in TIMES])
+    return positions, np.array([size * motion.scale_at(time) for time in TIMES])
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.01, 0.025, -0.02, -0.0325])
+def test_a_perspective_motion_is_recovered_exactly(rate):
+    true = PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), rate)
+    found = fit_motion(TIMES, *course(true, 80.0))
+    assert found.rate == pytest.approx(rate)
+    assert found.position == pytest.approx(true.position)
+    assert found.velocity == pytest.approx(true.velocity)
+    assert found.position_at(15.0) == pytest.approx(true.position_at(15.0))
+
+
+def test_a_vehicle_that_comes_closer_by_hand():
+    """At r = 0.02 the divisor is 0.8 after 10 frames."""
+    motion = PerspectiveMotion(np.array([100.0, 50.0]), np.array([4.0, 2.0]), 0.02)
+    assert motion.position_at(10.0) == pytest.approx([150.0, 75.0])
+    assert motion.velocity_at(10.0) == pytest.approx([6.25, 3.125])
+    assert motion.scale_at(10.0) == pytest.approx(1.25)
+    assert motion.growth_at(10.0) == pytest.approx(0.025)
+
+
+def test_velocity_and_growth_are_the_derivatives():
+    motion = PerspectiveMotion(np.array([100.0, 50.0]), np.array([4.0, 2.0]), -0.015)
+    before, after = motion.position_at(7.999), motion.position_at(8.001)
+    assert motion.velocity_at(8.0) == pytest.approx((after - before) / 0.002, rel=1e-4)
+    growth = np.log(motion.scale_at(8.001) / motion.scale_at(7.999)) / 0.002
+    assert motion.growth_at(8.0) == pytest.approx(growth, rel=1e-4)
+
+
+def test_a_vehicle_that_passes_the_camera_does_not_grow_without_bound():
+    motion = PerspectiveMotion(np.zeros(2), np.array([4.0, 2.0]), 0.04)
+    for time in (25.0, 60.0, 1e4):
+        assert motion.scale_at(time) <= 4
+        assert np.isfinite(motion.position_at(time)).all()
+
+
+def test_without_perspective_the_size_stays():
+    true = PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), 0.02)
+    found = fit_motion(TIMES, *course(true, 80.0), perspective=False)
+    assert found.rate == 0
+    assert found.scale_at(30.0) == 1
+
+
+def test_few_sightings_tell_no_rate():
+    true = PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), 0.02)
+    positions, sizes = course(true, 80.0)
+    assert fit_motion(TIMES[-7:], positions[-7:], sizes[-7:]).rate == 0
+    assert fit_motion(TIMES[-8:], positions[-8:], sizes[-8:]).rate > 0
+
+
+def test_one_sighting_stands_still():
+    found = fit_motion(np.zeros(1), np.array([[30.0, 40.0]]), np.array([20.0]))
+    assert found.position == pytest.approx([30, 40])
+    assert found.velocity == pytest.approx([0, 0])
+    assert found.rate == 0
+
+
+def test_noise_is_averaged():
+    true = PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), 0.0)
+    positions, sizes = course(true, 80.0)
+    errors = []
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        noisy = positions + rng.normal(0, 1.0, positions.shape)
+        found = fit_motion(TIMES, noisy, sizes * np.exp(rng.normal(0, 0.01, len(TIMES))))
+        errors.append(np.linalg.norm(found.position_at(10.0) - true.position_at(10.0)))
+    # The last two sightings alone would be off by 10 * sqrt(2) * sqrt(2) px.
+    assert np.median(errors) < 6
+
+
+def test_only_clear_sightings_are_fitted():
+    sightings = Sightings()
+    for time in range(12):
+        sightings.pass_time(1.0, CameraMotion())
+        clear = time < 9
+        position = np.array([10.0 + 3 * time, 50.0]) if clear else np.array([37.0, 50.0])
+        sightings.add(position, np.array([30.0, 20.0]), CLEAR_RESPONSE + (0.1 if clear else -0.1))
+    motion, last = sightings.fit(perspective=True)
+    assert last.age == 3
+    assert last.position == pytest.approx([34, 50])
+    assert motion.velocity == pytest.approx([3, 0])
+    assert motion.position_at(last.age) == pytest.approx([43, 50])
+
+
+def test_without_clear_sightings_there_is_nothing_to_fit():
+    sightings = Sightings()
+    assert sightings.fit(perspective=True) is None
+    sightings.add(np.zeros(2), np.ones(2), CLEAR_RESPONSE - 0.01)
+    assert sightings.fit(perspective=True) is None
+
+
+def test_sightings_move_with_the_camera_and_age():
+    sightings = Sightings()
+    sightings.add(np.array([10.0, 20.0]), np.array([8.0, 6.0]), 1.0)
+    sightings.pass_time(2.0, CameraMotion(np.array([[0.0, -1.0], [1.0, 0.0]]), np.array([5, 1])))
+    _, last = sightings.fit(perspective=True)
+    assert last.age == 2
+    assert last.position == pytest.approx([-15, 11])
+    assert last.size == pytest.approx([8, 6])
+
+
+def test_old_sightings_are_discarded():
+    sightings = Sightings()
+    for _ in range(100):
+        sightings.pass_time(1.0, CameraMotion())
+        sightings.add(np.zeros(2), np.ones(2), 1.0)
+    assert 60 <= len(sightings) <= 62
