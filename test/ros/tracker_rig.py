@@ -73,6 +73,7 @@ class Rig:
                 parameter_overrides=[Parameter("queue_depth", value=50), *parameters],
             )
         )
+        bench.wait_for(lambda: self.node._stream is None or self.node._stream.get_ready())
         self.name = f"/{variant}_tracker"
         self.camera = bench.publisher(kind, topic, QUEUE)
         self.modes = bench.collect(DiagnosticArray, f"{self.name}/mode", QUEUE)

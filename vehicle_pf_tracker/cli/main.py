@@ -26,6 +26,7 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "tune": ("tune", "search a variant's parameters on recordings, and try them on others"),
         "report": ("report", "make the report of an evaluation again"),
         "replay": ("replay", "feed a recording to ROS nodes"),
+        "compile": ("compile_kernels", "compile the kernels of the extra numba ahead of time"),
     }
 )
 """Module in this package and one line of help, by verb."""

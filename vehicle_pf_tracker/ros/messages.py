@@ -19,6 +19,9 @@ from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 WAITING = "WAITING"
 """What `~/mode` says while there is no target."""
 
+NOT_READY = "loading kernels"
+"""How a node's answer begins that will be another one once its kernels are loaded."""
+
 REJECTED = "REJECTED"
 """What `~/mode` says of an image that could not be used."""
 

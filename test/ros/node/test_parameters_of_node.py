@@ -295,7 +295,7 @@ def test_the_target_can_be_set_by_parameters(rig, setter):
 
 def test_a_drawn_seed_is_told(bench):
     rig = Rig(bench, overrides(seed=-1))
-    first = rig.node._stream.seed
+    first = rig.node._stream.facts["seed"]
     assert first >= 0
     assert rig.node._diagnostics.facts["seed"] == first
     assert Setter(bench).together(seed=12).successful

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
+import importlib.util
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.kernels.interface import Kernels
@@ -38,6 +39,13 @@ def load_kernels(choice: str) -> Kernels:
                 "install it, or set kernels to auto or opencv"
             ) from error
         return OpenCvKernels(_fallback_notices(error))
+
+
+def takes_long(choice: str) -> bool:
+    """Tell whether `load_kernels` would first import numba, and perhaps compile for a while."""
+    if choice == "opencv" or _load_numba.cache_info().currsize:
+        return False
+    return importlib.util.find_spec("numba") is not None
 
 
 @functools.cache

@@ -104,7 +104,8 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
             return TransitionCallbackReturn.FAILURE
         except Exception as error:
             self._failure = f"unexpected {type(error).__name__}: {error}"
-            self.get_logger().error(f"in a transition: {traceback.format_exc()}")
+            if self.context.ok():  # otherwise a signal took the ground from under a call
+                self.get_logger().error(f"in a transition: {traceback.format_exc()}")
             return TransitionCallbackReturn.ERROR
         return TransitionCallbackReturn.SUCCESS
 

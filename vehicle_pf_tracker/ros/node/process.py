@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
+import threading
 import traceback
 from collections.abc import Sequence
 from types import FrameType
@@ -16,6 +18,7 @@ from rclpy.utilities import remove_ros_args
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.node.allocator import keep_image_memory
 from vehicle_pf_tracker.ros.node.image_executor import node_executor
+from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
 from vehicle_pf_tracker.ros.transport import image_transport
@@ -28,18 +31,29 @@ _BROKEN = "a request could not be answered:"
 
 
 class _Interrupts:
-    """Ctrl-C ends the program until ROS is up; from then on rclpy's own handler ends the spin.
+    """Signals end the program until ROS is up; from then on rclpy's own handlers end the spin.
 
-    `ros2 launch` sends SIGINT twice, and the second must not reach the clean-up.
+    `ros2 launch` sends SIGINT twice, and the second must not reach the clean-up. rclpy knows SIGINT
+    and SIGTERM alone; a terminal that closes sends SIGHUP, which is turned into SIGTERM.
     """
 
     def __init__(self) -> None:
         self.left_to_ros = False
         signal.signal(signal.SIGINT, self)
+        signal.signal(signal.SIGTERM, self)
+        if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as nohup sets it
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGHUP})
+            threading.Thread(target=_await_hangup, name="SIGHUP", daemon=True).start()
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         if not self.left_to_ros:
             raise KeyboardInterrupt
+
+
+def _await_hangup() -> None:
+    """Wait in a thread: Python's own handlers do not run while rclpy waits for messages."""
+    signal.sigwait({signal.SIGHUP})
+    os.kill(os.getpid(), signal.SIGTERM)
 
 
 def run_node(variant: Variant, arguments: Sequence[str]) -> int:
@@ -57,6 +71,15 @@ def run_node(variant: Variant, arguments: Sequence[str]) -> int:
     int
         Exit status: 0 ended by a signal, 1 a user's mistake (told on stderr), 2 usage.
     """
+    status = _run(variant, arguments)
+    if is_loading():  # a thread in LLVM would be left behind, and may not outlive Python
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+    return status
+
+
+def _run(variant: Variant, arguments: Sequence[str]) -> int:
     interrupts = _Interrupts()
     name = f"{variant.name}_tracker"
     keep_image_memory()

@@ -17,6 +17,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.health import Health
 from vehicle_pf_tracker.ros.node.images import SerializedImage, read_image
+from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
@@ -61,26 +62,39 @@ class Stream:
         self._log = node.get_logger()
         self._outputs = outputs
         self._health = health
+        self._variant = variant
         self._configuration = configuration
-        if configuration.tracker.kernels != "opencv":
-            self._log.info("loading kernels; the first start compiles them, for some seconds")
-        self._session = Session(variant, configuration.tracker, configuration.session)
+        self._applied = configuration
+        self._session: Session | None = None
+        self._loading = KernelLoading(configuration.tracker.kernels)
         self._asked: Box | None = None
         self.frame_id: str | None = None
         self.estimate: Estimate | None = None
-        self._tell_drawn_seed()
-        for notice in self._session.tracker.kernels.notices:
-            self._log.warning(notice)
+        if not self.get_ready():
+            self._log.info(self._loading.reason)
 
-    @property
-    def seed(self) -> int:
-        """The seed in use."""
-        return self._session.tracker.seed
+    def get_ready(self) -> bool:
+        """Make the session, and take new parameters, as soon as their kernels are loaded.
+
+        Returns
+        -------
+        bool
+            Whether images can be tracked in.
+        """
+        if self._loading.is_done:
+            if self._session is None:
+                self._begin()
+            elif self._applied is not self._configuration:
+                self._apply(self._session)
+        return self._session is not None
 
     @property
     def facts(self) -> Mapping[str, object]:
         """What the parameters left open: the seed and the kernels in use."""
-        return {"seed": self.seed, "kernels": self._session.tracker.kernels.name}
+        if self._session is None:
+            return {"seed": self._configuration.tracker.seed, "kernels": self._loading.reason}
+        tracker = self._session.tracker
+        return {"seed": tracker.seed, "kernels": tracker.kernels.name}
 
     @property
     def target_words(self) -> str:
@@ -95,9 +109,12 @@ class Stream:
 
     def take(self, message: Image | SerializedImage | CompressedImage) -> None:
         """Answer an image with exactly one `~/mode`, and with an estimate where there is one."""
+        if not self.get_ready() or self._session is None:
+            self._put_off(message.header)
+            return
         try:
             frame = read_image(message)
-            self._adopt_target(frame)
+            self._adopt_target(self._session, frame)
             self.estimate = self._session.feed(frame, stamp_ns(message.header))
         except InputError as error:
             self._reject(message.header, str(error))
@@ -106,7 +123,7 @@ class Stream:
             self._reject(message.header, f"unexpected {type(error).__name__}: {error}")
         else:
             self.frame_id = message.header.frame_id
-            self._answer(message.header, frame, self.estimate)
+            self._answer(self._session, message.header, frame, self.estimate)
 
     def set_target(self, box: Box) -> None:
         """Start on `box` with the next image, if it fits into that.
@@ -124,36 +141,65 @@ class Stream:
         self._log.error(f"target refused: {reason}", throttle_duration_sec=_THROTTLE)
 
     def reset(self) -> None:
-        """Go back to the configured target, or to waiting for one."""
+        """Go back to the configured target, or to waiting for one.
+
+        Raises
+        ------
+        InputError
+            If the kernels are not loaded yet, so that the next images will not be tracked in.
+        """
+        if not self.get_ready() or self._session is None:
+            raise InputError(self._loading.reason)
         self._asked = self.estimate = None
         self._session.reset()
 
     def reconfigure(self, configuration: Configuration) -> None:
-        """Take new parameters between two images."""
+        """Take new parameters between two images, or when their kernels are loaded."""
         self._configuration = configuration
-        before = self.seed
-        self._session.reconfigure(configuration.tracker, configuration.session)
-        if self.seed != before:
-            self._tell_drawn_seed()
+        if configuration.tracker.kernels != self._loading.choice:
+            self._loading = KernelLoading(configuration.tracker.kernels)
+        self.get_ready()
 
-    def _adopt_target(self, frame: Frame) -> None:
+    def _begin(self) -> None:
+        self._applied = self._configuration
+        self._session = Session(
+            self._variant, self._configuration.tracker, self._configuration.session
+        )
+        self._tell_drawn_seed(self._session)
+        for notice in self._session.tracker.kernels.notices:
+            self._log.warning(notice)
+
+    def _apply(self, session: Session) -> None:
+        before = session.tracker.seed
+        self._applied = self._configuration
+        session.reconfigure(self._configuration.tracker, self._configuration.session)
+        if session.tracker.seed != before:
+            self._tell_drawn_seed(session)
+
+    def _put_off(self, header: Header) -> None:
+        self._health.answered(WAITING)
+        self._outputs.publish_mode(header, WAITING, {"reason": self._loading.reason})
+
+    def _adopt_target(self, session: Session, frame: Frame) -> None:
         # Checked here and not by the session, which would give up this image's estimate for it;
         # and not in an image of another size, which may be a stray.
         size = frame_size(frame)
-        if self._asked is None or self._session.size not in (None, size):
+        if self._asked is None or session.size not in (None, size):
             return
         box, self._asked = self._asked, None
         try:
-            self._session.set_target(check_target(box, *size))
+            session.set_target(check_target(box, *size))
         except InputError as error:
             self.refuse_target(str(error))
 
-    def _answer(self, header: Header, frame: Frame, estimate: Estimate | None) -> None:
-        events = self._events()
+    def _answer(
+        self, session: Session, header: Header, frame: Frame, estimate: Estimate | None
+    ) -> None:
+        events = self._events(session)
         mode = estimate.mode.value if estimate is not None else WAITING
         switches = self._configuration.node.publish
         if estimate is not None:
-            period = self._session.tracker.frame_period
+            period = session.tracker.frame_period
             self._outputs.publish_estimate(header, estimate, switches, period)
         if switches.overlay:
             self._outputs.publish_overlay(header, frame, mode, estimate)
@@ -166,13 +212,13 @@ class Stream:
         self._health.answered(REJECTED)
         self._outputs.publish_mode(header, REJECTED, {"reason": reason})
 
-    def _events(self) -> dict[str, object]:
-        words = "; ".join(self._session.events)
+    def _events(self, session: Session) -> dict[str, object]:
+        words = "; ".join(session.events)
         if not words:
             return {}
         self._log.warning(words, throttle_duration_sec=_THROTTLE)
         return {"event": words}
 
-    def _tell_drawn_seed(self) -> None:
+    def _tell_drawn_seed(self, session: Session) -> None:
         if self._configuration.tracker.seed < 0:
-            self._log.info(f"drew the seed {self.seed}; set it to repeat this run")
+            self._log.info(f"drew the seed {session.tracker.seed}; set it to repeat this run")

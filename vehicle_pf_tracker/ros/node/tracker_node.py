@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from geometry_msgs.msg import PointStamped, PolygonStamped
+from rclpy.clock import Clock, ClockType
 from rclpy.subscription import Subscription
 from sensor_msgs.msg import RegionOfInterest
 from std_srvs.srv import Trigger
@@ -23,6 +24,9 @@ from vehicle_pf_tracker.ros.node.stream import Stream
 from vehicle_pf_tracker.ros.node.target_messages import box_of_point, box_of_polygon, box_of_region
 from vehicle_pf_tracker.ros.rclpy_internals import missing
 from vehicle_pf_tracker.trackers.registry import Variant
+
+_POLL = 0.1
+"""Seconds between two looks whether the kernels are loaded, where no image asks for them."""
 
 
 class TrackerNode(ManagedNode):
@@ -67,6 +71,11 @@ class TrackerNode(ManagedNode):
         health = self._diagnostics.begin()
         self._stream = Stream(self, self._variant, configuration, self._outputs, health)
         self._diagnostics.facts = {"variant": self._variant.name, **self._stream.facts}
+        self._is_told_ready = False
+        # Steady, because simulated time may stand still while kernels are loaded.
+        self._poll = self.create_timer(
+            _POLL, self._await_kernels, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
         self._reset_service = self.create_service(Trigger, "~/reset", self._on_reset)
 
     def activate(self) -> None:
@@ -81,9 +90,8 @@ class TrackerNode(ManagedNode):
             self.create_subscription(PolygonStamped, "~/set_box", self._on_polygon, 10),
             self.create_subscription(PointStamped, "~/clicked_point", self._on_point, 10),
         ]
-        kernels = self._stream.facts["kernels"]
-        words = f"ready: images on {source}, {self._stream.target_words}, {kernels} kernels"
-        self.get_logger().info(words)
+        self._is_told_ready = False
+        self._await_kernels()
 
     def deactivate(self) -> None:
         """Close the inputs: an inactive node pays nothing for images."""
@@ -96,6 +104,7 @@ class TrackerNode(ManagedNode):
         if self._outputs is not None:
             self._outputs.close()
             self.destroy_service(self._reset_service)
+            self.destroy_timer(self._poll)
         self._outputs = self._stream = None
 
     def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
@@ -124,14 +133,32 @@ class TrackerNode(ManagedNode):
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         assert self._stream is not None
-        self._stream.reset()
-        response.success, response.message = True, self._stream.target_words
+        try:
+            self._stream.reset()
+        except InputError as error:
+            response.success, response.message = False, str(error)
+        else:
+            response.success, response.message = True, self._stream.target_words
         return response
+
+    def _await_kernels(self) -> None:
+        """Say once that the node is ready: active, and with kernels."""
+        source = self._diagnostics.source
+        if self._stream is None or not self._stream.get_ready():
+            return
+        self._poll.cancel()
+        self._diagnostics.facts.update(self._stream.facts)
+        if source is not None and not self._is_told_ready:
+            self._is_told_ready = True
+            kernels = self._stream.facts["kernels"]
+            words = f"ready: images on {source}, {self._stream.target_words}, {kernels} kernels"
+            self.get_logger().info(words)
 
     def _reconfigure(self, configuration: Configuration) -> None:
         if self._stream is not None:
             self._stream.reconfigure(configuration)
             self._diagnostics.facts.update(self._stream.facts)
+            self._poll.reset()
 
     def _warn_of_release(self) -> None:
         for loss in missing(self):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,11 +15,14 @@ from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.ros.messages import NOT_READY
 from vehicle_pf_tracker.ros.replay.answers import Answers
 from vehicle_pf_tracker.ros.replay.discovery import DISCOVERY
 from vehicle_pf_tracker.ros.replay.spinner import Spinner
 
 _DEEP = QoSProfile(depth=1000)
+_AGAIN = 0.2
+"""Seconds until a node that is not ready is asked again."""
 
 
 class TrackerLink:
@@ -94,6 +98,10 @@ class TrackerLink:
             If the node refuses or does not answer.
         """
         result = self._call(self._reset, Trigger.Request())
+        while not result.success and result.message.startswith(NOT_READY):
+            # However long that takes: the node lives, or its service would not have answered.
+            self._spinner.until_time(time.monotonic() + _AGAIN)
+            result = self._call(self._reset, Trigger.Request())
         if not result.success:
             raise InputError(f"the node {self.name} refuses to reset: {result.message}")
 

@@ -1,0 +1,24 @@
+"""`compile`: fill the cache of compiled kernels, so that no start has to."""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+from vehicle_pf_tracker.cli.console import tell_notices
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of this verb: there are none."""
+
+
+def run(args: argparse.Namespace) -> int:
+    """Compile what is not compiled yet, and say how long it took; 1 if it cannot be kept."""
+    from vehicle_pf_tracker.image.kernels.choice import load_kernels
+
+    print("compiling kernels, for up to a minute; later starts load them", flush=True)
+    began = time.monotonic()
+    kernels = load_kernels("numba")
+    tell_notices(kernels.notices)
+    print(f"kernels are ready after {time.monotonic() - began:.1f} s")
+    return 1 if kernels.notices else 0
