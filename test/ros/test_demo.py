@@ -7,8 +7,6 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.cli import demo
-from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.ros.replay.tracker_process import tracker_process
@@ -16,15 +14,19 @@ from vehicle_pf_tracker.ros.replay.tracker_process import tracker_process
 pytestmark = pytest.mark.ros
 
 
-@pytest.fixture
-def short_demo(monkeypatch):
-    monkeypatch.setattr(demo, "SCENE", "bar")
-    monkeypatch.setattr(demo, "CONTESTANTS", {"apf": {"motion.sigma_w": 5.0}})
+# A process of its own, as Fast DDS makes room for images only with the first participant of one.
+SHORT_DEMO = """
+import sys
+from vehicle_pf_tracker.cli import demo
+from vehicle_pf_tracker.cli.main import main
+demo.SCENE, demo.CONTESTANTS = "bar", {"apf": {"motion.sigma_w": 5.0}}
+sys.exit(main(["demo", "-o", sys.argv[1], "--seeds", "1"]))
+"""
 
 
-@pytest.mark.usefixtures("short_demo")
-def test_the_chain_ends_with_scores_pictures_and_a_recording(tmp_path, capfd):
-    assert main(["demo", "-o", str(tmp_path), "--seeds", "1"]) == 0
+def test_the_chain_ends_with_scores_pictures_and_a_recording(tmp_path, start_process):
+    process = start_process("-c", SHORT_DEMO, str(tmp_path))
+    assert process.wait(600) == 0, process.output
     frames = Recording(tmp_path / "recording").frame_count
     with (tmp_path / "apf" / "estimates.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -36,7 +38,7 @@ def test_the_chain_ends_with_scores_pictures_and_a_recording(tmp_path, capfd):
     assert (tmp_path / "demo.png").stat().st_size > 10_000
     topics = {info.name for info in Recording(tmp_path / "with_estimates").topics}
     assert {"/camera/image_raw", "/ground_truth/position", "/apf_tracker/position"} <= topics
-    told = capfd.readouterr().out
+    told = process.output
     assert "error, RMSE" in told
     assert f"{frames} frames out, {frames} estimates in" in told
 
@@ -44,13 +46,15 @@ def test_the_chain_ends_with_scores_pictures_and_a_recording(tmp_path, capfd):
 def test_a_node_that_fails_is_told(tmp_path, capfd):
     with (
         pytest.raises(InputError, match="apf_tracker ended with status 1"),
-        tracker_process("apf", {"motion.sigma_w": -1.0}, "/nobody") as process,
+        tracker_process("apf", {"motion.sigma_w": -1.0}, "/nobody") as node,
     ):
-        process.wait(30)
+        node.process.wait(60)
+        with pytest.raises(InputError, match="apf_tracker has ended"):
+            node.check()
     assert "motion.sigma_w" in capfd.readouterr().err
 
 
 def test_the_node_is_ended_with_the_block():
-    with tracker_process("pf", {}, "/nobody") as process:
-        assert process.poll() is None
-    assert process.returncode is not None
+    with tracker_process("pf", {}, "/nobody") as node:
+        node.check()
+    assert node.process.returncode is not None

@@ -41,6 +41,7 @@ def replay(
     options: ReplayOptions,
     on_progress: Callable[[Progress], None] = lambda progress: None,
     tell: Callable[[str], None] = lambda sentence: None,
+    watch: Callable[[], None] = lambda: None,
 ) -> ReplayReport:
     """Play a recording to tracker nodes and collect what they answer.
 
@@ -57,6 +58,8 @@ def replay(
         Called after each image.
     tell : callable
         Called with sentences for the user while it is getting ready.
+    watch : callable
+        Called all the time; raises to end the replay, as when a node's process has ended.
 
     Raises
     ------
@@ -66,7 +69,7 @@ def replay(
         If a node is missing, refuses the target or does not answer in time.
     """
     with noted_interrupts() as stop, _ros_node(recording, options, tell) as node:
-        spinner = Spinner(node, stop)
+        spinner = Spinner(node, stop, watch)
         try:
             return _Replay(node, spinner, recording, options, tell).run(on_progress)
         finally:

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import NamedTuple
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.processes import wait_or_kill
@@ -15,10 +16,22 @@ from vehicle_pf_tracker.parameters.table import Value
 _SCRIPT = "import sys; from vehicle_pf_tracker.ros.executables import main; sys.exit(main({!r}))"
 
 
+class TrackerProcess(NamedTuple):
+    """A node's process."""
+
+    variant: str
+    process: subprocess.Popen[bytes]
+
+    def check(self) -> None:
+        """Raise `InputError` once the node has ended; while it has not, a wait may be long."""
+        if self.process.poll() is not None:
+            raise InputError(f"the node {self.variant}_tracker has ended; see its log above")
+
+
 @contextmanager
 def tracker_process(
     variant: str, parameters: Mapping[str, Value], image_topic: str
-) -> Iterator[subprocess.Popen[bytes]]:
+) -> Iterator[TrackerProcess]:
     """Run the node of `variant` until the block ends.
 
     Parameters
@@ -41,7 +54,7 @@ def tracker_process(
     # The very same interpreter: another one's libraries would be looked up in this one's place.
     process = subprocess.Popen([sys.executable, "-c", _SCRIPT.format(variant), *words])
     try:
-        yield process
+        yield TrackerProcess(variant, process)
     finally:
         # Not SIGINT, which a process begun in a shell's background inherits as ignored.
         process.terminate()
