@@ -180,7 +180,10 @@ def private_parts_of_rclpy(modules: dict[str, Module]) -> list[str]:
         rows += [
             f"{module.at(node.lineno)} uses {node.attr}"
             for node in ast.walk(module.tree)
-            if isinstance(node, ast.Attribute) and is_private(node.attr) and node.attr not in own
+            if isinstance(node, ast.Attribute)
+            and is_private(node.attr)
+            and node.attr not in own
+            and not (isinstance(node.value, ast.Name) and node.value.id in sys.stdlib_module_names)
         ]
         rows += [
             f"{module.at(found.line)} imports {found.name}"

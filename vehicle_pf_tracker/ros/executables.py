@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -30,7 +31,8 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
         Exit status; see `vehicle_pf_tracker.ros.node.process.run_node`.
     """
     name = variant or Path(sys.argv[0]).stem.removesuffix("_tracker")
-    # Imported late, so that Ctrl-C while libraries load ends the program without a traceback.
+    # Imported late, so that a signal while libraries load ends the program without a traceback.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
         from vehicle_pf_tracker.trackers.registry import find_variant  # noqa: PLC0415

@@ -13,6 +13,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from diagnostic_msgs.msg import DiagnosticArray
+from lifecycle_msgs.srv import GetState
 from rcl_interfaces.msg import Parameter, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from sensor_msgs.msg import Image
@@ -25,15 +26,44 @@ pytestmark = pytest.mark.ros
 
 
 @pytest.mark.parametrize(
-    "signals", [[signal.SIGINT], [signal.SIGINT] * 2, [signal.SIGTERM]], ids=["int", "int2", "term"]
+    "signals",
+    [[signal.SIGINT], [signal.SIGINT] * 2, [signal.SIGTERM], [signal.SIGHUP]],
+    ids=["int", "int2", "term", "hup"],
 )
 def test_a_signal_ends_the_node_well(start_node, signals):
     node = start_node("apf")
     node.wait_for_output("ready")
+    kept = shared_memory(node)
+    assert kept
     for number in signals:
         node.send(number)
     assert node.wait() == 0
     assert "Traceback" not in node.output
+    assert not [path for path in kept if path.exists()]
+
+
+def test_a_hangup_that_nohup_ignores_does_not_end_the_node(start_process, bench):
+    code = (
+        "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)\n"
+        "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('apf'))"
+    )
+    node = start_process("-c", code)
+    node.wait_for_output("ready")
+    node.send(signal.SIGHUP)
+    state = bench.call(GetState, "/apf_tracker/get_state", GetState.Request())
+    assert state.current_state.label == "active"
+
+
+def test_callbacks_that_always_fail_end_the_node(start_process):
+    code = (
+        "from vehicle_pf_tracker.ros.node import diagnostics\n"
+        "diagnostics.PERIOD = 0.01\n"
+        "diagnostics.Diagnostics.publish = lambda self: 1 / 0\n"
+        "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('apf'))"
+    )
+    node = start_process("-c", code)
+    assert node.wait(60.0) == 1
+    assert "20 callbacks failed within 10 s" in node.output
 
 
 def test_the_log_names_the_kernels_when_it_is_ready(start_node):
@@ -63,7 +93,8 @@ def test_a_second_ctrl_c_does_not_reach_the_clean_up(start_process):
     assert process.output.endswith("cleaned up\n")
 
 
-def test_a_signal_while_libraries_load_leaves_no_traceback(start_process):
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_a_signal_while_libraries_load_leaves_no_traceback(start_process, name):
     code = (
         "import os, signal, sys\n"
         # A shell that runs us in the background has us inherit SIGINT as ignored.
@@ -71,7 +102,7 @@ def test_a_signal_while_libraries_load_leaves_no_traceback(start_process):
         "class Interrupting:\n"
         "    def find_spec(self, name, path=None, target=None):\n"
         "        if name == 'vehicle_pf_tracker.ros.node.process':\n"
-        "            os.kill(os.getpid(), signal.SIGINT)\n"
+        f"            os.kill(os.getpid(), signal.{name})\n"
         "sys.meta_path.insert(0, Interrupting())\n"
         "from vehicle_pf_tracker.ros.executables import main\n"
         "sys.exit(main('apf'))"
@@ -167,6 +198,14 @@ def test_the_node_loads_neither_recordings_nor_evaluation():
     rooms = {name.split(".")[1] for name in loaded.split()}
     assert rooms == {"ros", "trackers", "image", "filtering", "parameters", "core"}
     assert "player" not in loaded
+
+
+def shared_memory(process) -> set[Path]:
+    """Segments of Fast DDS that a process has made: those that carry its lock."""
+    maps = Path("/proc", str(process.popen.pid), "maps").read_text().splitlines()
+    return {
+        Path(line.split()[-1]) for line in maps if re.search("/fast(rtps|dds)_[0-9a-f]+$", line)
+    }
 
 
 def segments(process) -> list[int]:

@@ -6,7 +6,9 @@ import os
 import signal
 import sys
 import threading
+import time
 import traceback
+from collections import deque
 from collections.abc import Sequence
 from types import FrameType
 
@@ -26,6 +28,11 @@ from vehicle_pf_tracker.trackers.registry import Variant
 
 _OVERLAY_BYTES = 1280 * 720 * 3
 """Of the largest overlay that four of fit the segment; a larger one still fits once."""
+
+_MOST_FAILURES = 20
+_FAILING = 10.0
+"""So many failed callbacks within so many seconds are no malformed request but a broken node: it
+ends, so that ``respawn`` in a launch file can start it again."""
 
 _BROKEN = "a request could not be answered:"
 
@@ -104,7 +111,7 @@ def _serve(variant: Variant) -> int:
         with image_transport(_OVERLAY_BYTES, rclpy.get_rmw_implementation_identifier()):
             node = TrackerNode(variant)
         executor.add_node(node)
-        _spin(executor, node)
+        return _spin(executor, node)
     except Exception:
         if rclpy.ok():
             raise  # otherwise a signal took the ground from under a call
@@ -115,20 +122,30 @@ def _serve(variant: Variant) -> int:
     return 0
 
 
-def _spin(executor: Executor, node: Node) -> None:
+def _spin(executor: Executor, node: Node) -> int:
+    """Run callbacks until a signal comes; 1 if they fail again and again."""
+    failures: deque[float] = deque(maxlen=_MOST_FAILURES)
     while rclpy.ok():
-        _spin_once(executor, node)
+        if not _spin_once(executor, node):
+            failures.append(time.monotonic())
+            if len(failures) == _MOST_FAILURES and failures[-1] - failures[0] < _FAILING:
+                words = f"{_MOST_FAILURES} callbacks failed within {_FAILING:g} s: ending"
+                node.get_logger().fatal(words)
+                return 1
+    return 0
 
 
-def _spin_once(executor: Executor, node: Node) -> None:
+def _spin_once(executor: Executor, node: Node) -> bool:
     try:
         executor.spin_once()
     except ExternalShutdownException:
-        return
+        pass
     except Exception:  # a malformed request, from which rclpy's own services are not safe
         if rclpy.ok():
             text = traceback.format_exc()
             node.get_logger().error(f"{_BROKEN} {text}", throttle_duration_sec=1.0)
+            return False
+    return True
 
 
 def _usage(name: str, words: Sequence[str]) -> int:

@@ -11,9 +11,9 @@ from typing import Any
 
 @contextmanager
 def noted_interrupts() -> Iterator[threading.Event]:
-    """Give an event that SIGINT and SIGTERM set, however often they come.
+    """Give an event that SIGINT, SIGTERM and SIGHUP set, however often they come.
 
-    Launch files send SIGINT twice, and the second must not break the cleaning up. Outside of the
+    SIGHUP, from a terminal that closes, would otherwise leave the segments in shared memory. Launch files send SIGINT twice, and the second must not break the cleaning up. Outside of the
     main thread, where Python allows no handlers, signals stay as they are.
     """
     noted = threading.Event()
@@ -24,7 +24,10 @@ def noted_interrupts() -> Iterator[threading.Event]:
     def note(*_: Any) -> None:
         noted.set()
 
-    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as nohup sets it
+        numbers.append(signal.SIGHUP)
+    before = {number: signal.signal(number, note) for number in numbers}
     try:
         yield noted
     finally:
