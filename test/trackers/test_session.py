@@ -381,3 +381,17 @@ def test_a_target_may_be_set_one_parameter_after_the_other():
 def test_a_target_below_a_pixel_is_refused():
     with pytest.raises(InputError, match=r"target\.width"):
         from_mapping(SessionParameters, {"target.width": 0.5, "target.height": 5.0})
+
+
+@pytest.mark.parametrize(("x", "y"), [(-50.0, 10.0), (10.0, -15.5)])
+def test_a_target_outside_every_image_is_refused(x, y):
+    with pytest.raises(InputError, match="centre outside every image"):
+        from_mapping(
+            SessionParameters,
+            {"target.x": x, "target.y": y, "target.width": 24.0, "target.height": 30.0},
+        )
+
+
+def test_a_target_that_an_images_border_cuts_is_accepted():
+    values = {"target.x": -10.0, "target.y": -5.0, "target.width": 24.0, "target.height": 30.0}
+    assert from_mapping(SessionParameters, values).target.box.centre == (2.0, 10.0)

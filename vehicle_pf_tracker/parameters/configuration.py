@@ -121,8 +121,13 @@ class SessionParameters:
     )
 
     def validate(self) -> None:
-        """Refuse a target too small for any tracker."""
+        """Refuse a target too small for any tracker, or outside of images of any size."""
         box = self.target.box
+        if box is not None and min(box.centre) < 0:
+            raise InputError(
+                f"the target {box} has its centre outside every image; give the top-left corner "
+                "in px from the image's own"
+            )
         if box is not None and min(box.width, box.height) < 1:
             raise InputError(
                 f"the target {box} is smaller than one pixel; "

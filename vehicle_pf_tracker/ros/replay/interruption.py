@@ -13,8 +13,9 @@ from typing import Any
 def noted_interrupts() -> Iterator[threading.Event]:
     """Give an event that SIGINT, SIGTERM and SIGHUP set, however often they come.
 
-    SIGHUP, from a terminal that closes, would otherwise leave the segments in shared memory. Launch files send SIGINT twice, and the second must not break the cleaning up. Outside of the
-    main thread, where Python allows no handlers, signals stay as they are.
+    SIGHUP, from a terminal that closes, would otherwise leave the segments in shared memory. Launch
+    files send SIGINT twice, and the second must not break the cleaning up. Outside of the main
+    thread, where Python allows no handlers, signals stay as they are.
     """
     noted = threading.Event()
     if threading.current_thread() is not threading.main_thread():
