@@ -60,3 +60,8 @@ def test_the_rate_can_be_given_and_taken_back_while_running():
     assert clock.tick(1200 * MS).elapsed == pytest.approx(2.0)
     clock.set_frame_rate(0.0)
     assert clock.tick(1300 * MS).elapsed == pytest.approx(1.0)
+
+
+def test_a_second_repeat_after_a_good_stamp_is_a_first_one_again():
+    elapsed = [t.elapsed for t in ticks(StampClock(10.0), [0, 0, 100, 100])]
+    assert elapsed == pytest.approx([1.0, 0.0, 1.0, 0.0])

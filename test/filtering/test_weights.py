@@ -18,7 +18,7 @@ def test_normalise_divides_by_the_sum():
     [[0.0, 0.0], [np.nan, 1.0], [np.inf, 1.0], [-1.0, 2.0], [-np.inf, 1.0]],
     ids=["zero", "nan", "infinite", "negative", "minus-infinite"],
 )
-def test_weights_that_say_nothing_become_uniform_and_are_told(useless):
+def test_weights_without_information_become_uniform_and_are_reported(useless):
     weights, sound = normalise(np.array(useless))
     assert not sound
     assert weights.tolist() == [0.5, 0.5]
@@ -62,3 +62,9 @@ def test_normalised_weights_sum_to_one_and_n_eff_is_between_one_and_n(raw):
     weights, _ = normalise(raw)
     assert weights.sum() == pytest.approx(1.0)
     assert 1 - 1e-9 <= effective_sample_size(weights) <= len(raw) + 1e-6
+
+
+def test_weights_too_large_to_add_up_keep_their_ratio():
+    weights, sound = normalise(np.array([1.5e308, 0.75e308, 0.75e308]))
+    assert weights == pytest.approx([0.5, 0.25, 0.25])
+    assert sound

@@ -107,3 +107,12 @@ def test_the_frame_is_read_from_a_strided_view():
     rectangle = windows((0, 0, 80, 60))
     view, copy = wide[:, :80], np.ascontiguousarray(wide[:, :80])
     assert np.array_equal(DETECTOR.detect(view, rectangle), DETECTOR.detect(copy, rectangle))
+
+
+def test_segments_go_through_the_centres_of_pixels():
+    frame = np.zeros((60, 80, 3), np.uint8)
+    frame[:, 40:] = 255  # the gradient is largest in the columns 39 and 40
+    segments = DETECTOR.detect(frame, windows((10, 10, 70, 50)))
+    assert len(segments)
+    assert np.all(segments % 1 == 0.5)
+    assert set(segments[:, [0, 2]].ravel()) <= {39.5, 40.5}

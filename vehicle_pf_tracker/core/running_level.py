@@ -14,8 +14,8 @@ the very bound that it is compared with."""
 class RunningLevel:
     """Running mean of a measurement and of its absolute deviation from that mean.
 
-    The first values are averaged with equal weights, since the first alone says little about the
-    level; later ones with the given rate.
+    The first values are averaged with equal weights, since the first alone is a poor estimate
+    of the level; later ones with the given rate.
 
     Attributes
     ----------

@@ -30,7 +30,7 @@ def normalise(weights: Weights) -> tuple[Weights, bool]:
     largest = weights.max()
     if not (math.isfinite(largest) and largest > 0 and weights.min() >= 0):
         return _uniform(len(weights)), False
-    # Dividing by the largest first keeps a cloud of tiny weights from summing to zero.
+    # Dividing by the largest first keeps tiny weights exact and huge ones from summing to infinity.
     scaled = weights / largest
     scaled /= scaled.sum()
     return scaled, True

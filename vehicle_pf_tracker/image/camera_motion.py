@@ -13,7 +13,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.image.small_grey import SmallGrey
 
 _LEAST_SIDE = 32
-"""Side of the reduced frame in px below which its corners are too close to tell anything."""
+"""Side of the reduced frame in px below which its corners are too close to define a motion."""
 _GRID = (8, 6)
 """Cells along x and y that give one corner each, so that no lorry gives most of them."""
 _BORDER = 6
@@ -68,7 +68,7 @@ class CameraMotion:
 
     @property
     def still(self) -> bool:
-        """Whether nothing moves."""
+        """True if the background does not move."""
         return bool(np.array_equal(self.turn, np.eye(2)) and not self.shift.any())
 
 
@@ -161,7 +161,7 @@ class CameraFlow:
     def _background(
         self, grey: npt.NDArray[np.uint8], target: Box, zoom: float
     ) -> npt.NDArray[np.float32]:
-        """Corners outside the target, found afresh now and then, (N, 1, 2)."""
+        """Corners outside the target, found again now and then, (N, 1, 2)."""
         self._age += 1
         if self._age >= _REFRESHED_AFTER or len(self._corners) < _GRID[0] * _GRID[1] // 3:
             self._corners, self._age = _find_corners(grey), 0.0
@@ -175,11 +175,11 @@ class CameraFlow:
 def _stand(
     last: npt.NDArray[np.uint8], present: npt.NDArray[np.uint8], corners: npt.NDArray[np.float32]
 ) -> bool:
-    """Whether so many corners look unchanged that flow need not be measured: the usual case."""
+    """Test whether so many corners are unchanged that flow need not be measured: the usual case."""
     change = cv2.boxFilter(cv2.absdiff(last, present), cv2.CV_32F, _NEIGHBOURHOOD)
-    places = np.rint(corners[:, 0]).astype(np.intp)
-    places = np.clip(places, 0, (present.shape[1] - 1, present.shape[0] - 1))
-    unchanged = change[places[:, 1], places[:, 0]] < _UNCHANGED
+    pixels = np.rint(corners[:, 0]).astype(np.intp)
+    pixels = np.clip(pixels, 0, (present.shape[1] - 1, present.shape[0] - 1))
+    unchanged = change[pixels[:, 1], pixels[:, 0]] < _UNCHANGED
     return bool(unchanged.mean() >= _STILL_SHARE)
 
 

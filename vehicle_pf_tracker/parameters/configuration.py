@@ -1,4 +1,4 @@
-"""All parameters of a node as one value: those of its variant, of its stream and its own."""
+"""Configuration of a node: the parameters of its variant, of its stream and its own."""
 
 from __future__ import annotations
 

@@ -119,3 +119,13 @@ def test_numbers_are_tidied_and_stay_in_range():
     assert dimension.tidy(1.23444) == 1.234
     assert Dimension("sigma", float, 0.5, 1.23456).tidy(1.23456) == 1.23456
     assert Dimension("n", int, 1, 5).tidy(3) == 3
+
+
+def test_a_variant_without_marks_needs_names():
+    @dataclass(frozen=True)
+    class Parameters:
+        still: float = parameter(1.0, "Not searched.")
+
+    variant = SimpleNamespace(name="made", parameters=Parameters)
+    with pytest.raises(InputError, match="no parameter of made is marked as tuned"):
+        search_space(variant, to_mapping(Parameters()), [])

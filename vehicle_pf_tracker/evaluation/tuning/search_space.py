@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name
@@ -13,22 +12,6 @@ from vehicle_pf_tracker.trackers.registry import Variant
 FACTOR = 4.0
 """A positive parameter is searched from its default over this to its default times this."""
 _DIGITS = 4
-
-_UNMARKED: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "fusion": (
-            "sharpness",
-            "motion.sigma",
-            "motion.gain=0.05:0.8",
-            "cues.template_rate=0.01:0.2",
-            "motion.scale_sigma",
-            "hiding.confirm=2:8",
-            # Up to evidence.clear_above, which it must not exceed.
-            "evidence.occluded_below=0.5:0.8",
-        ),
-    }
-)
-"""Default search of variants none of whose parameters is marked as tuned yet."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +80,10 @@ def search_space(
     """
     table = {name: spec for name, spec in specs(variant.parameters).items() if name != "seed"}
     chosen = words or default_search(variant)
+    if not chosen:
+        raise InputError(
+            f"no parameter of {variant.name} is marked as tuned; name some with --search"
+        )
     space = [_dimension(table, values, word) for word in chosen]
     names = [dimension.name for dimension in space]
     twice = next((name for name in names if names.count(name) > 1), None)
@@ -107,8 +94,7 @@ def search_space(
 
 def default_search(variant: Variant) -> list[str]:
     """Return the parameters of `variant` marked as tuned, as `search_space` takes them."""
-    marked = [_word(spec) for spec in specs(variant.parameters).values() if spec.tuned]
-    return marked or list(_UNMARKED.get(variant.name, ()))
+    return [_word(spec) for spec in specs(variant.parameters).values() if spec.tuned]
 
 
 def _word(spec: ParameterSpec) -> str:

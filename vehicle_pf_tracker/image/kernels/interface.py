@@ -1,4 +1,4 @@
-"""What a set of kernels can do."""
+"""Interface of the kernels that measure windows."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ class PixelRange(NamedTuple):
 
 
 class Kernels(ABC):
-    """Measures windows; all implementations count alike, and agree on similarities to 1e-6.
+    """Measurement of windows; implementations count equally, and agree on similarities to 1e-6.
 
     Each gives the same bits for the same input on one machine.
 
     Attributes
     ----------
     name : str
-        The word for the parameter `kernels`.
+        Value of the parameter `kernels` that selects them.
     notices : sequence of str
-        What was not as it should be while they were made ready, a sentence each.
+        Problems met while they were loaded, one sentence each.
     """
 
     name: str
@@ -64,7 +64,7 @@ class Kernels(ABC):
         Parameters
         ----------
         feature : WindowFeature
-            What is counted.
+            Feature to count.
         frame : (H, W, 3) array
             RGB.
         positions : (N, 2) array
@@ -102,7 +102,7 @@ class Kernels(ABC):
         Parameters
         ----------
         feature, frame, positions, window
-            As for `counts`; any feature will do.
+            As for `counts`; any feature is accepted.
         reference : Reference
             Histogram of this feature.
 

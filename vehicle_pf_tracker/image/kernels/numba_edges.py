@@ -271,16 +271,16 @@ class CellCounts(NamedTuple):
 
 
 def count_directions(
-    feature: GradientDirections, frame: Frame, place: Placement, table: CellTable
+    feature: GradientDirections, frame: Frame, placement: Placement, table: CellTable
 ) -> CellCounts:
     """Count edge points by direction, the gradient taken in the frame."""
     # One pixel more makes every gradient in the windows that of the whole frame.
-    left, top, right, bottom = place.covered(margin=1)
-    counts = np.empty((len(place.pixels), len(table.values)), np.int32)
+    left, top, right, bottom = placement.covered(margin=1)
+    counts = np.empty((len(placement.pixels), len(table.values)), np.int32)
     totals = count_edges(
         to_grey(frame[top:bottom, left:right]),
         (left, top),
-        (place.pixels, place.extent, (place.reach[0], place.reach[2])),
+        (placement.pixels, placement.extent, (placement.reach[0], placement.reach[2])),
         (np.float32(feature.threshold) ** 2, np.float32(feature.floor) ** 2),
         (table.cells, TANGENTS, feature.signed),
         counts,

@@ -90,26 +90,29 @@ def compare_pixels(
     if isinstance(feature, JointColour):
         half = window.half_width, window.half_height
         return compare_joint(frame, positions, feature.bits, half, table.cells, scale, counts)
-    place = Placement.of(feature, frame, positions, window)
-    left, top, right, bottom = place.covered()
-    if (right - left) * (bottom - top) > len(place.pixels) * area:
-        return _compare_apart(feature, frame, place, table, counts)
+    placement = Placement.of(feature, frame, positions, window)
+    left, top, right, bottom = placement.covered()
+    if (right - left) * (bottom - top) > len(placement.pixels) * area:
+        return _compare_apart(feature, frame, placement, table, counts)
     cells = _cells(feature, frame[top:bottom, left:right], table)
     return compare_windows(
-        cells, place.pixels, place.extent, (left, top), place.reach, scale, counts
+        cells, placement.pixels, placement.extent, (left, top), placement.reach, scale, counts
     )
 
 
 def _compare_apart(
-    feature: WindowFeature, frame: Frame, place: Placement, table: CellTable, counts: Counts
+    feature: WindowFeature, frame: Frame, placement: Placement, table: CellTable, counts: Counts
 ) -> Reals:
     """Compare windows that share few pixels, from a copy of each."""
-    width, height = 2 * place.reach[0] + 1, 2 * place.reach[2] + 1
+    width, height = 2 * placement.reach[0] + 1, 2 * placement.reach[2] + 1
     whole = window_rectangles(
-        place.pixels, (place.reach[0], place.reach[0] + 1, place.reach[2]), (0, 0), place.size
+        placement.pixels,
+        (placement.reach[0], placement.reach[0] + 1, placement.reach[2]),
+        (0, 0),
+        placement.size,
     )
     stack = stack_windows(frame, whole, width, height)
-    rectangles = place.rectangles((0, 0))
+    rectangles = placement.rectangles((0, 0))
     rectangles[:, [0, 2]] -= whole[:, :1]
     rectangles[:, [1, 3]] += (height * np.arange(len(whole)) - whole[:, 1])[:, np.newaxis]
     roots = roots_up_to(planes_of(feature) * width * height)
@@ -156,14 +159,14 @@ class NumbaKernels(Kernels):
         """Count windows; see `Kernels.counts`."""
         table = table_for_counting(active, feature.bins)
         if counts_edges(feature):
-            place = Placement.of(feature, frame, positions, window)
-            cells, totals = count_directions(feature, frame, place, table)
+            placement = Placement.of(feature, frame, positions, window)
+            cells, totals = count_directions(feature, frame, placement, table)
             return Counted(cells[:, : table.active], totals)
         if counts_pixels(feature):
-            place = Placement.of(feature, frame, positions, window)
+            placement = Placement.of(feature, frame, positions, window)
             counts = np.empty((len(positions), table.active), np.int32)
             compare_pixels(feature, frame, positions, window, table, counts)
-            left, top, right, bottom = place.rectangles((0, 0)).T
+            left, top, right, bottom = placement.rectangles((0, 0)).T
             return Counted(counts, planes_of(feature) * (right - left) * (bottom - top))
         assert isinstance(feature, CountedFeature)
         return feature.counts(frame, positions, window, active)
@@ -191,8 +194,8 @@ class NumbaKernels(Kernels):
             table = table_of(reference)
             return compare_pixels(feature, frame, positions, window, table, _NO_COUNTS)
         if counts_edges(feature):
-            place, table = Placement.of(feature, frame, positions, window), table_of(reference)
-            cells, totals = count_directions(feature, frame, place, table)
+            placement, table = Placement.of(feature, frame, positions, window), table_of(reference)
+            cells, totals = count_directions(feature, frame, placement, table)
             roots = roots_up_to(window.width * window.height)
             return compare_counts(cells, totals, (table.values, roots))
         return feature.similarity(frame, positions, window, reference)
@@ -227,9 +230,9 @@ class NumbaKernels(Kernels):
     ) -> Coefficients:
         """Compare; see `Kernels.kernel_similarity`."""
         offsets, profile = ellipse(window)
-        place, table = Placement.of(feature, frame, positions, window), table_of(reference)
-        cells, origin = _covered_cells(feature, frame, place, table)
-        return compare_kernels(cells, place.pixels, origin, offsets, (profile, table.values))
+        placement, table = Placement.of(feature, frame, positions, window), table_of(reference)
+        cells, origin = _covered_cells(feature, frame, placement, table)
+        return compare_kernels(cells, placement.pixels, origin, offsets, (profile, table.values))
 
     def mean_shift(
         self,
@@ -241,24 +244,24 @@ class NumbaKernels(Kernels):
     ) -> Positions:
         """Move; see `Kernels.mean_shift`."""
         offsets, profile = ellipse(window)
-        place, table = Placement.of(feature, frame, positions, window), table_of(reference)
-        cells, origin = _covered_cells(feature, frame, place, table)
-        steps = shift_kernels(cells, place.pixels, origin, offsets, (profile, table.values))
-        return np.where(np.isnan(steps), positions, place.pixels + 0.5 + steps)
+        placement, table = Placement.of(feature, frame, positions, window), table_of(reference)
+        cells, origin = _covered_cells(feature, frame, placement, table)
+        steps = shift_kernels(cells, placement.pixels, origin, offsets, (profile, table.values))
+        return np.where(np.isnan(steps), positions, placement.pixels + 0.5 + steps)
 
 
 def _covered_cells(
-    feature: JointColour, frame: Frame, place: Placement, table: CellTable
+    feature: JointColour, frame: Frame, placement: Placement, table: CellTable
 ) -> tuple[Cells, tuple[int, int]]:
-    left, top, right, bottom = place.covered()
+    left, top, right, bottom = placement.covered()
     return joint_cells(frame[top:bottom, left:right], feature.bits, table.cells), (left, top)
 
 
 def counts_pixels(feature: WindowFeature) -> bool:
-    """Whether every pixel counts alike in all windows."""
+    """Test whether each pixel counts equally in all windows."""
     return type(feature) in _OF_PIXELS
 
 
 def counts_edges(feature: WindowFeature) -> TypeGuard[GradientDirections]:
-    """Whether edge points of the frame's own gradient are counted."""
+    """Test whether edge points of the frame's gradient are counted."""
     return type(feature) is GradientDirections and feature.in_frame

@@ -1,4 +1,4 @@
-"""The kernels in OpenCV and numpy, which are always there."""
+"""Kernels in OpenCV and numpy, which are always available."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from vehicle_pf_tracker.image.window_feature import (
 
 
 class OpenCvKernels(Kernels):
-    """What the features themselves do.
+    """Kernels that call the features' own methods.
 
     Parameters
     ----------
