@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image import compressed_image
-from vehicle_pf_tracker.image.compressed_image import MAX_PIXELS, decode_compressed
+from vehicle_pf_tracker.image.compressed_image import MAX_PIXELS, MAX_SCANS, decode_compressed
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 
 RED, GREEN, BLUE = (200, 10, 30), (20, 220, 40), (5, 15, 250)
@@ -132,6 +132,35 @@ def test_what_claims_too_much_does_not_come_to_the_decoder(bomb, size):
 
 
 @pytest.mark.usefixtures("no_decoder")
+def progressive(width, height, more_scans=0):
+    """A progressive JPEG whose last scan is repeated."""
+    picture = np.zeros((height, width, 3), np.uint8)
+    picture[::16] = 40
+    _, coded = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_PROGRESSIVE, 1])
+    data = coded.tobytes()
+    last_scan = data[data.rfind(b"\xff\xda") : -2]
+    return data[:-2] + last_scan * more_scans + data[-2:]
+
+
+@pytest.mark.parametrize(
+    ("size", "more_scans", "words"),
+    [
+        ((320, 240), 2500, "has 2510 scans, above the 64"),
+        ((320, 240), MAX_SCANS - 9, "has 65 scans"),
+        ((6000, 4001), 0, "several scans and 24 megapixels"),
+    ],
+)
+def test_scans_that_cost_seconds_do_not_come_to_the_decoder(monkeypatch, size, more_scans, words):
+    data = progressive(*size, more_scans)
+    monkeypatch.setattr(cv2, "imdecode", lambda *_: pytest.fail("decoded"))
+    with pytest.raises(InputError, match=words):
+        decode_compressed("jpeg", data)
+
+
+def test_as_many_scans_as_allowed_are_read():
+    assert decode_compressed("jpeg", progressive(320, 240, MAX_SCANS - 10)).shape == (240, 320, 3)
+
+
 @pytest.mark.parametrize("length", [2000, 2**31 - 1, 2**32 - 1])
 def test_a_chunk_that_claims_too_much_does_not_come_to_the_decoder(length):
     """OpenCV 5 makes room for what a chunk claims before it reads it: 4 GB, and half a minute."""

@@ -17,6 +17,13 @@ from vehicle_pf_tracker.image.encodings import MAX_SIDE, Buffer, Bytes, flat_byt
 MAX_PIXELS = 100_000_000
 """Three times those of 8K video; as a frame 300 MB."""
 
+MAX_SCANS = 64
+"""Scans of a JPEG; progressive ones have about ten. Each may cost 0.55 ns per pixel however few
+bytes it has, so that 64 over the largest image of several scans take 0.8 s."""
+
+MAX_SCANNED_PIXELS = 24_000_000
+"""Of a JPEG of several scans, whose decoder keeps 6.7 bytes for each pixel: 160 MB."""
+
 _PNG, _JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
 _CHUNK_FRAME = 12
 """Length, kind and checksum around the data of a chunk."""
@@ -53,7 +60,21 @@ def decode_compressed(format: str, data: Buffer) -> Frame:  # noqa: A002 (the RO
             f"{name} claims {width}x{height} px, above the {MAX_PIXELS // 10**6} megapixels and "
             f"{MAX_SIDE} px a side that are read; is it broken?"
         )
+    _check_scans(name, coded.tobytes(), width * height)
     return _decoded(name, coded)
+
+
+def _check_scans(name: str, data: bytes, pixels: int) -> None:
+    """Refuse a JPEG whose scans would keep the decoder busy for long; PNG has none."""
+    # Within coded pixels every 255 is followed by 0, so that only metadata can be counted besides.
+    scans = data.count(b"\xff\xda") if data.startswith(_JPEG) else 1
+    if scans > MAX_SCANS:
+        raise InputError(f"{name} has {scans} scans, above the {MAX_SCANS} that are read")
+    if scans > 1 and pixels > MAX_SCANNED_PIXELS:
+        raise InputError(
+            f"{name} has several scans and {pixels / 1e6:.0f} megapixels, above the "
+            f"{MAX_SCANNED_PIXELS // 10**6} that are read of such"
+        )
 
 
 def _size_of(name: str, data: bytes) -> tuple[int, int]:
