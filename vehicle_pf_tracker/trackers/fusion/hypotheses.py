@@ -106,14 +106,14 @@ class Hypotheses:
     def observed(self, log_ratios: Array) -> Hypotheses:
         """Weigh by log-likelihood ratios (N,) of visible against hidden (Bayes' rule)."""
         seen = self.visible * np.exp(log_ratios)
-        total = seen + 1 - self.visible
+        total = seen + (1 - self.visible)  # in this order never below `seen`
         weights, _ = normalise(self.weights * total)
         return replace(self, visible=seen / total, weights=weights)
 
     def witnessed(self, log_ratio: float) -> Hypotheses:
         """Take evidence on visibility that is the same for all hypotheses."""
         seen = self.visible * np.exp(log_ratio)
-        return replace(self, visible=seen / (seen + 1 - self.visible))
+        return replace(self, visible=seen / (seen + (1 - self.visible)))
 
     def resampled(self, rng: np.random.Generator, count: int) -> Hypotheses:
         """Draw `count` hypotheses by weight, where few carry most of it or their number differs."""
