@@ -34,7 +34,7 @@ _LEAST_USUAL = 0.3
 """Usual survival below which points tell nothing: a vehicle of a few px, or motion blur."""
 _USUAL_RATE = 0.05
 """Rate per frame at which the usual survival follows the present one in clear frames."""
-_FEWEST_PAIRS = 12
+_FEWEST_POINTS = 12
 """Fewest tracked points that tell a change of size."""
 _APART = 0.25
 """Least distance of two points that tell a change of size, of the size."""
@@ -200,15 +200,16 @@ def _flow(
 def _stretch(before: Array, after: Array, size: Array) -> Array:
     """Median change of the log distance of points, along x and y."""
     change = np.zeros(2)
-    if len(before) < _FEWEST_PAIRS:
+    if len(before) < _FEWEST_POINTS:
         return change
-    # Each point with the one half a list further: far apart for most, and N pairs instead of N².
-    other = np.roll(np.arange(len(before)), len(before) // 2)
+    half = len(before) // 2
     for axis in (0, 1):
-        old = before[:, axis] - before[other, axis]
-        new = after[:, axis] - after[other, axis]
-        far = np.abs(old) > _APART * size[axis]
-        if far.sum() >= _FEWEST_PAIRS:
+        # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.
+        order = before[:, axis].argsort(kind="stable")
+        low, high = order[:half], order[-half:]
+        old, new = before[high, axis] - before[low, axis], after[high, axis] - after[low, axis]
+        far = old > _APART * size[axis]
+        if far.sum() >= _FEWEST_POINTS // 2:
             ratio = np.maximum(new[far] / old[far], 0.2)
             change[axis] = float(np.median(np.log(ratio)))
     return np.clip(change, -_LARGEST_STRETCH, _LARGEST_STRETCH)

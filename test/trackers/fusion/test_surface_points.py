@@ -1,0 +1,189 @@
+"""Points on a vehicle: a turn or a change of size keeps them, an occluder ends them."""
+
+import cv2
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.image.canonical_patch import cut_patch
+from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
+
+SIZE = np.array([40.0, 40.0])
+START = np.array([80.0, 120.0])
+
+
+def texture(seed, width=320, height=240):
+    noise = np.random.default_rng(seed).integers(0, 256, (height, width, 3)).astype(np.uint8)
+    smooth = cv2.GaussianBlur(noise, (0, 0), 1.5).astype(float)
+    return np.clip(4 * (smooth - 128) + 128, 0, 255).astype(np.uint8)
+
+
+ROAD, VEHICLE, OCCLUDER = texture(1), texture(2, 80, 80), texture(3, 80, 240)
+
+
+def frame(centre, scale=(1.0, 1.0), background=ROAD):
+    """The vehicle, 40 px of a texture times `scale`, around `centre` on the road."""
+    picture = background.copy()
+    matrix = np.array([
+        [scale[0], 0, centre[0] - 0.5 - 39.5 * scale[0]],
+        [0, scale[1], centre[1] - 0.5 - 39.5 * scale[1]],
+    ])  # fmt: skip
+    warped = cv2.warpAffine(VEHICLE, matrix, (320, 240))
+    half = SIZE * scale / 2
+    left, top = np.rint(np.array(centre) - half).astype(int)
+    right, bottom = np.rint(np.array(centre) + half).astype(int)
+    picture[top:bottom, left:right] = warped[top:bottom, left:right]
+    return picture
+
+
+def patch_of(picture, centre, size=SIZE):
+    return cut_patch(picture, np.array(centre, float), 40.0 / size, 128)
+
+
+class Drive:
+    """Tracks the points of a vehicle whose position and size are known."""
+
+    def __init__(self, speed=2.0, growth=(0.0, 0.0)):
+        self.points, self.time = SurfacePoints(), 0
+        self.speed, self.growth = np.array([speed, 0.5 * speed]), np.array(growth)
+        self.points.keep(patch_of(frame(START), START))
+        self.points.renew(START, SIZE)
+
+    @property
+    def centre(self):
+        return START + self.speed * self.time
+
+    @property
+    def scale(self):
+        return np.exp(self.growth * self.time)
+
+    def step(self, occlude=None, *, learn=True):
+        """Show the next frame, with `occlude` painted over it; returns the survival."""
+        self.time += 1
+        picture = frame(self.centre, self.scale)
+        if occlude is not None:
+            occlude(picture, self.centre)
+        patch = patch_of(picture, self.centre, SIZE * self.scale)
+        size = SIZE * self.scale
+        survival = self.points.track(patch, self.speed, self.centre, size)
+        if learn:
+            self.points.learn_usual()
+        self.points.renew(self.centre, size)
+        self.points.keep(patch)
+        return survival
+
+
+def cover(left, width):
+    """Paint an occluder from `left` px of the vehicle's centre on."""
+
+    def paint(picture, centre):
+        x = round(centre[0]) + left
+        picture[:, x : x + width] = OCCLUDER[:, :width]
+
+    return paint
+
+
+def test_all_points_of_a_translated_texture_survive():
+    drive = Drive()
+    survivals = [drive.step() for _ in range(25)]
+    assert survivals[:4] == [None] * 4
+    assert survivals[4:] == pytest.approx([1.0] * 21, abs=0.06)
+    assert drive.points.stretch == pytest.approx([0, 0], abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("left", "low", "high"), [(-80 + 0, 0.2, 0.75), (-40, 0.0, 0.25)], ids=["half", "whole"]
+)
+def test_an_occluder_ends_the_points_that_it_covers(left, low, high):
+    drive = Drive()
+    for _ in range(12):
+        drive.step()
+    for _ in range(3):
+        survival = drive.step(cover(left, 80), learn=False)
+    assert low <= survival <= high
+    assert survival == drive.points.survival
+
+
+def test_what_stays_behind_with_a_standing_part_ends():
+    """Where the box leaves its points behind, they hold on to what is not the vehicle."""
+    drive = Drive()
+    for _ in range(8):
+        drive.step()
+    drive.speed = np.array([8.0, 0.0])
+    picture = frame(drive.centre)
+    patch = patch_of(picture, drive.centre)
+    for number in range(1, 3):
+        ahead = drive.centre + np.array([8.0 * number, 0.0])
+        survival = drive.points.track(patch, np.zeros(2), ahead, SIZE)
+        drive.points.keep(patch)
+    assert survival < 0.1
+
+
+@pytest.mark.parametrize("growth", [(0.02, 0.02), (-0.02, -0.02), (0.02, 0.0), (0.0, -0.015)])
+def test_the_stretch_of_a_zoomed_texture_is_its_growth(growth):
+    drive = Drive(speed=1.0, growth=growth)
+    stretches = []
+    for _ in range(8):
+        drive.step()
+        stretches.append(drive.points.stretch)
+    assert np.median(stretches, axis=0) == pytest.approx(growth, abs=4e-3)
+
+
+def test_a_flat_vehicle_tells_nothing():
+    flat = np.full((240, 320, 3), 90, np.uint8)
+    points = SurfacePoints()
+    points.keep(patch_of(flat, START))
+    points.renew(START, SIZE)
+    for _ in range(8):
+        noise = np.random.default_rng(0).integers(0, 256, flat.shape).astype(np.uint8)
+        survival = points.track(patch_of(noise, START), np.zeros(2), START, SIZE)
+        points.keep(patch_of(noise, START))
+        flat = noise
+    assert survival is None or survival >= 0
+    assert 0 <= points.survival <= 1.0
+
+
+def test_no_set_is_placed_on_an_occluder():
+    drive = Drive()
+    for _ in range(12):
+        drive.step()
+    before = {id(points) for points in drive.points._sets}
+    for _ in range(5):
+        drive.step(cover(-40, 80), learn=False)
+    assert {id(points) for points in drive.points._sets} <= before
+
+
+def test_restarting_keeps_the_usual_survival_only():
+    drive = Drive()
+    for _ in range(12):
+        drive.step()
+    usual = drive.points._usual
+    drive.points.restart()
+    assert drive.points.survival == 1
+    assert drive.points._usual == usual
+    assert drive.step() is None
+
+
+def first_motion(before, after, size=SIZE):
+    points = SurfacePoints()
+    points.keep(patch_of(before, START, size))
+    return points.first_motion(patch_of(after, START, size), size)
+
+
+@pytest.mark.parametrize("move", [(5.0, 0.0), (-6.0, 4.0), (11.0, -7.0)])
+def test_the_first_motion_is_that_of_what_moves(move):
+    found = first_motion(frame(START), frame(START + move))
+    assert found == pytest.approx(move, abs=0.5)
+
+
+def test_a_part_that_moves_before_a_standing_background_is_found():
+    """The box is twice as large as the vehicle in it."""
+    found = first_motion(frame(START), frame(START + np.array([6.0, 0.0])), 2 * SIZE)
+    assert found == pytest.approx([6.0, 0.0], abs=0.5)
+
+
+def test_a_standing_vehicle_has_no_first_motion():
+    assert first_motion(frame(START), frame(START)) is None
+
+
+def test_points_that_disagree_give_no_first_motion():
+    assert first_motion(ROAD, texture(77)) is None
