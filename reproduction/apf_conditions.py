@@ -67,12 +67,12 @@ def _finding(conditions: Errors, interpretation: str) -> Finding:
     label = ALL_INTERPRETATIONS[interpretation].label
     ratios = {name: _ratio(errors, label) for name, errors in conditions.items()}
     behind = {name: ratio for name, ratio in ratios.items() if ratio > FACTOR}
-    told = "; ".join(f"{name} {ratio:.2f}" for name, ratio in behind.items())
+    parts = "; ".join(f"{name} {ratio:.2f}" for name, ratio in behind.items())
     return Finding(
         interpretation,
         Holds.share(1 - len(behind) / len(ratios), yes=1.0),
         f"within {FACTOR:g} times in {len(ratios) - len(behind)} of {len(ratios)} conditions"
-        + (f"; beyond it: {told} times" if behind else ""),
+        + (f"; beyond it: {parts} times" if behind else ""),
     )
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from reproduction.apf_systems import (
     INTERPRETATIONS,
-    INTERPRETATIONS_TOLD,
+    INTERPRETATIONS_NOTE,
     SETTING,
     artificial_video,
     with_sigma,
@@ -137,7 +137,7 @@ def _verdict(grids: Mapping[str, Grid], size: Size) -> ExperimentVerdict:
         ),
         f"{SETTING} No bar; speeds from {speeds[0]} to {speeds[-1]} and sigma from {sigmas[0]} to "
         f"{sigmas[-1]} px/frame, {len(size.seeds)} seeds; grey levels are means over the seeds. "
-        f"{INTERPRETATIONS_TOLD}",
+        f"{INTERPRETATIONS_NOTE}",
     )
 
 
@@ -147,8 +147,8 @@ def _least(interpretation: str, grid: Grid, size: Size) -> Finding:
     best = sigmas[means.argmin(axis=1)]
     holding = np.all(grid < CLOSE_PX, axis=2)
     if not np.any(holding):
-        told = f"no sigma follows the vehicle (least mean RMSE: {means.min():.0f} px)"
-        return Finding(interpretation, Holds.NO, told)
+        parts = f"no sigma follows the vehicle (least mean RMSE: {means.min():.0f} px)"
+        return Finding(interpretation, Holds.NO, parts)
     slope = float(speeds @ best / (speeds @ speeds))
     held = np.any(holding, axis=1)
     first = sigmas[holding.argmax(axis=1)]

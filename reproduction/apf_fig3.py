@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from reproduction.apf_systems import (
     INTERPRETATIONS,
-    INTERPRETATIONS_TOLD,
+    INTERPRETATIONS_NOTE,
     SETTING,
     SPEED,
     artificial_video,
@@ -196,7 +196,7 @@ def _verdict(table: _Runs) -> ExperimentVerdict:
         f"{SETTING} The vehicle passes at {SPEED:g} px/frame, sigma is the same number; "
         f"{len(table.widths)} widths, "
         f"{len(table.seeds)} seeds. Grey levels are those of the first seed. "
-        f"{INTERPRETATIONS_TOLD}",
+        f"{INTERPRETATIONS_NOTE}",
     )
 
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from reproduction.apf_systems import (
     INTERPRETATIONS,
-    INTERPRETATIONS_TOLD,
+    INTERPRETATIONS_NOTE,
     SETTING,
     SPEED,
     artificial_video,
@@ -133,7 +133,7 @@ def _verdict(results: Results, size: Size) -> ExperimentVerdict:
         ),
         f"{SETTING} It passes at {SPEED:g} px/frame, sigma is the same number; {len(size.seeds)} "
         "seeds. Curves are those of the first seed. "
-        f"{INTERPRETATIONS_TOLD}",
+        f"{INTERPRETATIONS_NOTE}",
     )
 
 

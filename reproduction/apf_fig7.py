@@ -53,7 +53,7 @@ def _verdict(runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
     }
     others = {rival.label: video3.recoveries(runs[rival.label]) for rival in RIVALS}
     lost = [not hit for hits in others.values() for hit in hits]
-    told = "; ".join(f"{label} {counted(hits)}" for label, hits in others.items())
+    parts = "; ".join(f"{label} {counted(hits)}" for label, hits in others.items())
     return ExperimentVerdict(
         (
             Claim(
@@ -71,7 +71,7 @@ def _verdict(runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
             Claim(
                 "PF, SAPF, HPFMS, PFCL and MS do not",
                 _PLACE,
-                (Finding("their defaults", Holds.share(share(lost)), f"recovered from: {told}"),),
+                (Finding("their defaults", Holds.share(share(lost)), f"recovered from: {parts}"),),
             ),
         ),
         f"{video3.SETTING} {len(size.seeds)} seeds; curves are those of the first.",

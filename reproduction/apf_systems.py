@@ -46,7 +46,7 @@ ALL_INTERPRETATIONS = {
     "ours with tau 0.7": LOWER,
     "as printed": PRINTED,
 }
-INTERPRETATIONS_TOLD = (
+INTERPRETATIONS_NOTE = (
     "Our interpretation (the defaults of `apf`) holds the similarities against their own "
     "running level; "
     "with tau they are held against that number, as in the paper; as printed follows the paper to "
@@ -61,7 +61,7 @@ SIGMA_RULE = (
     f"One rule sets sigma for every tracker that has one: {SPEEDS_PER_SIGMA:g} times the vehicle's "
     "nominal speed (the paper relates sigma to the speed), kept within the paper's interval from "
     f"{LEAST_SIGMA:g} to {LARGEST_SIGMA:g} px/frame. Everything else is each variant's default. "
-    + INTERPRETATIONS_TOLD
+    + INTERPRETATIONS_NOTE
 )
 _SIGMA = {"apf": "motion.sigma_w", "ms": None}
 

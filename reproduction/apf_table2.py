@@ -97,7 +97,7 @@ def _setting(size: Size) -> str:
     return (
         "Scenes `video01` to `video20` are counterparts of the paper's table I (kind of vehicle, "
         "resolution, kind of occlusion; 15 frames per second), made before any tracker ran on "
-        f"them. Seeds {size.seeds.start} to {size.seeds.stop - 1}: each draws the scene anew "
+        f"them. Seeds {size.seeds.start} to {size.seeds.stop - 1}: each renders a new scene "
         f"(colour of the vehicle, traffic, ground, noise) and seeds the tracker. {SIGMA_RULE} The "
         "rule was chosen on 14 scenes with seeds from 100 on: of three that follow the speed (1 "
         "and 1.5 times the nominal one, 1 times the highest) it gave the six trackers together the "
@@ -192,7 +192,7 @@ def _claims(
     videos: Errors, hits: Mapping[str, Sequence[bool]], others: Mapping[str, Sequence[bool]]
 ) -> tuple[Claim, ...]:
     groups = _groups(videos)
-    told = "; ".join(f"{label} {counted(found)}" for label, found in others.items())
+    parts = "; ".join(f"{label} {counted(found)}" for label, found in others.items())
     return (
         Claim(
             "over all videos APF has the smallest average RMSE",
@@ -223,7 +223,7 @@ def _claims(
                         share(found) >= 0.9 and all(share(o) < 0.5 for o in others.values()),
                         share(found) > max(map(share, others.values())),
                     ),
-                    f"recovered from {counted(found)} total occlusions; {told}",
+                    f"recovered from {counted(found)} total occlusions; {parts}",
                 )
                 for name, found in hits.items()
             ),
@@ -259,11 +259,11 @@ def _everywhere(videos: Errors, interpretation: str) -> Finding:
     }
     behind = [name for name, is_ahead in ahead.items() if not is_ahead]
     listed = ", ".join(name.removeprefix("video") for name in behind)
-    told = f"; behind on {listed}" if 0 < len(behind) < len(occluded) else ""
+    parts = f"; behind on {listed}" if 0 < len(behind) < len(occluded) else ""
     return Finding(
         interpretation,
         Holds.share(share(list(ahead.values()))),
-        f"smallest median RMSE on {counted(list(ahead.values()))} of them{told}",
+        f"smallest median RMSE on {counted(list(ahead.values()))} of them{parts}",
     )
 
 

@@ -89,7 +89,7 @@ def _figure(ratios: dict[str, list[float]]) -> Figure:
 def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
     middle = {label: median(found) for label, found in ratios.items()}
     filters = [rival.label for rival in RIVALS if rival.label != "MS"]
-    told = ", ".join(f"{label} {median_and_range(ratios[label], 2)}" for label in filters)
+    parts = ", ".join(f"{label} {median_and_range(ratios[label], 2)}" for label in filters)
     cheaper = [label for label in filters if middle[label] < 1]
     alike = [1 / _ALIKE <= middle[label] <= _ALIKE for label in filters]
     mean_shift = f"{median_and_range(ratios['MS'], 2)} of APF's time"
@@ -99,13 +99,13 @@ def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
                 "APF takes no more time than the other particle filters",
                 _PLACE,
                 (Finding("their defaults", Holds.of(not cheaper, len(cheaper) < len(filters)),
-                         f"times over APF's: {told}"),),
+                         f"times over APF's: {parts}"),),
             ),
             Claim(
                 "all particle filters take about the same time (within 5 % in the paper)",
                 _PLACE,
                 (Finding("their defaults", Holds.of(all(alike), any(alike)),
-                         f"times over APF's: {told}"),),
+                         f"times over APF's: {parts}"),),
             ),
             Claim(
                 "mean shift takes the least time",

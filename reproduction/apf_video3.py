@@ -23,7 +23,7 @@ SYSTEMS = (*SIX, FIXED, PRINTED)
 SETTING = (
     "The scene `video03` is our counterpart of the paper's Video3: a sport utility vehicle passes "
     "a lamp post, is hidden by a sign and then by a coach that overtakes; 15 frames per second. "
-    "Each seed draws the scene anew and seeds the trackers. " + SIGMA_RULE
+    "Each seed renders a new scene and seeds the trackers. " + SIGMA_RULE
 )
 _RECORD = (*PATH, "regime")
 

@@ -13,7 +13,7 @@ from vehicle_pf_tracker.evaluation.plots import STYLES
 
 SHADES = {"total": "0.84", "partial and total": "0.84", "partial": "0.93", "none": "white"}
 """The ground of a scene by its kind of occlusion."""
-GROUND_TOLD = "(dark ground: total occlusion, light: partial, white: none)"
+GROUND_NOTE = "(dark ground: total occlusion, light: partial, white: none)"
 _SPREAD = 0.66
 """Width that the marks of one scene take up together, in scenes."""
 
@@ -60,7 +60,7 @@ def error_case_figure(
     axes = figure.add_subplot()
     draw_cases(axes, values, shades)
     axes.set_xticks(range(len(values)), list(names))
-    axes.set(yscale="log", ylabel="RMSE, px", xlabel=f"{what} {GROUND_TOLD}")
+    axes.set(yscale="log", ylabel="RMSE, px", xlabel=f"{what} {GROUND_NOTE}")
     axes.yaxis.set_major_formatter("{x:g}")
     figure.legend(loc="outside lower center", ncols=6, frameon=False)
     return figure

@@ -95,7 +95,7 @@ class Probe(Protocol):
         ...
 
     def result(self) -> Result:
-        """Say what came out."""
+        """Return the result of the run."""
         ...
 
 

@@ -130,7 +130,7 @@ class ExperimentVerdict:
         """Return the text, with a table per claim."""
         parts = [f"**ExperimentVerdict: {self.holds.value}.**", self.setting]
         for claim in self.claims:
-            rows = ["| interpretation | holds | what came out |", "|---|---|---|"]
+            rows = ["| interpretation | holds | result |", "|---|---|---|"]
             rows += [
                 f"| {f.interpretation} | **{f.holds.value}** | {f.numbers} |"
                 for f in claim.findings

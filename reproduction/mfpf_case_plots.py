@@ -45,7 +45,7 @@ def draw_by_case(
     axes = figure.subplots(rows, _COLUMNS, sharey=one_scale, squeeze=False)
     for ax, case in zip(axes.flat, names, strict=True):
         draw(ax, case)
-        ax.set_title(f"case {case[-1]}: {mfpf.told(case)}", fontsize="medium")
+        ax.set_title(f"case {case[-1]}: {mfpf.occlusion_text(case)}", fontsize="medium")
         ax.set(xlabel="")
     for ax in axes[-1]:
         ax.set(xlabel="frame")

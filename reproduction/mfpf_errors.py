@@ -104,10 +104,10 @@ def _steadiest(results: Results, size: Size, interpretation: str) -> Finding:
         for system in FOUR
     }
     least, most = min(spreads, key=spreads.__getitem__), max(spreads, key=spreads.__getitem__)
-    told = ", ".join(f"{label} {value:.1f}" for label, value in spreads.items())
+    parts = ", ".join(f"{label} {value:.1f}" for label, value in spreads.items())
     return Finding(
         interpretation, Holds.of((least, most) == (MFPF.label, "Edge"), least == MFPF.label),
-        f"standard deviation of the error over the frames, mean of the seeds: {told} px",
+        f"standard deviation of the error over the frames, mean of the seeds: {parts} px",
     )  # fmt: skip
 
 

@@ -64,7 +64,7 @@ def _figure(results: Results, size: Size) -> Figure:
 
 
 def _finding(results: Results, size: Size) -> Finding:
-    fits, told = [], []
+    fits, parts = [], []
     for case in mfpf.cases(size):
         hidden, partial = [], []
         for seed in size.seeds:
@@ -73,11 +73,11 @@ def _finding(results: Results, size: Size) -> Finding:
             hidden.append(kinds.count(Occlusion.TOTAL))
             partial.append(kinds.count(Occlusion.PARTIAL))
         fits.append(_fits(case, hidden, partial))
-        told.append(
-            f"{case} ({mfpf.told(case)}) {min(partial)} to {max(partial)} partly and "
+        parts.append(
+            f"{case} ({mfpf.occlusion_text(case)}) {min(partial)} to {max(partial)} partly and "
             f"{min(hidden)} to {max(hidden)} fully hidden frames"
         )
-    return Finding(OURS, Holds.of(all(fits), any(fits)), "; ".join(told))
+    return Finding(OURS, Holds.of(all(fits), any(fits)), "; ".join(parts))
 
 
 def _fits(case: str, hidden: list[int], partial: list[int]) -> bool:

@@ -184,7 +184,7 @@ def _setting(size: Size) -> str:
         f"Windows at the true position, seeds {size.seeds.start} to {size.seeds.stop - 1}; "
         f"shadow: the frames of `{_SCENES['shadow']}` (the quarter that is furthest from the "
         f"first in colour, to have those in shadow); partly hidden: those of "
-        f"`{_SCENES['partial']}` with less than {100 * _HALF:.0f} % of the vehicle in sight; fully "
+        f"`{_SCENES['partial']}` with less than {100 * _HALF:.0f} % of the vehicle visible; fully "
         f"hidden: those of `{_SCENES['full']}`. The picture shows the first seed under our "
         "interpretation: first frame, then the furthest of each kind."
     )
@@ -227,23 +227,23 @@ def _claims(found: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[Claim,
 
 
 def _order(interpretation: str, of: dict[str, dict[str, list[float]]]) -> Finding:
-    holds, told = [], []
+    holds, parts = [], []
     for situation in ("shadow", "partial"):
         means = {name: fmean(values) for name, values in of[situation].items()}
         order = sorted(means, key=means.__getitem__)
         holds.append(Holds.of(order == ["edge", "texture", "color"], order[0] == "edge"))
         values = " < ".join(f"{FEATURES[name]} {means[name]:.2f}" for name in order)
-        told.append(f"{_TITLES[situation]}: {values}")
-    return Finding(interpretation, Holds.all(holds), f"mean distances, {'; '.join(told)}")
+        parts.append(f"{_TITLES[situation]}: {values}")
+    return Finding(interpretation, Holds.all(holds), f"mean distances, {'; '.join(parts)}")
 
 
 def _empty(interpretation: str, of: dict[str, dict[str, list[float]]]) -> Finding:
     means = {name: fmean(values) for name, values in of["full"].items()}
     empty = [value >= _INFORMATIVE for value in means.values()]
-    told = ", ".join(f"{FEATURES[name]} {value:.2f}" for name, value in means.items())
+    parts = ", ".join(f"{FEATURES[name]} {value:.2f}" for name, value in means.items())
     return Finding(
         interpretation, Holds.of(all(empty), any(empty)),
-        f"distances (at least {_INFORMATIVE:g} counts as not informative): {told}",
+        f"distances (at least {_INFORMATIVE:g} counts as not informative): {parts}",
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from reproduction import mfpf_systems as mfpf
 from reproduction.case_figure import (
-    GROUND_TOLD,
+    GROUND_NOTE,
     SHADES,
     Values,
     draw_cases,
@@ -34,7 +34,7 @@ def share_report(
     shares: Mapping[str, Values],
     paper: Mapping[str, Sequence[float]],
     size: Size,
-    told: ShareWords,
+    words: ShareWords,
     claims: Sequence[Claim],
 ) -> Report:
     """Table the percentages by interpretation, case and filter, and the paper's claims."""
@@ -46,10 +46,10 @@ def share_report(
         for seed, value in zip(size.seeds, values, strict=True)
     ]
     return Report(
-        DataTable(("interpretation", "case", told.of, "seed", told.column), tuple(rows)),
-        _share_figure(shares[OURS], told.axis),
+        DataTable(("interpretation", "case", words.of, "seed", words.column), tuple(rows)),
+        _share_figure(shares[OURS], words.axis),
         ExperimentVerdict(tuple(claims), mfpf.setting(size)),
-        {told.title: _share_table(shares, paper)},
+        {words.title: _share_table(shares, paper)},
     )
 
 
@@ -77,6 +77,6 @@ def _share_figure(found: Values, what: str) -> Figure:
     axes = figure.add_subplot()
     draw_cases(axes, found, {case: SHADES[CASES[case].occlusion] for case in found})
     axes.set_xticks(range(len(found)), [case.removeprefix("case") for case in found])
-    axes.set(ylim=(-3, 103), ylabel=what, xlabel=f"case {GROUND_TOLD}")
+    axes.set(ylim=(-3, 103), ylabel=what, xlabel=f"case {GROUND_NOTE}")
     figure.legend(loc="outside lower center", ncols=4, frameon=False)
     return figure

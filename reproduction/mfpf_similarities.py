@@ -125,19 +125,19 @@ def _used(
 
 
 def _stays(results: Results, size: Size, interpretation: str) -> Finding:
-    told, least = [], []
+    parts, least = [], []
     for case in ("case2", "case3"):
         if case not in mfpf.cases(size):
             continue
         used = _used(results, size, case, interpretation)
         least.append(min(fmean(values) for values in used.values()))
-        told.append(f"{case}: " + ", ".join(
+        parts.append(f"{case}: " + ", ".join(
             f"{FEATURES[name]} {mean_and_spread([100 * v for v in values], 0)}"
             for name, values in used.items()
         ))  # fmt: skip
     return Finding(
         interpretation, Holds.of(min(least) >= 0.95, min(least) >= 0.5),
-        f"percent of the frames in use, {'; '.join(told)}",
+        f"percent of the frames in use, {'; '.join(parts)}",
     )  # fmt: skip
 
 
@@ -151,13 +151,13 @@ def _lowest(results: Results, size: Size, interpretation: str, case: str, featur
             values = trace[f"as_{name}"][1:]
             losses[name].append(1 - min(values) / values[0])
     means = {name: fmean(values) for name, values in losses.items()}
-    told = ", ".join(
+    parts = ", ".join(
         f"{FEATURES[name]} {mean_and_spread([100 * v for v in values], 0)} %"
         for name, values in losses.items()
     )
     return Finding(
         interpretation, Holds.of(means[feature] == max(means.values())),
-        f"largest loss of the average similarity: {told}",
+        f"largest loss of the average similarity: {parts}",
     )  # fmt: skip
 
 
@@ -171,14 +171,14 @@ def _first_back(results: Results, size: Size, interpretation: str) -> Finding:
             found = _back(results, case, seed, interpretation)
             judged += found is not None
             firsts += found or []
-    told = ", ".join(f"{label} {firsts.count(name)}" for name, label in FEATURES.items())
+    parts = ", ".join(f"{label} {firsts.count(name)}" for name, label in FEATURES.items())
     most = max(FEATURES, key=firsts.count)
     return Finding(
         interpretation,
         Holds.of(judged > 0 and most == "edge" and firsts.count("edge") >= 0.8 * judged,
                  judged > 0 and most == "edge"),
         f"first after prediction mode, of {judged} runs that were in it at the end of a full "
-        f"occlusion: {told} (some at once)",
+        f"occlusion: {parts} (some at once)",
     )  # fmt: skip
 
 

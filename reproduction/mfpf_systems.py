@@ -123,17 +123,17 @@ def threshold(interpretation: str) -> float:
     return settings.confidence.threshold
 
 
-def told(case: str) -> str:
-    """Say what happens in a case."""
+def occlusion_text(case: str) -> str:
+    """Return the content of a case's scene, such as what occludes the vehicle."""
     return CATALOGUE[case].what
 
 
 def setting(size: Size) -> str:
-    """Say how the runs were made."""
+    """Describe the runs."""
     return (
         "Scenes `case1` to `case6` are counterparts of the paper's six cases, made before any "
-        f"tracker ran on them. Seeds {size.seeds.start} to {size.seeds.stop - 1}: each draws the "
-        "scene anew (colour of the vehicle, traffic, ground, noise) and seeds the filters. Our "
+        f"tracker ran on them. Seeds {size.seeds.start} to {size.seeds.stop - 1}: each renders a "
+        "new scene (colour of the vehicle, traffic, ground, noise) and seeds the filters. Our "
         "interpretation gives all four filters and all six cases one set of settings, for a "
         "camera that "
         "stands still and vehicles that keep their speed: "

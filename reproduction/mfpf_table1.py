@@ -237,7 +237,7 @@ def _ratios(found: Errors) -> dict[str, float]:
     }
 
 
-def _told(found: Errors) -> str:
+def _numbers_text(found: Errors) -> str:
     return ", ".join(
         f"case {_short(case)} {ratio:.2f} of {_best_single(found[case])}'s"
         for case, ratio in _ratios(found).items()
@@ -246,7 +246,9 @@ def _told(found: Errors) -> str:
 
 def _least(interpretation: str, found: Errors) -> Finding:
     least = [ratio <= 1 for ratio in _ratios(found).values()]
-    return Finding(interpretation, Holds.of(all(least), any(least)), f"MFPF's RMS: {_told(found)}")
+    return Finding(
+        interpretation, Holds.of(all(least), any(least)), f"MFPF's RMS: {_numbers_text(found)}"
+    )
 
 
 def _saving(interpretation: str, found: Errors) -> Finding:
@@ -260,8 +262,8 @@ def _saving(interpretation: str, found: Errors) -> Finding:
 
 def _no_single(interpretation: str, found: Errors) -> Finding:
     best = {case: _best_single(of_case) for case, of_case in found.items()}
-    told = ", ".join(f"case {_short(case)} {label}" for case, label in best.items())
-    return Finding(interpretation, Holds.of(len(set(best.values())) > 1), f"the best: {told}")
+    parts = ", ".join(f"case {_short(case)} {label}" for case, label in best.items())
+    return Finding(interpretation, Holds.of(len(set(best.values())) > 1), f"the best: {parts}")
 
 
 def _further(
@@ -307,18 +309,18 @@ def _over_all(interpretation: str, found: Errors, rivals: Errors) -> Finding:
 
 
 def _to_the_end(interpretation: str, found: Mapping[str, Mapping[str, Sequence[bool]]]) -> Finding:
-    enough, told = [], []
+    enough, parts = [], []
     for case, of_case in found.items():
         own = of_case[MFPF.label]
         best = max((single.label for single in SINGLES), key=lambda label: sum(of_case[label]))
         needed = _FOLLOWS if case in mfpf.WITHOUT_HIDING else share(of_case[best])
         enough.append(share(own) >= needed)
-        told.append(f"case {_short(case)} {sum(own)} ({best} {sum(of_case[best])})")
+        parts.append(f"case {_short(case)} {sum(own)} ({best} {sum(of_case[best])})")
     runs = len(next(iter(next(iter(found.values())).values())))
     return Finding(
         interpretation,
         Holds.of(all(enough), any(enough)),
-        f"of {runs} runs: {', '.join(told)}",
+        f"of {runs} runs: {', '.join(parts)}",
     )
 
 

@@ -101,14 +101,14 @@ def _open(interpretation: str, found: Values) -> Finding:
     least = [min(fmean(v) for label, v in of.items() if label != MFPF.label)
              for of in without.values()]  # fmt: skip
     own = [fmean(of[MFPF.label]) for of in without.values()]
-    told = "; ".join(
+    parts = "; ".join(
         f"{case}: " + ", ".join(f"{label} {fmean(values):.0f}" for label, values in of.items())
         for case, of in without.items()
     )
     holds = Holds.of(
         min(least) >= _OFTEN and min(own) >= _ALWAYS, max(own) >= _ALWAYS
     )  # fmt: skip
-    return Finding(interpretation, holds, f"percent of the frames, {told}")
+    return Finding(interpretation, holds, f"percent of the frames, {parts}")
 
 
 def _less(interpretation: str, found: Values) -> Finding:
@@ -117,19 +117,19 @@ def _less(interpretation: str, found: Values) -> Finding:
         for case, of in found.items()
     }
     hiding = [margins[case] for case in found if case in mfpf.FULLY_HIDDEN]
-    told = ", ".join(f"{case} {margin:.1f}" for case, margin in margins.items())
+    parts = ", ".join(f"{case} {margin:.1f}" for case, margin in margins.items())
     return Finding(
         interpretation, Holds.of(min(hiding) > 0, max(hiding) > 0),
-        f"points above the best feature: {told}",
+        f"points above the best feature: {parts}",
     )  # fmt: skip
 
 
 def _predicts(interpretation: str, found: Mapping[str, Sequence[float]]) -> Finding:
     means = [fmean(values) for values in found.values()]
-    told = "; ".join(f"{case} {median_and_range(values, 0)}" for case, values in found.items())
+    parts = "; ".join(f"{case} {median_and_range(values, 0)}" for case, values in found.items())
     return Finding(
         interpretation, Holds.of(min(means) >= _OFTEN, max(means) >= 100 - _OFTEN),
-        f"percent of the hidden frames in prediction mode: {told}",
+        f"percent of the hidden frames in prediction mode: {parts}",
     )  # fmt: skip
 
 

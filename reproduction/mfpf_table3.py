@@ -75,15 +75,15 @@ def _claims(shares: Mapping[str, Values]) -> tuple[Claim, ...]:
 
 
 def _first(interpretation: str, found: Values) -> Finding:
-    ahead, told = [], []
+    ahead, parts = [], []
     for case, of_case in found.items():
         best = max((s.label for s in SINGLES), key=lambda label: fmean(of_case[label]))
         own = fmean(of_case[MFPF.label])
         ahead.append(own >= fmean(of_case[best]))
-        told.append(f"{case} {own:.0f} % ({best} {fmean(of_case[best]):.0f} %)")
+        parts.append(f"{case} {own:.0f} % ({best} {fmean(of_case[best]):.0f} %)")
     return Finding(
         interpretation, Holds.of(sum(ahead) >= len(ahead) - 1, any(ahead)),
-        f"ahead or level in {sum(ahead)} of {len(ahead)} cases: {', '.join(told)}",
+        f"ahead or level in {sum(ahead)} of {len(ahead)} cases: {', '.join(parts)}",
     )  # fmt: skip
 
 

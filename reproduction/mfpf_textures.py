@@ -50,8 +50,8 @@ def table(results: Results, size: Size) -> DataTable:
     for texture, systems in _USED.items():
         for name, system in zip(("MFPF", "texture alone"), systems, strict=True):
             values = [_rms(results, size, case, system) for case in mfpf.cases(size)]
-            told = map(mean_and_spread, [*values, _over_cases(results, size, system)])
-            made.append((f"{name}, {texture}", *told))
+            parts = map(mean_and_spread, [*values, _over_cases(results, size, system)])
+            made.append((f"{name}, {texture}", *parts))
     return DataTable(("filter", *mfpf.cases(size), "all"), tuple(made))
 
 
@@ -64,14 +64,14 @@ def claim(results: Results, size: Size) -> Claim:
     first = [
         min(found, key=lambda texture: fmean(found[texture][which])) == _KEPT for which in (0, 1)
     ]
-    told = "; ".join(
+    parts = "; ".join(
         f"{texture} {mean_and_spread(joint)} px in MFPF, {mean_and_spread(alone)} px alone"
         for texture, (joint, alone) in found.items()
     )
     return Claim(
         "of the three textures the elements of the co-occurrence matrix are the most successful",
         "section III-D",
-        (Finding(OURS, Holds.of(all(first), any(first)), f"mean RMS over all cases: {told}"),),
+        (Finding(OURS, Holds.of(all(first), any(first)), f"mean RMS over all cases: {parts}"),),
     )
 
 

@@ -190,7 +190,7 @@ def _past_parked_vehicles(drive: Drive) -> list[Actor]:
     """Park a van that hides a part of the target, and a coach behind which it disappears."""
     length, speed = drive.target.size[0], drive.parameters.speed
     van_rear = drive.start + length / 2 + BEFORE * speed
-    # Total begins and ends with a tenth of the vehicle in sight.
+    # Total begins and ends with a tenth of the vehicle visible.
     coach_rear = van_rear + PARTIAL * speed - (1 - TOTAL_BELOW) * length
     coach_length = ((1 - 2 * TOTAL_BELOW) * length + FULL * speed) / drive.scale
     parked = (van((206, 206, 200)), van_rear), (

@@ -140,7 +140,7 @@ def _claims(errors: dict[str, Errors]) -> tuple[Claim, ...]:
     )
 
 
-def _told(found: Errors, phase: str) -> str:
+def _numbers_text(found: Errors, phase: str) -> str:
     return ", ".join(f"{variant} {median_and_range(of[phase])} px" for variant, of in found.items())
 
 
@@ -154,14 +154,14 @@ def _medians(found: Errors, phase: str) -> tuple[float, float]:
 
 def _both_low(interpretation: str, found: Errors, phase: str) -> Finding:
     low = [value < _LOW for value in _medians(found, phase)]
-    return Finding(interpretation, Holds.of(all(low), any(low)), _told(found, phase))
+    return Finding(interpretation, Holds.of(all(low), any(low)), _numbers_text(found, phase))
 
 
 def _alike(interpretation: str, found: Errors) -> Finding:
     pair = _medians(found, "partial")
     alike = max(pair) <= _ALIKE * min(pair)
     return Finding(
-        interpretation, Holds.of(alike and max(pair) < _LOW, alike), _told(found, "partial")
+        interpretation, Holds.of(alike and max(pair) < _LOW, alike), _numbers_text(found, "partial")
     )
 
 
@@ -170,7 +170,7 @@ def _worse(interpretation: str, found: Errors, phase: str) -> Finding:
     return Finding(
         interpretation,
         Holds.of(conventional >= _HIGHER * adaptive, conventional > _ALIKE * adaptive),
-        _told(found, phase),
+        _numbers_text(found, phase),
     )
 
 
@@ -181,8 +181,8 @@ def _lost(interpretation: str, found: Errors) -> Finding:
     return Finding(
         interpretation,
         Holds.of(ours >= 0.8 * runs and others <= 0.2 * runs, ours > others),
-        f"{_told(found, 'after')}; below {_LOW:g} px in {ours} of {runs} runs of adaptive and "
-        f"{others} of conventional",
+        f"{_numbers_text(found, 'after')}; below {_LOW:g} px in {ours} of {runs} runs of adaptive "
+        f"and {others} of conventional",
     )
 
 
@@ -190,7 +190,7 @@ def _no_worse(interpretation: str, found: Errors) -> Finding:
     conventional, adaptive = _medians(found, "all")
     return Finding(
         interpretation, Holds.of(adaptive <= _AT_MOST * conventional),
-        f"{_told(found, 'all')}: {adaptive / conventional:.2f} times",
+        f"{_numbers_text(found, 'all')}: {adaptive / conventional:.2f} times",
     )  # fmt: skip
 
 

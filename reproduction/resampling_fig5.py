@@ -148,30 +148,30 @@ def _fewer(results: Results, size: Size, interpretation: str) -> Finding:
         for found in both
         for name in PHASES
     ]
-    told = "; ".join(
+    parts = "; ".join(
         f"{name}: {both[0][ADAPTIVE.variant][name]:.1f} passes and "
         f"{both[1][ADAPTIVE.variant][name]:.0f} particles against "
         f"{both[0][CONVENTIONAL.variant][name]:.1f} and {both[1][CONVENTIONAL.variant][name]:.0f}"
         for name in PHASES
     )
-    return Finding(interpretation, Holds.of(all(less), any(less)), told)
+    return Finding(interpretation, Holds.of(all(less), any(less)), parts)
 
 
 def _endless(interpretation: str, found: Means) -> Finding:
     own = found[CONVENTIONAL.variant]
     full = [own[name] >= 0.95 * _MOST_PASSES for name in ("full", "after")]
     rises = own["full"] > own["before"]
-    told = ", ".join(f"{name} {own[name]:.1f}" for name in PHASES)
+    parts = ", ".join(f"{name} {own[name]:.1f}" for name in PHASES)
     return Finding(
-        interpretation, Holds.of(all(full) and rises, any(full)), f"passes a frame: {told}"
+        interpretation, Holds.of(all(full) and rises, any(full)), f"passes a frame: {parts}"
     )
 
 
 def _few(interpretation: str, found: Means) -> Finding:
     own = found[ADAPTIVE.variant]
     few = [own[name] <= _LOW for name in PHASES]
-    told = ", ".join(f"{name} {own[name]:.1f}" for name in PHASES)
-    return Finding(interpretation, Holds.of(all(few), any(few)), f"passes a frame: {told}")
+    parts = ", ".join(f"{name} {own[name]:.1f}" for name in PHASES)
+    return Finding(interpretation, Holds.of(all(few), any(few)), f"passes a frame: {parts}")
 
 
 def _saving(results: Results, size: Size, interpretation: str) -> Finding:

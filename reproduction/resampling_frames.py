@@ -89,7 +89,7 @@ def _contains(box: Box, position: tuple[float, float] | None) -> bool:
     return box.x <= x <= box.x + box.width and box.y <= y <= box.y + box.height
 
 
-def _told(hits: list[int], size: Size) -> str:
+def _numbers_text(hits: list[int], size: Size) -> str:
     phases = ", ".join(f"{name} {count}" for name, count in zip(PHASES, hits, strict=True))
     return f"within the true box, of {len(size.seeds)} runs: {phases}"
 
@@ -97,7 +97,9 @@ def _told(hits: list[int], size: Size) -> str:
 def _on_it(results: Results, size: Size, interpretation: str, variant: str) -> Finding:
     hits = _hits(results, size, interpretation, variant)
     enough = [count >= 0.8 * len(size.seeds) for count in hits]
-    return Finding(interpretation, Holds.of(all(enough), all(enough[:2])), _told(hits, size))
+    return Finding(
+        interpretation, Holds.of(all(enough), all(enough[:2])), _numbers_text(hits, size)
+    )
 
 
 def _stuck(results: Results, size: Size, interpretation: str) -> Finding:
@@ -105,7 +107,9 @@ def _stuck(results: Results, size: Size, interpretation: str) -> Finding:
     runs = len(size.seeds)
     on_it = all(count >= 0.8 * runs for count in hits[:2])
     lost = hits[-1] <= 0.2 * runs
-    return Finding(interpretation, Holds.of(on_it and lost, on_it or lost), _told(hits, size))
+    return Finding(
+        interpretation, Holds.of(on_it and lost, on_it or lost), _numbers_text(hits, size)
+    )
 
 
 EXPERIMENT = Experiment(

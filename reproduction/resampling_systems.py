@@ -21,7 +21,7 @@ CONVENTIONAL, ADAPTIVE = (
 BOTH = (CONVENTIONAL, ADAPTIVE)
 OURS, PRINTED = "our interpretation", "as printed"
 STRICTER = "as printed, low weight below half the mean"
-BY_SIMILARITY = "occlusion told by similarity"
+BY_SIMILARITY = "occlusion parts by similarity"
 PHASES = "before", "partial", "full", "after"
 """Frames of the vehicle's way past the occluders."""
 _DEFAULT_SCHEME = "multinomial"
@@ -62,7 +62,7 @@ INTERPRETATIONS: Mapping[str, tuple[System, System]] = MappingProxyType(
 SETTING = (
     "The scene `phases` is our counterpart of the paper's video: a car passes a parked van that "
     "hides its lower half and a parked coach that hides all of it; 15 frames per second. Each seed "
-    "draws the scene anew and seeds the filters. Both filters have the same criterion (0.7 of 200 "
+    "renders a new scene and seeds the filters. Both filters have the same criterion (0.7 of 200 "
     "particles; as printed all of them, which no filter can reach), sigma, random walk and seeds, "
     "and at most 20 passes a frame, as in the paper. The paper does not say which "
     "weights are low: those below the mean one, but where half of it is named. The scheme is "

@@ -38,7 +38,7 @@ def complete(
     workers : int
         Processes; with 1 this one does the work. Results do not depend on it.
     on_progress : callable
-        Is told at the start and after every batch.
+        Is parts at the start and after every batch.
 
     Raises
     ------

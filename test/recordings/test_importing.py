@@ -15,6 +15,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.recordings import topics
+from vehicle_pf_tracker.recordings.footage import stamp_of
 from vehicle_pf_tracker.recordings.importing import import_recording
 from vehicle_pf_tracker.recordings.reader import Recording
 
@@ -265,6 +266,12 @@ def test_a_video_shorter_than_it_states_is_imported_with_a_notice(video, tmp_pat
     assert "states 20 frames" in summary.notices[0]
 
 
+def test_truth_of_a_video_up_to_its_last_frame(video, tmp_path):
+    (tmp_path / "truth.csv").write_text("frame,x,y,w,h\n1,2,3,4,5\n20,3,3,4,5\n21,4,3,4,5\n")
+    summary = import_recording(video, tmp_path / "bag", truth=tmp_path / "truth.csv")
+    assert (summary.truths, summary.notices) == (2, ("frames of the truth without an image: 1",))
+
+
 def sequence_folders():
     return sorted(SEQUENCES.glob("*/*/sequence.json"))
 
@@ -318,3 +325,10 @@ def test_a_table_of_truth_is_for_videos_alone(frame_folder, video, tmp_path):
         import_recording(
             frame_folder(), tmp_path / "bag", truth=truth_file(tmp_path, "1,2,3,8,6,0")
         )
+
+
+def test_stamps_are_rounded_to_the_nearest_nanosecond():
+    # A period of 666 666 666.67 ns.
+    assert [stamp_of(index, 1.5) for index in (1, 2, 3)] == [
+        1_666_666_667, 2_333_333_333, 3_000_000_000,
+    ]  # fmt: skip

@@ -1,6 +1,7 @@
 """Reading back: pictures, truth, messages, topics, time, memory."""
 
 import shutil
+import struct
 import tracemalloc
 
 import cv2
@@ -15,6 +16,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import mcap_blocks, messages, topics
+from vehicle_pf_tracker.recordings.cdr import header_stamp_ns
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import COMPRESSIONS, RecordingWriter
 
@@ -363,3 +365,14 @@ def test_whole_files_without_a_full_index_are_read_without_complaint(bare_mcap, 
     assert recording.notices == []
     assert recording.frame_count == 6
     assert stamps(recording) == [stamp_of(index) for index in range(6)]
+
+
+@pytest.mark.parametrize("length", [0, 4, 8, 11])
+def test_a_message_too_short_for_a_header_has_no_stamp(length):
+    assert header_stamp_ns(memoryview(bytes(length))) is None
+
+
+def test_stamps_in_both_byte_orders():
+    little = bytes((0, 1, 0, 0)) + struct.pack("<iI", 3, 7)
+    big = bytes((0, 0, 0, 0)) + struct.pack(">iI", 3, 7)
+    assert header_stamp_ns(memoryview(little)) == header_stamp_ns(memoryview(big)) == 3_000_000_007

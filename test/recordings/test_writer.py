@@ -23,6 +23,13 @@ def information(folder):
     return yaml.safe_load((folder / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
 
 
+def test_messages_of_a_topic_are_numbered(record):
+    with only_mcap(record(4)).open("rb") as stream:
+        found = [(c.topic, m.sequence) for _, c, m in make_reader(stream).iter_messages()]
+    for topic in (topics.IMAGE_TOPIC, *topics.TRUTH_TOPICS):
+        assert [number for name, number in found if name == topic] == [0, 1, 2, 3]
+
+
 @pytest.mark.parametrize("compression", COMPRESSIONS)
 def test_other_readers_find_every_message(record, compression):
     folder = record(7, compression=compression)

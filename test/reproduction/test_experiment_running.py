@@ -54,10 +54,10 @@ def test_nothing_is_run_twice(path):
     cells = run_cells()
     complete(cells, ResultStore(path), 1, silent)
     before = path.read_bytes()
-    told = []
-    complete([*cells, *cells], ResultStore(path), 1, told.append)
+    parts = []
+    complete([*cells, *cells], ResultStore(path), 1, parts.append)
     assert path.read_bytes() == before
-    assert told == []
+    assert parts == []
 
 
 def test_changed_parameters_are_run_anew(path):
@@ -72,9 +72,9 @@ def test_a_line_that_was_not_finished_is_dropped_and_run_anew(path):
     whole = complete(cells, ResultStore(path), 1, silent)
     text = path.read_bytes()
     path.write_bytes(text[:-40])
-    told = []
-    again = complete(cells, ResultStore(path), 1, told.append)
-    assert told[-1].total == 1
+    parts = []
+    again = complete(cells, ResultStore(path), 1, parts.append)
+    assert parts[-1].total == 1
     assert again == whole
     assert path.read_bytes() == text
 
@@ -83,9 +83,9 @@ def test_a_line_that_is_no_result_is_passed_over(path):
     cells = run_cells()
     complete(cells, ResultStore(path), 1, silent)
     path.write_text("nonsense\n[1]\n" + path.read_text())
-    told = []
-    complete(cells, ResultStore(path), 1, told.append)
-    assert told == []
+    parts = []
+    complete(cells, ResultStore(path), 1, parts.append)
+    assert parts == []
 
 
 def test_cells_of_one_scene_share_its_rendering(path, monkeypatch):
@@ -98,22 +98,22 @@ def test_cells_of_one_scene_share_its_rendering(path, monkeypatch):
 
 def test_cells_that_must_be_alone_are(path):
     cells = [CountingCell("a"), CountingCell("b", alone=True), CountingCell("c", alone=True)]
-    told = []
-    results = complete(cells, ResultStore(path), 2, told.append)
+    parts = []
+    results = complete(cells, ResultStore(path), 2, parts.append)
     assert {cell.name: result["frames"] for cell, result in results.items()} == {
         "a": SCENE.make().frame_count, "b": SCENE.make().frame_count,
         "c": SCENE.make().frame_count,
     }  # fmt: skip
-    running = [progress.running for progress in told]
+    running = [progress.running for progress in parts]
     assert ("b",) in running
     assert ("c",) in running
 
 
 def test_progress_tells_what_runs_and_ends_at_the_total(path):
-    told = []
-    complete(run_cells(), ResultStore(path), 1, told.append)
-    assert (told[0].done, told[0].total, told[0].running) == (0, 6, ("bar PF",))
-    assert (told[-1].done, told[-1].total, told[-1].running) == (6, 6, ())
+    parts = []
+    complete(run_cells(), ResultStore(path), 1, parts.append)
+    assert (parts[0].done, parts[0].total, parts[0].running) == (0, 6, ("bar PF",))
+    assert (parts[-1].done, parts[-1].total, parts[-1].running) == (6, 6, ())
 
 
 def test_a_store_that_cannot_be_written_is_named(tmp_path):

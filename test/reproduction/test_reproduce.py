@@ -93,10 +93,10 @@ def test_what_was_ended_continues_and_comes_out_the_same(tmp_path, number):
     while not (cells.exists() and cells.stat().st_size) and time.monotonic() < deadline:
         time.sleep(0.02)
     process.send_signal(number)
-    _, told = process.communicate(timeout=10)
+    _, parts = process.communicate(timeout=10)
     if number == signal.SIGINT:
         assert process.returncode == 130
-        assert "Traceback" not in told
+        assert "Traceback" not in parts
     assert cells.stat().st_size > 0
     assert not (ended / "apf-fig3").exists()
     assert reproduce(ended, "apf-fig3") == 0

@@ -50,7 +50,7 @@ def test_a_verdict_is_plain_json():
 def test_a_verdict_is_a_text_with_a_table_for_each_claim():
     assert verdict().to_markdown() == (
         "**ExperimentVerdict: yes.**\n\nA bar.\n\nClaim (figure 1): it follows\n\n"
-        "| interpretation | holds | what came out |\n|---|---|---|\n"
+        "| interpretation | holds | result |\n|---|---|---|\n"
         "| our interpretation | **yes** | 3 px |\n| as printed | **no** | 300 px |\n\nMind the "
         "gap.\n"
     )
