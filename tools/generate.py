@@ -1,7 +1,8 @@
 """Files that follow from the registry and the parameter tables: `make config` writes them.
 
-These are config/ (parameter files and the SROS 2 policy), docs/parameters.md, and the tables of
-variants between the markers in README.md, docs/choosing.md and docs/variants.md.
+These are config/ (parameter files and the SROS 2 policy), docs/parameters.md, the picture of the
+rooms in docs/development.md, and the tables of variants between the markers in README.md,
+docs/choosing.md and docs/variants.md.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
+from tools import rooms
 from tools.sros2_policy import policy
 from vehicle_pf_tracker.cli.params import all_markdown, default_yaml
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
@@ -47,6 +49,10 @@ def generated_files(root: Path = ROOT) -> dict[Path, str]:
     for page, columns in TABLES.items():
         text = (root / page).read_text(encoding="utf-8")
         files[root / page] = replace_table(text, markdown_table(columns, variants))
+    development = root / "docs" / "development.md"
+    drawing = rooms.mermaid(rooms.reduced(rooms.rooms_graph(root / rooms.PACKAGE)))
+    text = development.read_text(encoding="utf-8")
+    files[development] = rooms.replace_drawing(text, drawing)
     return files
 
 

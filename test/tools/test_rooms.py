@@ -1,0 +1,60 @@
+"""The picture of the rooms follows the imports."""
+
+from pathlib import Path
+
+import pytest
+
+from tools.rooms import BEGIN, END, mermaid, reduced, replace_drawing, rooms_graph
+
+SOURCE = Path(__file__).resolve().parents[2] / "vehicle_pf_tracker"
+
+
+def made_up(folder, **files):
+    for name, text in files.items():
+        path = folder.joinpath(*name.split("__")).with_suffix(".py")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return rooms_graph(folder)
+
+
+def test_an_import_is_an_arrow_between_rooms(tmp_path):
+    graph = made_up(
+        tmp_path,
+        core__box="import numpy",
+        image__window="from vehicle_pf_tracker.core.box import Box",
+        image__kernels__choice="def f():\n    from vehicle_pf_tracker.image.window import Window",
+        ros__node__stream="from vehicle_pf_tracker.core import box",
+    )
+    assert graph == {
+        "core": set(), "image": {"core"}, "image/kernels": {"image"}, "ros": {"core"},
+    }  # fmt: skip
+
+
+def test_an_arrow_that_follows_from_others_is_left_out():
+    graph = {"a": {"b", "c"}, "b": {"c"}, "c": set(), "d": {"c"}}
+    assert reduced(graph) == {"a": {"b"}, "b": {"c"}, "c": set(), "d": {"c"}}
+
+
+def test_rooms_that_need_each_other_keep_their_arrows():
+    assert reduced({"a": {"b"}, "b": {"a"}}) == {"a": {"b"}, "b": {"a"}}
+
+
+def test_a_drawing_names_every_room_and_arrow():
+    assert mermaid({"ros/node": {"core"}, "core": set()}).splitlines() == [
+        "```mermaid", "graph TD", '    core["core"]', '    ros_node["ros/node"]',
+        "    ros_node --> core", "```",
+    ]  # fmt: skip
+
+
+def test_the_package_has_a_ground_and_a_roof():
+    graph = rooms_graph(SOURCE)
+    assert graph["core"] == set()
+    assert "cli" not in set().union(*graph.values())
+    assert "evaluation" in graph["cli"]
+    assert reduced(graph)["ros"] == {"evaluation"}
+
+
+@pytest.mark.parametrize("page", ["", BEGIN, END + BEGIN])
+def test_a_page_without_markers_is_an_error(page):
+    with pytest.raises(ValueError, match="no pair of markers"):
+        replace_drawing(page, "new\n")

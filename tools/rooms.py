@@ -1,0 +1,108 @@
+"""The rooms of the package as a graph, drawn from the import statements of their modules."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+PACKAGE = "vehicle_pf_tracker"
+DIVIDED = {"image", "trackers"}
+"""Rooms whose folders are drawn too."""
+
+BEGIN, END = "<!-- rooms: `make config` draws this -->\n\n", "\n<!-- rooms: end -->"
+
+Graph = Mapping[str, set[str]]
+
+
+def rooms_graph(source: Path) -> dict[str, set[str]]:
+    """Return the rooms that each room imports from, itself left out.
+
+    Parameters
+    ----------
+    source : Path
+        Folder of the package.
+    """
+    modules = {_name(path, source): path for path in sorted(source.rglob("*.py"))}
+    graph: dict[str, set[str]] = {_room(name): set() for name in modules if "." in name}
+    for name, path in modules.items():
+        room = _room(name)
+        for target in _imports(path):
+            known = target if target in modules else target.rpartition(".")[0]
+            other = _room(known)
+            if room in graph and other in graph and other != room:
+                graph[room].add(other)
+    return graph
+
+
+def reduced(graph: Graph) -> dict[str, set[str]]:
+    """Leave out the arrows that follow from others: A to C where A to B and B to C are drawn."""
+    return {
+        room: {
+            other
+            for other in others
+            if not any(other in _reach(graph, between, {room}) for between in others - {other})
+        }
+        for room, others in graph.items()
+    }
+
+
+def mermaid(graph: Graph) -> str:
+    """Write the graph for pages that draw Mermaid; an arrow says "imports from"."""
+    lines = ["```mermaid", "graph TD"]
+    for room in sorted(graph):
+        shape = f'    {_id(room)}["{room}"]'
+        lines.append(shape)
+    for room in sorted(graph):
+        lines += [f"    {_id(room)} --> {_id(other)}" for other in sorted(graph[room])]
+    return "\n".join([*lines, "```"]) + "\n"
+
+
+def replace_drawing(text: str, drawing: str) -> str:
+    """Put the drawing between the markers in `text`.
+
+    Raises
+    ------
+    ValueError
+        If the markers are not there.
+    """
+    before, begin, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not (begin and end):
+        raise ValueError(f"the page has no pair of markers {BEGIN.strip()!r} and {END.strip()!r}")
+    return before + begin + drawing + end + after
+
+
+def _name(path: Path, source: Path) -> str:
+    """Return the dotted name below the package: ``ros.node.stream``."""
+    return ".".join(path.relative_to(source).with_suffix("").parts)
+
+
+def _room(name: str) -> str:
+    """Return the room of a module: its folder, with the folder inside where the room is divided."""
+    head, *rest = name.split(".")
+    return f"{head}/{rest[0]}" if head in DIVIDED and len(rest) > 1 else head
+
+
+def _imports(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(f"{PACKAGE}."):
+            module = str(node.module).removeprefix(f"{PACKAGE}.")
+            yield from (f"{module}.{alias.name}" for alias in node.names)
+
+
+def _reach(graph: Graph, start: str, seen: set[str]) -> set[str]:
+    """Return the rooms that can be reached from `start`, through none of those `seen`."""
+    found: set[str] = set()
+    waiting = [start]
+    while waiting:
+        room = waiting.pop()
+        if room not in seen:
+            seen = seen | {room}
+            found |= graph[room]
+            waiting += graph[room]
+    return found
+
+
+def _id(room: str) -> str:
+    return room.replace("/", "_")
