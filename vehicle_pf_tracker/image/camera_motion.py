@@ -31,6 +31,7 @@ _WEAR_IN_PLACE = 1 / 3
 _UNCHANGED = 4.0
 """Mean change around a corner in grey levels below which it has not moved: noise, no edge."""
 _NEIGHBOURHOOD = (5, 5)
+"""Window in px over which changes around a corner are averaged: the noise of its pixels cancels."""
 _CLEARANCE = 0.75
 """Distance of corners from the target's centre, of its size: half of it, and a margin."""
 _AGREEING_PX = 0.7

@@ -110,6 +110,7 @@ _LANES = 16
 """Cells are padded to a multiple of this, so that loops over them fill vector registers."""
 
 _MOST_ROOTS = 1 << 16
+"""Largest table of square roots: 512 KB, which fits the second-level cache of common processors."""
 
 _HISTOGRAM = types.Array(types.float64, 1, "A", readonly=True)
 

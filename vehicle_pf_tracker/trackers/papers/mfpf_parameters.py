@@ -201,6 +201,7 @@ class MfpfParameters(FeatureFilterParameters):
 FilterParametersT = TypeVar("FilterParametersT", bound=FeatureFilterParameters)
 
 PRINTED_EDGES = EdgeParameters(threshold=0.8, floor=0.0, in_frame=False, signed=False)
+"""Edge feature as printed in P2, section III-C."""
 
 
 def common_print(parameters: FilterParametersT) -> FilterParametersT:
