@@ -74,7 +74,10 @@ class CorrelationFilter:
         self._label = half_spectrum(np.fft.ifftshift(label).astype(np.float32))
         from_middle = np.abs(np.arange(cells) - (cells - 1) / 2)
         inside = (from_middle[:, np.newaxis] <= target[1] / 2) & (from_middle <= target[0] / 2)
-        self._outside = ~inside
+        # Rows without any weight need no transform along x.
+        rows = np.flatnonzero(inside.any(axis=1))
+        self._rows = slice(int(rows[0]), int(rows[-1]) + 1)
+        self._outside = ~inside[self._rows]
         window = np.hanning(cells + 2)[1:-1]
         self._window = np.outer(window, window).astype(np.float32)
         self._down = (-2j * np.pi * np.fft.fftfreq(cells))[:, np.newaxis]
@@ -125,15 +128,30 @@ class CorrelationFilter:
             # (x x^H + places * total) f = places * right, by Sherman and Morrison.
             share = (conjugate * right).sum(axis=0) / (power + places * total)
             free = (right - spectrum * share) / total
-            cells = cells_of(free + multiplier, self._cells)
-            cells[:, self._outside] = 0
-            confined = half_spectrum(cells)
+            cells = self._confined(free + multiplier)
+            confined = self._spectrum_of_rows(cells)
             if step < steps - 1:
                 multiplier += free - confined
                 multiplier *= np.float32(1 / growth)
                 penalty *= growth
                 right = wanted + np.float32(penalty) * (confined - multiplier)
-        return FilterWeights(cells, confined)
+        weights = np.zeros((len(cells), self._cells, self._cells), np.float32)
+        weights[:, self._rows] = cells
+        return FilterWeights(weights, confined)
+
+    def _confined(self, spectrum: Spectrum) -> CellFeatures:
+        """Rows of the cells of a spectrum that the target covers, zero outside the target."""
+        rows = np.fft.ifft(spectrum, axis=1)[:, self._rows]
+        cells = np.asarray(np.fft.irfft(rows, self._cells, axis=2), np.float32)
+        cells[:, self._outside] = 0
+        return cells
+
+    def _spectrum_of_rows(self, cells: CellFeatures) -> Spectrum:
+        """Half spectrum of cells that are zero outside these rows."""
+        shape = len(cells), self._cells, self._cells // 2 + 1
+        rows = np.zeros(shape, np.complex64)
+        rows[:, self._rows] = np.fft.rfft(cells, axis=2)
+        return np.asarray(np.fft.fft(rows, axis=1), np.complex64)
 
     def respond(self, spectrum: Spectrum) -> Response:
         """Respond to cells (half spectrum), at `UPSAMPLING` places per cell."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -80,47 +80,53 @@ class Sighting:
         Frames ago.
     position, size : (2,) arrays
         Centre, and width and height, px.
-    response : float
-        Filter response there, of the usual one.
     """
 
     age: float
     position: Array
     size: Array
-    response: float
 
 
 class Sightings:
     """The last sightings, carried along with time and with the camera."""
 
     def __init__(self) -> None:
-        self._kept: list[Sighting] = []
+        self._ages = np.empty(0)
+        self._positions = np.empty((0, 2))
+        self._sizes = np.empty((0, 2))
+        self._responses = np.empty(0)
 
     def __len__(self) -> int:
-        return len(self._kept)
+        return len(self._ages)
 
     def add(self, position: Array, size: Array, response: float) -> None:
         """Add a sighting of the present frame."""
-        self._kept.append(Sighting(0.0, position.copy(), size.copy(), response))
+        self._ages = np.append(self._ages, 0.0)
+        self._positions = np.vstack([self._positions, position])
+        self._sizes = np.vstack([self._sizes, size])
+        self._responses = np.append(self._responses, response)
 
     def pass_time(self, elapsed: float, camera: CameraMotion) -> None:
         """Let `elapsed` frames pass and the camera move."""
-        self._kept = [
-            replace(old, age=old.age + elapsed, position=camera.apply(old.position))
-            for old in self._kept
-            if old.age < _KEPT_FRAMES
-        ]
+        first = int((self._ages >= _KEPT_FRAMES).sum())  # the oldest stand first
+        self._ages = self._ages[first:] + elapsed
+        self._positions = self._positions[first:]
+        self._sizes, self._responses = self._sizes[first:], self._responses[first:]
+        if not camera.still:
+            self._positions = camera.apply(self._positions)
 
     def fit(self, *, perspective: bool) -> tuple[PerspectiveMotion, Sighting] | None:
         """Fit the motion to clear sightings; also give the last of them, which is at time 0."""
-        clear = [old for old in self._kept if old.response >= CLEAR_RESPONSE][-_FITTED:]
-        if not clear:
+        clear = np.flatnonzero(self._responses >= CLEAR_RESPONSE)[-_FITTED:]
+        if not len(clear):
             return None
-        last = clear[-1]
-        times = np.array([last.age - old.age for old in clear])
-        positions = np.array([old.position for old in clear])
-        sizes = np.sqrt([old.size.prod() for old in clear])
-        return fit_motion(times, positions, sizes, perspective=perspective), last
+        last = Sighting(
+            float(self._ages[clear[-1]]), self._positions[clear[-1]], self._sizes[clear[-1]]
+        )
+        times = last.age - self._ages[clear]
+        sizes = np.sqrt(self._sizes[clear].prod(axis=1))
+        motion = fit_motion(times, self._positions[clear], sizes, perspective=perspective)
+        return motion, last
 
 
 def fit_motion(
