@@ -9,11 +9,21 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, normalise
+from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion
 
 FASTEST_GROWTH = 0.04
 """Bound of the growth rate per frame: a vehicle that doubles within 17 frames passes the camera."""
 _DEGENERATE = 0.5
 """Share of the particles below which the effective sample size asks for resampling (usual)."""
+DOUBT = 0.02
+"""Probability of being visible that an occlusion begins with."""
+_PREDICTION_SIGMA = 0.04, 0.01
+"""Spread of the positions predicted from the last clear sighting, of the size, and per frame since:
+about the residual of the fit to sightings of real vehicles."""
+_SPEED_SIGMA = 0.05
+"""Spread of the predicted velocities, of the speed; about the error of the fit."""
+_GROWTH_SIGMA = 0.004
+"""Spread of the predicted rates of growth per frame; a step of the fit's grid is 0.0025."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,3 +135,36 @@ class Hypotheses:
             self.positions[chosen], self.velocities[chosen], self.growths[chosen],
             self.visible[chosen], np.full(count, 1 / count),
         )  # fmt: skip
+
+
+def hidden_hypotheses(
+    rng: np.random.Generator, motion: PerspectiveMotion, age: float, count: int, extent: float,
+    velocity_sigma: float,
+) -> Hypotheses:  # fmt: skip
+    """Draw hypotheses about a vehicle that has just been hidden.
+
+    Parameters
+    ----------
+    motion : PerspectiveMotion
+        Fitted to clear sightings, the last of which is at time 0.
+    age : float
+        Frames since that one.
+    count : int
+        Number of hypotheses.
+    extent : float
+        Geometric mean of the vehicle's sides, px.
+    velocity_sigma : float
+        Change of the velocity while hidden, of the size, per frame squared.
+    """
+    velocity = motion.velocity_at(age)
+    draws = rng.normal(size=(2, count, 2))
+    spread = (_PREDICTION_SIGMA[0] + _PREDICTION_SIGMA[1] * age) * extent
+    positions = motion.position_at(age) + draws[0] * spread
+    speed_sigma = 2 * velocity_sigma * extent + _SPEED_SIGMA * float(np.hypot(*velocity))
+    growths = np.zeros(count)
+    if motion.rate:
+        growths = motion.growth_at(age) + rng.normal(size=count) * _GROWTH_SIGMA
+    return Hypotheses.around(
+        positions, velocity + draws[1] * speed_sigma,
+        np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH), DOUBT,
+    )  # fmt: skip

@@ -25,23 +25,20 @@ from vehicle_pf_tracker.image.window import is_outside, keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
-from vehicle_pf_tracker.trackers.fusion.hypotheses import FASTEST_GROWTH, Hypotheses
+from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, Hypotheses, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
 from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
+from vehicle_pf_tracker.trackers.fusion.visibility import (
+    CLIMB_FREELY,
+    CLIMB_ON_PATH,
+    points_evidence,
+    response_evidence,
+)
 
 _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
-_LARGEST_LOG_RATIO = 6.0
-"""Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
-_HIGHEST_RESPONSE = 1.2
-"""Response above which more of it tells nothing more."""
-_CLIMB_FREELY, _CLIMB_ON_PATH = (5, 3.0), (3, 1.0)
-"""Reach, and standard deviation paid for, in places of the response, within which a hypothesis is
-moved to a better place. Where the path is known better than the place it has to keep to it: while
-hidden, else all would gather at clutter; and after a first motion was measured, else a standing
-part of the first box would hold it."""
 _WIDE_FROM = 0.5
 """Spread of the hypotheses, of the size, from which a wide patch is searched."""
 _PEAK_REACH = 6
@@ -61,15 +58,6 @@ _LEAST_SIDE, _LARGEST_SHARE = 3.0, 1.5
 """Bounds of the sides: px, and share of the image."""
 _NEW_VELOCITY = 3.0
 """Spread of the first velocities in units of the change per frame: none is known yet."""
-_DOUBT = 0.02
-"""Probability of being visible that an occlusion begins with."""
-_PREDICTION_SIGMA = 0.04, 0.01
-"""Spread of the positions predicted from the last clear sighting, of the size, and per frame since:
-about the residual of the fit to sightings of real vehicles."""
-_SPEED_SIGMA = 0.05
-"""Spread of the predicted velocities, of the speed; about the error of the fit."""
-_GROWTH_SIGMA = 0.004
-"""Spread of the predicted rates of growth per frame; a step of the fit's grid is 0.0025."""
 
 
 class FusionTracker(ParticleTracker[FusionParameters]):
@@ -118,7 +106,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         spread = self._rng.normal(size=(2, count, 2)) * extent
         velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
         positions = np.asarray(centre) + spread[0] * motion.position_sigma
-        self._particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - _DOUBT)
+        self._particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - DOUBT)
         return np.asarray(positions)
 
     @property
@@ -211,28 +199,12 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         wide = not self._visible and self._particles.spread > _WIDE_FROM * self._extent
         patch = self._appearance.patch(frame, self._particles.mean, self._learnt_size, wide=wide)
         view = self._appearance.view(patch)
-        moves, log_ratios = self._climb(view)
-        positions = self._particles.positions + moves
+        climb = CLIMB_ON_PATH if self._on_path else CLIMB_FREELY
+        positions, log_ratios = response_evidence(
+            view, self._particles.positions, climb, self.parameters.visibility
+        )
         self._particles = replace(self._particles, positions=positions).observed(log_ratios)
         return view
-
-    def _climb(self, view: View) -> tuple[Array, Array]:
-        """Best move (N, 2), px, of each hypothesis, paid for by its length; and its log ratio."""
-        reach, sigma = _CLIMB_ON_PATH if self._on_path else _CLIMB_FREELY
-        offsets = np.arange(-reach, reach + 1)
-        dy, dx = (grid.ravel() for grid in np.meshgrid(offsets, offsets, indexing="ij"))
-        places = view.places(self._particles.positions)
-        last = len(view.response) - 1
-        rows = np.clip(places[:, 1, np.newaxis] + dy, 0, last)
-        columns = np.clip(places[:, 0, np.newaxis] + dx, 0, last)
-        evidence = self.parameters.visibility
-        near = np.clip(view.response[rows, columns], 0, _HIGHEST_RESPONSE).astype(np.float64)
-        ratios = evidence.response_slope * (near - evidence.response_middle)
-        ratios -= 0.5 * (dx**2 + dy**2) / sigma**2
-        best = ratios.argmax(axis=1)
-        moves = np.column_stack([dx[best], dy[best]]) / view.steps
-        log_ratios = ratios[np.arange(len(best)), best]
-        return moves, np.clip(log_ratios, -_LARGEST_LOG_RATIO, _LARGEST_LOG_RATIO)
 
     def _locate(self, frame: Frame, view: View) -> tuple[Array, float]:
         """Peak of the response at the best of the visible hypotheses, and its height."""
@@ -241,7 +213,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         apart = np.linalg.norm(self._particles.positions - best, axis=1)
         votes = np.where(apart < _SAME_VEHICLE * self._extent, votes, 0.0)
         mean = votes @ self._particles.positions / votes.sum()
-        reach = _CLIMB_ON_PATH[0] if self._frames == 1 and self._on_path else _PEAK_REACH
+        reach = CLIMB_ON_PATH.reach if self._frames == 1 and self._on_path else _PEAK_REACH
         position, response = view.peak_near(mean, reach)
         return self._kept_inside(frame, position), response
 
@@ -252,8 +224,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             return
         survival = self._points.track(patch, move, position, self._size)
         if survival is not None:
-            excess = min(survival, 1.0) - evidence.points_middle
-            self._particles = self._particles.witnessed(evidence.points_slope * excess)
+            self._particles = self._particles.witnessed(points_evidence(survival, evidence))
 
     # Visible
 
@@ -329,24 +300,14 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         fitted = self._sightings.fit(perspective=self.parameters.motion.perspective)
         if fitted is None:
             self._particles = replace(
-                self._particles, visible=np.full(len(self._particles.visible), _DOUBT)
+                self._particles, visible=np.full(len(self._particles.visible), DOUBT)
             )
             return
         motion, last = fitted
         self._size = last.size * motion.scale_at(last.age)
-        count, extent = self.parameters.num_particles, self._extent
-        velocity = motion.velocity_at(last.age)
-        draws = self._rng.normal(size=(2, count, 2))
-        spread = (_PREDICTION_SIGMA[0] + _PREDICTION_SIGMA[1] * last.age) * extent
-        positions = motion.position_at(last.age) + draws[0] * spread
-        speed_sigma = 2 * self.parameters.motion.hidden_velocity_sigma * extent
-        speed_sigma += _SPEED_SIGMA * float(np.hypot(*velocity))
-        velocities = velocity + draws[1] * speed_sigma
-        growths = np.zeros(count)
-        if self.parameters.motion.perspective:
-            growths = motion.growth_at(last.age) + self._rng.normal(size=count) * _GROWTH_SIGMA
-        growths = np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH)
-        self._particles = Hypotheses.around(positions, velocities, growths, _DOUBT)
+        sigma = self.parameters.motion.hidden_velocity_sigma
+        count = self.parameters.num_particles
+        self._particles = hidden_hypotheses(self._rng, motion, last.age, count, self._extent, sigma)
 
     # Report
 

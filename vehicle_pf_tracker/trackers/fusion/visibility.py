@@ -1,0 +1,76 @@
+"""Evidence for the vehicle being visible: log-likelihood ratios of visible against hidden."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
+
+_LARGEST_LOG_RATIO = 6.0
+"""Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
+_HIGHEST_RESPONSE = 1.2
+"""Response above which more of it tells nothing more."""
+
+
+class Climb(NamedTuple):
+    """Neighbourhood within which a hypothesis is moved to a better place.
+
+    Attributes
+    ----------
+    reach : int
+        Places of the response to each side.
+    sigma : float
+        Standard deviation, in places, that a move is paid for with.
+    """
+
+    reach: int
+    sigma: float
+
+
+CLIMB_FREELY, CLIMB_ON_PATH = Climb(5, 3.0), Climb(3, 1.0)
+"""Where the path is known better than the place it has to keep to it: while
+hidden, else all would gather at clutter; and after a first motion was measured, else a standing
+part of the first box would hold it."""
+
+
+def response_evidence(
+    view: View, positions: Array, climb: Climb, parameters: VisibilityParameters
+) -> tuple[Array, Array]:
+    """Judge hypotheses by the filter's response close by.
+
+    Parameters
+    ----------
+    view : View
+        The response around the prediction.
+    positions : (N, 2) array
+        Of the hypotheses, px.
+
+    Returns
+    -------
+    positions : (N, 2) array
+        Moved to the best place in reach, px.
+    log_ratios : (N,) array
+        Log-likelihood ratio there, less what the move costs.
+    """
+    offsets = np.arange(-climb.reach, climb.reach + 1)
+    dy, dx = (grid.ravel() for grid in np.meshgrid(offsets, offsets, indexing="ij"))
+    places = view.places(positions)
+    last = len(view.response) - 1
+    rows = np.clip(places[:, 1, np.newaxis] + dy, 0, last)
+    columns = np.clip(places[:, 0, np.newaxis] + dx, 0, last)
+    near = np.clip(view.response[rows, columns], 0, _HIGHEST_RESPONSE).astype(np.float64)
+    ratios = parameters.response_slope * (near - parameters.response_middle)
+    ratios -= 0.5 * (dx**2 + dy**2) / climb.sigma**2
+    best = ratios.argmax(axis=1)
+    moves = np.column_stack([dx[best], dy[best]]) / view.steps
+    log_ratios = ratios[np.arange(len(best)), best]
+    return positions + moves, np.clip(log_ratios, -_LARGEST_LOG_RATIO, _LARGEST_LOG_RATIO)
+
+
+def points_evidence(survival: float, parameters: VisibilityParameters) -> float:
+    """Log-likelihood ratio by the survival of points on the surface, of the usual survival."""
+    return parameters.points_slope * (min(survival, 1.0) - parameters.points_middle)
