@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 
 import pytest
 from grid_samples import (
@@ -15,6 +16,7 @@ from grid_samples import (
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.grid import sources
+from vehicle_pf_tracker.evaluation.grid.cells import Start
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.systems import BaselineSystem
 
@@ -133,6 +135,32 @@ def test_only_what_changed_is_run_anew(recordings, plan, out):
     changed = make_plan(recordings, [system("pf", sigma=3.0), system("ms")])
     assert complete(changed, out, here, silent) == 4
     assert complete(make_plan(recordings, seeds=(0, 1, 2)), out, here, silent) == 6
+
+
+def test_systems_that_would_share_a_folder_are_refused(recordings):
+    alike = [system("pf", "pf@a:b"), system("pf", "pf@a/b")]
+    with pytest.raises(InputError, match="several systems would be called pf@a/b"):
+        make_plan(recordings, alike)
+
+
+def test_whatever_decides_a_run_is_in_its_key(recordings):
+    cell = make_plan(recordings, [system("pf")]).cells()[0]
+    shifted = Start("shifted_starts", "left", shift=(-0.1, 0.0))
+    others = [
+        replace(cell, max_diff=0.02),
+        replace(cell, seed=5),
+        replace(cell, source=replace(cell.source, topic="/rear")),
+        replace(cell, source=replace(cell.source, digest="0")),
+        replace(cell, system=system("pf", sigma=3.0)),
+        replace(cell, system=system("ms")),
+        replace(cell, start=shifted),
+        replace(cell, start=replace(shifted, shift=(0.1, 0.0))),
+        replace(cell, start=replace(shifted, scale=0.9)),
+        replace(cell, start=replace(shifted, stamp_ns=1)),
+    ]
+    assert len({one.key() for one in (cell, *others)}) == 11
+    renamed = replace(cell, source=replace(cell.source, name="other", path="/elsewhere"))
+    assert renamed.key() == cell.key()
 
 
 def test_another_recording_of_the_same_name_is_run_anew(plan, out, tmp_path):

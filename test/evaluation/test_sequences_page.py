@@ -1,0 +1,41 @@
+"""The page of real sequences (`reproduction.sequences`), of an evaluation folder made for tests."""
+
+import json
+import statistics
+
+from reproduction.sequences import page
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
+
+
+def cells_of(text, heading, system):
+    """The cells of a system's row in the table below a heading."""
+    table = text[text.index(heading) :].split("\n\n")[1]
+    (row,) = [line for line in table.splitlines() if line.startswith(f"| `{system}` |")]
+    return [cell.strip() for cell in row.strip("|").split("|")][1:]
+
+
+def test_means_over_seeds_and_then_sequences(made_evaluation):
+    text = page(EvaluationFolder(made_evaluation))
+    values = {
+        name: [
+            json.loads((made_evaluation / f"cells/{name}/pf/seed-{seed}/metrics.json").read_text())
+            for seed in (0, 1)
+        ]
+        for name in ("under_a_bridge", "free")
+    }
+    means = [statistics.fmean(run["rmse_visible_px"] for run in runs) for runs in values.values()]
+    cells = cells_of(text, "RMSE of the centre", "pf")
+    assert [float(cell.split()[0]) for cell in cells[:2]] == [round(mean, 1) for mean in means]
+    assert cells[2] == f"**{statistics.fmean(means):.1f}**"
+
+
+def test_a_baseline_that_did_not_run_is_named(made_evaluation):
+    text = page(EvaluationFolder(made_evaluation))
+    assert cells_of(text, "RMSE of the centre", "baseline:csrt") == ["–", "–", "–"]
+    assert "- free, baseline:csrt: the environment of the baselines is not there" in text
+
+
+def test_only_sequences_with_judged_occlusions_have_recoveries(made_evaluation):
+    text = page(EvaluationFolder(made_evaluation))
+    assert cells_of(text, "Total occlusions recovered from", "ms")[0].endswith(" of 1")
+    assert len(cells_of(text, "Total occlusions recovered from", "ms")) == 1
