@@ -1,0 +1,159 @@
+"""The flagship on streets and synthetic scenes: in view, hidden, recovered, and at the limits."""
+
+import math
+
+import numpy as np
+import pytest
+from street import HEIGHT, WIDTH, Street, error, follow
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.scenes.catalogue import make_scene
+from vehicle_pf_tracker.trackers.estimate import Mode
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
+
+
+def fusion(**values):
+    return FusionTracker(from_mapping(FusionParameters, values))
+
+
+def run(name, seed, **values):
+    """Pairs of estimate and truth of a scene from its second frame on."""
+    tracker, pairs = fusion(**values), []
+    for number, one in enumerate(make_scene(name, seed=seed).frames()):
+        box = one.truth.box
+        estimate = tracker.step(one.frame) if number else tracker.start(one.frame, box)
+        pairs.append((estimate, one.truth))
+    return pairs[1:]
+
+
+def distance(estimate, truth):
+    """From the true centre, in diagonals of the true box."""
+    return math.dist(estimate.position, truth.box.centre) / truth.box.diagonal
+
+
+def check_sound(estimate, width=WIDTH, height=HEIGHT):
+    """Everything finite, probabilities within bounds, positions inside the image."""
+    x, y = estimate.position
+    assert 0 <= x <= width
+    assert 0 <= y <= height
+    assert np.isfinite(estimate.velocity).all()
+    assert np.isfinite([estimate.box.width, estimate.box.height]).all()
+    assert min(estimate.box.width, estimate.box.height) > 0
+    assert 0 <= estimate.confidence <= 1 + 1e-12
+    assert np.isfinite(estimate.particles).all()
+    assert estimate.weights.sum() == pytest.approx(1)
+
+
+def test_hidden_on_a_street_it_is_occluded_and_recovered_after():
+    recovered = 0
+    for seed in range(5):
+        street, times = Street(speed=2.0, hidden=(20, 30), seed=seed), range(50)
+        estimates = follow(fusion(seed=seed), street, times)
+        assert {e.mode for e in estimates[:20]} == {Mode.TRACKING}
+        assert {e.mode for e in estimates[21:30]} == {Mode.OCCLUDED}
+        errors = [error(e, street, t) for e, t in zip(estimates, times, strict=True)]
+        assert max(errors[:20]) < 3
+        recovered += max(errors[36:]) < 3 and estimates[-1].mode is Mode.TRACKING
+    assert recovered >= 4
+
+
+def test_reconfigured_while_hidden_it_still_recovers():
+    recovered = 0
+    for seed in range(4):
+        street = Street(speed=2.0, hidden=(20, 30), seed=seed)
+        tracker = fusion(seed=seed)
+        follow(tracker, street, range(25))
+        changed = {"num_particles": 90, "filter.colour": seed % 2 == 0, "seed": seed}
+        tracker.reconfigure(from_mapping(FusionParameters, changed))
+        estimates = [tracker.step(street.frame(time)) for time in range(25, 50)]
+        assert estimates[0].mode is Mode.OCCLUDED
+        assert len(estimates[0].weights) == 90
+        recovered += error(estimates[-1], street, 49) < 4
+    assert recovered >= 3
+
+
+@pytest.mark.parametrize("elapsed", [2.0, 0.0])
+def test_every_second_frame_and_repeated_frames_are_followed(elapsed):
+    street, tracker = Street(speed=2.0), fusion()
+    tracker.start(street.frame(0), street.box(0))
+    time = 0
+    for _ in range(12):
+        time += 2
+        estimate = tracker.step(street.frame(time), 2.0)
+        if elapsed == 0:
+            estimate = tracker.step(street.frame(time), 0.0)
+        check_sound(estimate)
+    assert estimate.mode is Mode.TRACKING
+    assert error(estimate, street, time) < 3
+
+
+@pytest.mark.parametrize(
+    "box",
+    [Box(0, 50, 24, 16), Box(WIDTH - 14, HEIGHT - 9, 24, 16), Box(60, 60, 4, 4),
+     Box(-50, -50, 400, 300)],
+    ids=["at the border", "over the corner", "4 px", "larger than the image"],
+)  # fmt: skip
+@pytest.mark.parametrize("colour", [True, False])
+def test_any_box_gives_sound_estimates(box, colour):
+    street, tracker = Street(), fusion(**{"filter.colour": colour})
+    check_sound(tracker.start(street.frame(0), box))
+    for time in range(1, 12):
+        check_sound(tracker.step(street.frame(time), (1.0, 2.0, 0.0)[time % 3]))
+
+
+@pytest.mark.parametrize("level", [0, 119, 255])
+@pytest.mark.parametrize("colour", [True, False])
+def test_an_image_of_one_level_gives_sound_estimates(level, colour):
+    blank = np.full((HEIGHT, WIDTH, 3), level, np.uint8)
+    tracker = fusion(**{"filter.colour": colour})
+    tracker.start(blank, Box(60, 50, 24, 16))
+    for _ in range(8):
+        check_sound(tracker.step(blank))
+
+
+def test_a_grey_street_is_followed():
+    street = Street(grey=True)
+    estimates = follow(fusion(), street, range(30))
+    assert error(estimates[-1], street, 29) < 3
+    assert estimates[-1].mode is Mode.TRACKING
+
+
+@pytest.mark.parametrize(
+    "off",
+    [
+        {"filter.colour": False}, {"motion.camera": False}, {"motion.perspective": False},
+        {"size.step": 0.0}, {"size.aspect_gain": 0.0}, {"size.points_gain": 0.0},
+        {"visibility.points_slope": 0.0}, {"num_particles": 1},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_works_with_each_part_switched_off(off):
+    street = Street(speed=2.0)
+    estimates = follow(fusion(**off), street, range(30))
+    assert error(estimates[-1], street, 29) < 4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["bridge", "bus"])
+def test_recovers_from_total_occlusions_and_says_when_it_was_hidden(name):
+    recovered = 0
+    for seed in (4, 5, 6):
+        pairs = run(name, seed)
+        hidden = [e.mode for e, truth in pairs if truth.occlusion is Occlusion.TOTAL]
+        assert len(hidden) > 5
+        assert np.mean([mode is not Mode.TRACKING for mode in hidden]) >= 0.8
+        recovered += pairs[-1][0].mode is Mode.TRACKING and distance(*pairs[-1]) < 0.15
+    assert recovered >= 2
+
+
+@pytest.mark.slow
+def test_follows_the_size_of_a_vehicle_that_drives_away():
+    for seed in (3, 4):
+        pairs = run("scale", seed)
+        assert np.median([distance(*pair) for pair in pairs]) < 0.05
+        assert {e.mode for e, _ in pairs} == {Mode.TRACKING}
+        estimate, truth = pairs[-1]
+        assert estimate.box.width == pytest.approx(truth.box.width, rel=0.1)
