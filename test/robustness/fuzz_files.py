@@ -34,7 +34,11 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
-from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
+from vehicle_pf_tracker.ros.rclpy_internals import (
+    RCLError,
+    UnknownROSArgsError,
+    parameter_overrides,
+)
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 VARIANT = find_variant("pf")
@@ -117,9 +121,9 @@ def _in_node(path: Path) -> str:
         with _quiet():
             rclpy.init(args=["--ros-args", "--params-file", str(path)], context=context)
             node = TrackerNode(VARIANT, context=context)
-        given = {name: one.value for name, one in node._parameters.items()}
-        asked = node._parameter_overrides
-        wrong = {n: o.value for n, o in asked.items() if n in given and given[n] != o.value}
+        given = {name: one.value for name, one in node.get_parameters_by_prefix("").items()}
+        asked = parameter_overrides(node, ())
+        wrong = {n: v for n, v in asked.items() if n in given and given[n] != v}
         if wrong:
             raise WrongError(f"the node has other values than {wrong}")
     except (InputError, RCLError, UnknownROSArgsError):

@@ -21,6 +21,8 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import Image, RegionOfInterest
 
+from vehicle_pf_tracker.ros.messages import NOT_READY
+
 TIMEOUT = 20.0
 TRACKED = {"TRACKING", "OCCLUDED", "LOST"}
 _TOPICS = {RegionOfInterest: "set_target", PolygonStamped: "set_box", PointStamped: "clicked_point"}
@@ -72,13 +74,19 @@ class NodeProcess:
     def begin(self, image: Image) -> None:
         """Wait until the node answers `image`, which is sent again and again."""
         deadline = time.monotonic() + TIMEOUT
-        while not self.modes:
+        while not self.modes or self._is_loading():
+            if self.modes:
+                deadline = time.monotonic() + TIMEOUT  # it lives, and compiles
             if time.monotonic() > deadline:
                 raise SystemExit(f"the node does not answer:\n{self.log}")
             self.publish(image)
             self.spin(0.2)
         self.spin(0.5)
         self.modes.clear()
+
+    def _is_loading(self) -> bool:
+        values = self.modes[-1].status[0].values
+        return any(pair.value.startswith(NOT_READY) for pair in values)
 
     def publish(self, message: object) -> None:
         """Send an image or a target."""

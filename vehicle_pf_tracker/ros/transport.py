@@ -12,10 +12,14 @@ import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import contextmanager
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 PROFILE_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
 """Where Fast DDS 2 (Jazzy) and Fast DDS 3 (Kilted) look for a profile."""
+
+_FIRST_WITH_FAST_DDS_3 = 8
+"""Major version of rclpy after Jazzy's; each warns of the other's variable or does not read it."""
 
 USER_VARIABLES = (*PROFILE_VARIABLES, "FASTDDS_BUILTIN_TRANSPORTS")
 """Where a user chooses transports; nothing is changed if one of them is set."""
@@ -73,6 +77,15 @@ def is_free_to_choose(environment: Mapping[str, str], middleware: str) -> bool:
     return is_fast_dds and not any(environment.get(name) for name in USER_VARIABLES)
 
 
+def profile_variable() -> str:
+    """Name of the variable that this release's Fast DDS reads."""
+    try:
+        release = int(version("rclpy").partition(".")[0])
+    except (PackageNotFoundError, ValueError):
+        release = 0
+    return PROFILE_VARIABLES[release >= _FIRST_WITH_FAST_DDS_3]
+
+
 @contextmanager
 def image_transport(
     image_bytes: int,
@@ -112,9 +125,9 @@ def image_transport(
     with tempfile.TemporaryDirectory(prefix="vehicle_pf_tracker_") as folder:
         path = Path(folder, "transport.xml")
         path.write_text(profile(size), encoding="utf-8")
-        environment.update(dict.fromkeys(PROFILE_VARIABLES, str(path)))
+        name = profile_variable()
+        environment[name] = str(path)
         try:
             yield []
         finally:
-            for name in PROFILE_VARIABLES:
-                environment.pop(name, None)
+            environment.pop(name, None)
