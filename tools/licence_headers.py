@@ -1,0 +1,53 @@
+"""Put the licence's header at the top of every Python file that lacks it.
+
+`python -m tools.licence_headers`. It is the one form that ament_copyright knows of this licence.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+FOLDERS = ("vehicle_pf_tracker", "benchmarks", "launch", "reproduction", "requirements", "test")
+FOLDERS += ("tools",)
+
+HEADER = """\
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+
+
+def without_header(root: Path = ROOT) -> Iterator[Path]:
+    """Find the Python files that are not empty and do not begin with the header."""
+    for folder in FOLDERS:
+        for path in sorted((root / folder).rglob("*.py")):
+            text = path.read_text(encoding="utf-8")
+            if text and not text.startswith(HEADER):
+                yield path
+
+
+def main() -> int:
+    """Add the header where it is missing."""
+    for path in list(without_header()):
+        path.write_text(HEADER + path.read_text(encoding="utf-8"), encoding="utf-8")
+        print(f"added to {path.relative_to(ROOT)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
