@@ -61,5 +61,5 @@ def test_streams_do_not_depend_on_each_other():
 
 
 def test_true_is_no_seed():
-    with pytest.raises(ValueError, match="whole number"):
+    with pytest.raises(ValueError, match="integer"):
         check_seed(True)
