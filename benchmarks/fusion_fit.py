@@ -177,15 +177,15 @@ def judge(options: argparse.Namespace, chosen: Mapping[str, Setting]) -> list[Re
     """Run the settings that were fitted without a camera on that camera."""
     results: list[Result] = []
     plain = _cases(options, "plain_cases", ("plain",))
-    hard = _cases(options, "judged_cases", JUDGED_KINDS[1:])
-    for camera, setting in chosen.items():
-        if camera:
-            system = [_system("fusion", setting)]
-            for cases, seeds in ((plain, range(options.seeds)), (hard, range(1))):
-                own = [case for case in cases if case.camera == camera]
+    hard = _cases(options, "judged_cases", JUDGED_KINDS[1:], per_sequence=options.hard)
+    for cases, seeds in ((plain, range(options.seeds)), (hard, range(1))):
+        for camera, setting in chosen.items():
+            own = [case for case in cases if camera and case.camera == camera]
+            if own:
                 results += run_battery(
-                    own, system, seeds=tuple(seeds), workers=options.workers,
-                    store=options.output / "judged.jsonl", on_progress=_report,
+                    own, [_system("fusion", setting)], seeds=tuple(seeds),
+                    workers=options.workers, store=options.output / "judged.jsonl",
+                    on_progress=_report,
                 )  # fmt: skip
     return results
 
@@ -244,6 +244,7 @@ def main() -> int:
     parser.add_argument("--budget", type=int, default=24, help="settings that are tried")
     parser.add_argument("--cases", type=int, default=4, help="cases of each sequence to fit to")
     parser.add_argument("--seeds", type=int, default=5, help="seeds of the plain sequences")
+    parser.add_argument("--hard", type=int, default=8, help="hard cases of each sequence to judge")
     parser.add_argument("--seed", type=int, default=0, help="seed of the draws and of the cases")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("-o", "--output", type=Path, required=True)
