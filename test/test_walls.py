@@ -30,7 +30,7 @@ from tools.licence_headers import HEADER
 NAME = "vehicle_pf_tracker"
 SOURCE = Path(__file__).resolve().parents[1] / NAME
 
-MAX_FILE_LINES = 400
+MAX_FILE_LINES = 350
 MAX_FUNCTION_LINES = 60
 
 MAY_IMPORT = {
@@ -391,12 +391,12 @@ def test_checker_measures_files_and_functions(tmp_path):
     body = "    pass\n"
     modules = made_up(
         tmp_path,
-        ros__long="x = 1\n" * 401,
-        ros__full="x = 1\n" * 400,
+        ros__long="x = 1\n" * 351,
+        ros__full="x = 1\n" * 350,
         ros__function="def f():\n" + body * 60,
         ros__fitting="class C:\n async def f():\n" + "  pass\n" * 59,
     )
     assert too_long(modules) == [
         "function.py:1 (ros.function) f: 61 lines",
-        "long.py (ros.long): 401 lines",
+        "long.py (ros.long): 351 lines",
     ]

@@ -25,8 +25,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 
-FOLDERS = ("vehicle_pf_tracker", "benchmarks", "launch", "reproduction", "requirements", "test")
-FOLDERS += ("tools",)
+FOLDERS = (
+    "vehicle_pf_tracker",
+    "benchmarks",
+    "launch",
+    "reproduction",
+    "requirements",
+    "test",
+    "tools",
+)
 
 HEADER = """\
 # Copyright 2026 vehicle_pf_tracker maintainers
