@@ -42,8 +42,8 @@ TRUNCATION = 0.2
 TEXTURE_GAIN = 0.2357
 """Weight of the texture channels (the paper's value, 1 / sqrt(18))."""
 NOISE_ENERGY = 16.0
-"""Energy added to each normaliser, grey levels squared: flat road stays near zero instead of
-showing its noise. One grey level of noise in each of a block's pixels is about this much."""
+"""Energy added to each normaliser, grey levels squared: flat cells give zero instead of a ratio of
+zeros. It does not silence noise: a block of noise with a deviation of one level has 500."""
 
 _STEPS = np.arange(-255, 256)
 _DX, _DY = np.meshgrid(_STEPS, _STEPS)
