@@ -34,6 +34,10 @@ DOUBT = 0.02
 _PREDICTION_SIGMA = 0.04, 0.01
 """Spread of the positions predicted from the last clear sighting, of the size, and per frame since:
 about the residual of the fit to sightings of real vehicles."""
+ACROSS_LANES = 0.3
+"""Noise of a hidden vehicle's velocity across its heading, of that along it: it brakes more than it
+leaves its lane. Equal noise covers the next lane within 30 frames, and its cars are taken for the
+target (scenes `bus`, `bridge` and `braking`, seeds 100 to 104)."""
 _SPEED_SIGMA = 0.05
 """Spread of the predicted velocities, of the speed; about the error of the fit."""
 _GROWTH_SIGMA = 0.004
@@ -99,8 +103,9 @@ class Hypotheses:
         return float(np.sqrt(variance.max()))
 
     def driven(
-        self, rng: np.random.Generator, elapsed: float, sigmas: tuple[float, float]
-    ) -> Hypotheses:
+        self, rng: np.random.Generator, elapsed: float, sigmas: tuple[float, float],
+        *, across: float = 1.0,
+    ) -> Hypotheses:  # fmt: skip
         """Move on for `elapsed` frames at constant velocity on the road.
 
         In the image the velocity of a vehicle whose size grows at rate r grows at 2 r, and r at r
@@ -110,11 +115,14 @@ class Hypotheses:
         ----------
         sigmas : (float, float)
             Standard deviations of position (px) and velocity (px per frame), per frame.
+        across : float
+            Share of the velocity's noise across the heading.
         """
         root = np.sqrt(elapsed)
         shape = self.positions.shape
         faster = np.exp(2 * self.growths * elapsed)[:, np.newaxis]
-        velocities = self.velocities * faster + rng.normal(size=shape) * (sigmas[1] * root)
+        noise = along_heading(rng.normal(size=shape), self.mean_velocity, across)
+        velocities = self.velocities * faster + noise * (sigmas[1] * root)
         positions = self.positions + velocities * elapsed
         positions += rng.normal(size=shape) * (sigmas[0] * root)
         growths = self.growths * (1 + self.growths * elapsed)
@@ -151,6 +159,16 @@ class Hypotheses:
         )  # fmt: skip
 
 
+def along_heading(noise: Array, heading: Array, across: float) -> Array:
+    """Shrink the part of `noise` (N, 2) that is across the heading (2,) to the share `across`."""
+    speed = float(np.hypot(*heading))
+    if across == 1.0 or not speed:
+        return noise
+    unit = heading / speed
+    along = (noise @ unit)[:, np.newaxis] * unit
+    return np.asarray(along + across * (noise - along))
+
+
 def hidden_hypotheses(
     rng: np.random.Generator, motion: PerspectiveMotion, age: float, count: int, extent: float,
     velocity_sigma: float,
@@ -178,7 +196,8 @@ def hidden_hypotheses(
     growths = np.zeros(count)
     if motion.rate:
         growths = motion.growth_at(age) + rng.normal(size=count) * _GROWTH_SIGMA
+    changes = along_heading(draws[1], velocity, ACROSS_LANES)
     return Hypotheses.around(
-        positions, velocity + draws[1] * speed_sigma,
+        positions, velocity + changes * speed_sigma,
         np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH), DOUBT,
     )  # fmt: skip

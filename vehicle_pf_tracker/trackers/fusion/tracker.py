@@ -39,7 +39,12 @@ from vehicle_pf_tracker.image.window import is_outside, keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
-from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, Hypotheses, hidden_hypotheses
+from vehicle_pf_tracker.trackers.fusion.hypotheses import (
+    ACROSS_LANES,
+    DOUBT,
+    Hypotheses,
+    hidden_hypotheses,
+)
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
 from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
@@ -194,7 +199,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             sigmas = motion.hidden_position_sigma * extent, motion.hidden_velocity_sigma * extent
             growth = float(self._particles.weights @ self._particles.growths)
             self._size = self._bounded(frame, self._size * np.exp(growth * elapsed))
-        driven = self._particles.driven(self._rng, elapsed, sigmas)
+        across = 1.0 if self._visible else ACROSS_LANES
+        driven = self._particles.driven(self._rng, elapsed, sigmas, across=across)
         rates = self.parameters.visibility
         driven = driven.passed(elapsed, rates.hiding_rate, rates.return_rate)
         left_image = is_outside(frame, *driven.mean.tolist())
