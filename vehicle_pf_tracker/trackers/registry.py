@@ -154,7 +154,7 @@ _ENTRIES = (
     Variant(
         "fusion",
         "fusion.tracker:Fusion",
-        "fused cues, scale, camera motion, return from total occlusions (this package)",
+        "correlation particle filter with a posterior over visibility (this package)",
         "real video: changing size, a moving camera, total occlusions",
     ),
 )
