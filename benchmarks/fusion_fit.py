@@ -50,7 +50,7 @@ from vehicle_pf_tracker.parameters.table import ParameterSpec, specs
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 
 FITTED_KINDS = ("plain", "wall", "lorry", "shifted_box", "later_start", "half_rate")
-"""What is hard for it; mirrored or darker images behave as the plain ones."""
+"""Kinds that are hard for it; mirrored or darker images behave as the plain ones."""
 FITTED_FRAMES = 90
 """Frames of a case at most: an occlusion with its ends, or three seconds of driving."""
 SPREAD = 0.25

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the verbs say to people, and where: results on stdout, everything else on stderr."""
+"""Output of the verbs: results on stdout, everything else on stderr."""
 
 from __future__ import annotations
 

@@ -31,13 +31,13 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 WAITING = "WAITING"
-"""What `~/mode` says while there is no target."""
+"""Message of `~/mode` while there is no target."""
 
 NOT_READY = "loading kernels"
 """How a node's answer begins that will be another one once its kernels are loaded."""
 
 REJECTED = "REJECTED"
-"""What `~/mode` says of an image that could not be used."""
+"""Message of `~/mode` for an image that could not be used."""
 
 LEVELS: Mapping[str, bytes] = {
     Mode.TRACKING.value: DiagnosticStatus.OK,

@@ -39,7 +39,7 @@ _LEAST_SIDE = 8.0
 _SHAKES = (0.01, 0.03)
 """Amplitude in image widths: a mast in wind, a camera held by hand."""
 _DROPPED = 0.2
-"""What a radio link at the edge of its range loses."""
+"""Share of dropped frames: a radio link at the edge of its range."""
 
 
 @dataclass(frozen=True, slots=True)

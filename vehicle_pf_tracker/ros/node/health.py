@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a node counts about its input and its work, for `/diagnostics`."""
+"""Counts of a node's input and work, for `/diagnostics`."""
 
 from __future__ import annotations
 

@@ -142,7 +142,7 @@ class ImageInput:
         return bool(self._node.count_publishers(topic))
 
     def _is_foreign(self, topic: str) -> bool:
-        """Whether somebody else publishes on `topic`, so not our own overlay."""
+        """Tell whether another node publishes on `topic`: not our own overlay."""
         own = self._node.get_name(), self._node.get_namespace()
         publishers = self._node.get_publishers_info_by_topic(topic)
         return any((one.node_name, one.node_namespace) != own for one in publishers)

@@ -55,7 +55,7 @@ class KernelLoading:
 
     @property
     def is_done(self) -> bool:
-        """Whether the kernels are loaded."""
+        """True once the kernels are loaded."""
         return not self._problem and not self._is_running
 
     @property

@@ -42,7 +42,7 @@ _THROTTLE = 5.0
 
 
 class Stream:
-    """What a configured node does with images and targets.
+    """Processing of images and targets in a configured node.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class Stream:
 
     @property
     def facts(self) -> Mapping[str, object]:
-        """What the parameters left open: the seed and the kernels in use."""
+        """Choices that the parameters left open: the seed and the kernels in use."""
         if self._session is None:
             return {"seed": self._configuration.tracker.seed, "kernels": self._loading.reason}
         tracker = self._session.tracker
@@ -112,7 +112,7 @@ class Stream:
 
     @property
     def target_words(self) -> str:
-        """What will be followed, for people."""
+        """Description of the next target, for people."""
         box = self._configuration.session.target.box
         return f"following {box}" if box else "waiting for a target on ~/set_target"
 

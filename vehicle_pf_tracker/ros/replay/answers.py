@@ -69,7 +69,7 @@ class Answers:
         self.count += 1
 
     def has(self, frame: int) -> bool:
-        """Whether image number `frame` of this pass was answered."""
+        """Tell whether image number `frame` of this pass was answered."""
         return frame in self._rows
 
     def rows(self) -> tuple[EstimateRow, ...]:

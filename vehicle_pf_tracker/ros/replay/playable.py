@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the player needs of a recording; `recordings.reader.Recording` has it."""
+"""Interface that the player needs of a recording; `recordings.reader.Recording` has it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class PlayableTopic(Protocol):
 
     @property
     def is_cdr(self) -> bool:
-        """Whether its messages are serialized as ROS 2 does it."""
+        """True where its messages are serialized as ROS 2 does it."""
 
 
 class PlayableMessage(Protocol):

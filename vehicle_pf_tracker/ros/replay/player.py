@@ -80,7 +80,7 @@ class Player:
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """What was not as it should be, a sentence each."""
+        """Irregularities of the recording, a sentence each."""
         if not self._skipped:
             return ()
         return (f"skipped {len(self._skipped)} messages; the first, {self._skipped[0]}",)

@@ -90,7 +90,7 @@ class TopicPublisher:
         return int(self._publisher.get_subscription_count())
 
     def is_acknowledged(self, timeout: float) -> bool:
-        """Whether every reliable subscription has all messages, waiting up to `timeout` s."""
+        """Tell whether every reliable subscription has all messages, waiting up to `timeout` s."""
         return bool(self._publisher.wait_for_all_acked(Duration(seconds=timeout)))
 
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What can be chosen about a replay, and what it reports."""
+"""Options of a replay, and its report."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class Progress:
 
 @dataclass(frozen=True, slots=True)
 class NodeReport:
-    """What one node made of the images.
+    """Answers of one node to the images.
 
     Attributes
     ----------
@@ -109,7 +109,7 @@ class NodeReport:
 
 @dataclass(frozen=True, slots=True)
 class ReplayReport:
-    """What was played.
+    """Summary of a replay.
 
     Attributes
     ----------

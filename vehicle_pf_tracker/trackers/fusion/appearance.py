@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the target looks like: cells of gradients and colour, and the filter that finds them."""
+"""Appearance of the target: cells of gradients and colour, and the filter that finds them."""
 
 from __future__ import annotations
 
