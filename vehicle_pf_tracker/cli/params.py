@@ -29,8 +29,8 @@ ALL = "all"
 _PREFACE = """# Parameters
 
 Written by `vehicle-pf-tracker params all --markdown`; `make config` does it. Names, defaults and
-ranges are those of the nodes, of the files in config/ and of `--set`. Whole numbers do for real
-ones. What a change does while a target is followed is in the last column:
+ranges are those of the nodes, of the files in config/ and of `--set`. Integers are accepted
+for doubles. What a change does while a target is followed is in the last column:
 
 """
 

@@ -74,9 +74,9 @@ class Outputs:
         ):  # fmt: skip
             self._node.destroy_lifecycle_publisher(publisher)
 
-    def forget_path(self) -> None:
+    def discard_path(self) -> None:
         """Begin a new path in the overlay."""
-        self._overlay.forget()
+        self._overlay.discard_path()
 
     def publish_estimate(
         self,

@@ -43,7 +43,7 @@ class Overlay:
     def __init__(self) -> None:
         self._path: deque[tuple[float, float]] = deque(maxlen=PATH_LENGTH)
 
-    def forget(self) -> None:
+    def discard_path(self) -> None:
         """Begin a new path."""
         self._path.clear()
 

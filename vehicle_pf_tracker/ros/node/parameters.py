@@ -14,7 +14,7 @@
 
 """Parameters as ROS sees them: declared with all that is known of them, set as a whole.
 
-Setting goes in rclpy's three steps: before (whole numbers become real ones where those are meant),
+Setting goes in rclpy's three steps: before (integers become doubles where those are declared),
 on (validate everything, all or nothing), after (apply; in a single-threaded executor that is
 between two frames).
 """

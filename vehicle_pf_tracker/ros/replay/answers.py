@@ -43,7 +43,7 @@ class Answers:
         self._rows: dict[int, EstimateRow] = {}
 
     def begin_pass(self) -> None:
-        """Forget the frames before; a loop begins again with their stamps."""
+        """Discard earlier frames; a loop begins again with their stamps."""
         self._stamps.clear()
         self._waiting.clear()
         self._rows.clear()
