@@ -63,17 +63,29 @@ class _Interrupts:
         signal.signal(signal.SIGINT, self)
         signal.signal(signal.SIGTERM, self)
         if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as nohup sets it
-            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGHUP})
-            threading.Thread(target=_await_hangup, name="SIGHUP", daemon=True).start()
+            _turn_hangup_into_termination()
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         if not self.left_to_ros:
             raise KeyboardInterrupt
 
 
-def _await_hangup() -> None:
-    """Wait in a thread: Python's own handlers do not run while rclpy waits for messages."""
-    signal.sigwait({signal.SIGHUP})
+def _turn_hangup_into_termination() -> None:
+    """Send SIGTERM on SIGHUP, from a thread: Python's handlers wait while rclpy waits for messages.
+
+    Blocking the signal instead would leave it deadly in threads that libraries have started before.
+    """
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+    signal.signal(signal.SIGHUP, lambda number, frame: None)
+    threading.Thread(target=_await_hangup, args=(reader,), name="SIGHUP", daemon=True).start()
+
+
+def _await_hangup(reader: int) -> None:
+    """Read the numbers of signals until SIGHUP is one of them."""
+    while os.read(reader, 1) != bytes([signal.SIGHUP]):
+        pass
     os.kill(os.getpid(), signal.SIGTERM)
 
 
