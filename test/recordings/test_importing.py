@@ -294,7 +294,7 @@ def sequence_folders():
 @pytest.mark.parametrize("wanted", [None, "raw"])
 def test_all_real_sequences_import(tmp_path, wanted):
     folders = [path.parent for path in sequence_folders()]
-    assert len(folders) == 9
+    assert len(folders) >= 19  # as its README lists
     for folder in folders:
         said = json.loads((folder / "sequence.json").read_text())
         out = tmp_path / folder.parent.name / folder.name
@@ -302,12 +302,13 @@ def test_all_real_sequences_import(tmp_path, wanted):
         recording = Recording(out)
         truth = recording.truth()
         assert summary.frames == recording.frame_count == said["frames"] == len(truth)
-        assert (summary.width, summary.height) == (said["width"], said["height"])
+        if "width" in said:  # the later sequences state frames and first box only
+            assert (summary.width, summary.height) == (said["width"], said["height"])
         first = truth[0].box
         assert (first.x, first.y) == pytest.approx(said["first_box"][:2], abs=1e-4)
         total = [index + 1 for index, t in enumerate(truth) if t.occlusion is Occlusion.TOTAL]
-        spans = said["total_occlusion_frames"]
-        assert total == [n for first, last in spans for n in range(first, last + 1)]
+        if (spans := said.get("total_occlusion_frames")) is not None:
+            assert total == [n for first, last in spans for n in range(first, last + 1)]
         stamps = [found.stamp_ns for found in recording.frames()]
         assert stamps == [t.stamp_ns for t in truth]
         assert recording.notices == []
