@@ -35,21 +35,22 @@ MAX_FUNCTION_LINES = 60
 
 MAY_IMPORT = {
     "core": set[str](),
-    "parameters": {"core"},
-    "filtering": {"core", "parameters"},
-    "image": {"core", "parameters", "filtering"},
-    "trackers": {"core", "parameters", "filtering", "image"},
-    "recordings": {"core", "parameters", "filtering", "image"},
-    "scenes": {"core", "parameters", "filtering", "image"},
+    "road": {"core"},
+    "parameters": {"core", "road"},
+    "filtering": {"core", "road", "parameters"},
+    "image": {"core", "road", "parameters", "filtering"},
+    "trackers": {"core", "road", "parameters", "filtering", "image"},
+    "recordings": {"core", "road", "parameters", "filtering", "image"},
+    "scenes": {"core", "road", "parameters", "filtering", "image"},
     "evaluation": {
-        "core", "parameters", "filtering", "image", "trackers", "recordings", "scenes",
+        "core", "road", "parameters", "filtering", "image", "trackers", "recordings", "scenes",
     },
     "ros": {
-        "core", "parameters", "filtering", "image", "trackers", "recordings", "scenes",
+        "core", "road", "parameters", "filtering", "image", "trackers", "recordings", "scenes",
         "evaluation",
     },
     "cli": {
-        "core", "parameters", "filtering", "image", "trackers", "recordings", "scenes",
+        "core", "road", "parameters", "filtering", "image", "trackers", "recordings", "scenes",
         "evaluation", "ros",
     },
 }  # fmt: skip

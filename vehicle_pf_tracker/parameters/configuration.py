@@ -23,6 +23,7 @@ from typing import Any, Protocol
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.parameters.table import (
     ParameterSpec,
     Value,
@@ -133,9 +134,11 @@ class SessionParameters:
         "Start again on the configured target when stamps go back and stay back (a recording that "
         "loops).",
     )
+    road: RoadParameters = group(RoadParameters)
 
     def validate(self) -> None:
-        """Refuse a target too small for any tracker, or outside of images of any size."""
+        """Refuse a target that fits no image, and a road that is none."""
+        self.road.validate()
         box = self.target.box
         if box is not None and min(box.centre) < 0:
             raise InputError(

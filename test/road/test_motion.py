@@ -1,0 +1,63 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.road.motion import RoadMotion
+
+
+def test_two_positions_give_the_speed_between_them():
+    # With nothing known of the speed and no acceleration, two positions of variance r, t apart,
+    # give their difference over t, with the variance 2 r / t^2.
+    variance, seconds = 0.01, 0.5
+    motion = RoadMotion.at(np.array([0.0, 0.0]), np.eye(2) * variance)
+    motion = motion.predicted(seconds, 1e-9).measured(np.array([3.0, 4.0]), np.eye(2) * variance)
+    assert motion.speed == pytest.approx(10.0, rel=1e-3)
+    assert motion.velocity == pytest.approx([6.0, 8.0], rel=1e-3)
+    assert motion.speed_deviation == pytest.approx(np.sqrt(2 * variance) / seconds, rel=1e-3)
+
+
+def test_covariance_of_the_speed_is_along_its_direction():
+    covariance = np.diag([0.0, 0.0, 4.0, 9.0])
+    along = RoadMotion(np.array([0.0, 0.0, 5.0, 0.0]), covariance)
+    across = RoadMotion(np.array([0.0, 0.0, 0.0, 5.0]), covariance)
+    assert (along.speed_deviation, across.speed_deviation) == pytest.approx((2.0, 3.0))
+    assert RoadMotion(np.zeros(4), covariance).speed_deviation == pytest.approx(3.0)
+
+
+def test_acceleration_widens_the_speed_as_a_random_walk():
+    motion = RoadMotion(np.zeros(4), np.zeros((4, 4))).predicted(4.0, 1.5)
+    assert np.diag(motion.covariance) == pytest.approx([1.5**2 * 64 / 3] * 2 + [1.5**2 * 4] * 2)
+    in_halves = RoadMotion(np.zeros(4), np.zeros((4, 4))).predicted(2.0, 1.5).predicted(2.0, 1.5)
+    assert in_halves.covariance == pytest.approx(motion.covariance)
+
+
+def test_deviation_is_that_of_many_runs():
+    rng = np.random.default_rng(5)
+    covariance = np.array([[0.04, 0.01], [0.01, 0.09]])
+    speeds, deviations = [], []
+    for _ in range(300):
+        noise = rng.multivariate_normal([0, 0], covariance, 40)
+        motion = None
+        for index, error in enumerate(noise):
+            measured = np.array([12.0, 5.0]) * index / 30 + error
+            if motion is None:
+                motion = RoadMotion.at(measured, covariance)
+            else:
+                motion = motion.predicted(1 / 30, 0.01).measured(measured, covariance)
+        speeds.append(motion.speed)
+        deviations.append(motion.speed_deviation)
+    assert np.mean(speeds) == pytest.approx(13.0, abs=0.05)
+    assert np.std(speeds) == pytest.approx(np.mean(deviations), rel=0.1)

@@ -1,0 +1,121 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from road_samples import BENT, LENS, camera_plane, pairs_of, pose
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.road.plane import RoadPlane, convex_hull, is_inside, residuals
+from vehicle_pf_tracker.road.poses import Pose
+
+CORNERS = [(-5.0, 20.0), (5.0, 20.0), (5.0, 60.0), (-5.0, 60.0)]
+
+
+def test_the_middle_of_the_image_is_where_the_axis_meets_the_road():
+    # 8 m up and 0.3 rad down: the axis meets the ground 8 / tan(0.3) m ahead.
+    found = camera_plane().to_road(np.array([320.0, 240.0]))
+    assert found == pytest.approx([0.0, 8 / np.tan(0.3)])
+
+
+def test_a_camera_that_looks_straight_down():
+    down = Pose(np.diag([1.0, -1.0, -1.0]), np.array([3.0, 4.0, 10.0]))
+    plane = RoadPlane.of_camera(LENS, down, coarsest=1.0)
+    # 800 px of focal length over 10 m: 80 px to the metre, and v downwards.
+    assert plane.to_road(np.array([400.0, 160.0])) == pytest.approx([4.0, 5.0])
+    assert np.abs(plane.jacobian(np.array([99.0, 77.0]))) == pytest.approx(np.eye(2) / 80)
+
+
+@pytest.mark.parametrize("lens", [LENS, BENT])
+def test_pairs_of_a_camera_give_the_camera(lens):
+    camera = camera_plane(lens)
+    pairs = pairs_of(camera, [*CORNERS, (0.0, 35.0)])
+    plane = RoadPlane.of_pairs(pairs, lens, margin=0.0, coarsest=1.0)
+    in_image, on_road = residuals(plane, pairs)
+    assert in_image.max() < 1e-6
+    assert on_road.max() < 1e-6
+    pixel = np.array([300.0, 260.0])
+    assert plane.to_road(pixel) == pytest.approx(camera.to_road(pixel), abs=1e-6)
+
+
+def test_distortion_matters_and_is_removed():
+    pixel = np.array([80.0, 400.0])
+    bent, straight = camera_plane(BENT).to_road(pixel), camera_plane(LENS).to_road(pixel)
+    assert np.linalg.norm(bent - straight) > 0.2
+
+
+@given(st.floats(-10, 10), st.floats(13, 80))
+def test_round_trip_through_lens_and_plane(x, y):
+    plane = camera_plane(BENT)
+    assert plane.to_road(plane.to_image(np.array([x, y]))) == pytest.approx([x, y], abs=1e-6)
+
+
+@pytest.mark.parametrize("lens", [LENS, BENT])
+def test_jacobian_is_the_derivative(lens):
+    plane, point = camera_plane(lens), np.array([150.0, 330.0])
+    columns = [
+        (plane.to_road(point + step) - plane.to_road(point - step)) / 0.2
+        for step in np.eye(2) * 0.1
+    ]
+    assert plane.jacobian(point) == pytest.approx(np.column_stack(columns), rel=1e-4)
+
+
+def test_outside_the_area_is_said():
+    plane = RoadPlane.of_pairs(pairs_of(camera_plane(), CORNERS), None, margin=0.1, coarsest=1.0)
+    middle = np.array([320.0, 260.0])
+    assert plane.objection(middle) == ""
+    assert plane.objection(np.array([20.0, 460.0])) == "outside the calibrated area"
+    assert "horizon" in plane.objection(np.array([320.0, -60.0]))
+    corner = plane.to_image(np.array(CORNERS[0]))
+    outwards = corner - plane.hull.mean(axis=0)
+    assert plane.objection(corner + 0.05 * outwards) == ""  # within the margin
+    assert plane.objection(corner + 0.2 * outwards) == "outside the calibrated area"
+
+
+def test_too_far_away_is_said():
+    plane = camera_plane()
+    # On the axis' column a pixel at distance d is d^2 / (800 * 8) m long, roughly.
+    assert plane.objection(plane.to_image(np.array([0.0, 70.0]))) == ""
+    assert "too far away" in plane.objection(plane.to_image(np.array([0.0, 95.0])))
+
+
+@pytest.mark.parametrize(
+    ("camera", "words"),
+    [
+        (Pose(pose().rotation, np.array([0.0, 0.0, -1.0])), "above it"),
+        (Pose(pose().rotation, np.array([0.0, 0.0, 0.0])), "above it"),
+    ],
+)
+def test_cameras_that_see_no_road(camera, words):
+    with pytest.raises(InputError, match=words):
+        RoadPlane.of_camera(LENS, camera, coarsest=1.0)
+
+
+def test_hull_by_hand():
+    points = np.array([[0, 0], [4, 0], [4, 3], [0, 3], [2, 1], [2, 0]], float)
+    hull = convex_hull(points)
+    assert hull.tolist() == [[0, 0], [4, 0], [4, 3], [0, 3]]
+    assert is_inside(hull, np.array([4.0, 1.0]))
+    assert not is_inside(hull, np.array([4.1, 1.0]))
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(4, 30))
+def test_a_hull_holds_its_points(seed, count):
+    points = np.random.default_rng(seed).normal(size=(count, 2))
+    hull = convex_hull(points)
+    middle = points.mean(axis=0)
+    assert all(is_inside(hull, middle + (point - middle) * (1 - 1e-9)) for point in points)
+    assert set(map(tuple, hull)) <= set(map(tuple, points))

@@ -1,0 +1,68 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.road.poses import Pose, PoseTree
+
+HALF = np.sqrt(0.5)
+
+
+def test_a_quarter_turn_about_z():
+    pose = Pose.of((1.0, 2.0, 3.0), (0.0, 0.0, HALF, HALF))
+    assert pose.rotation @ [1, 0, 0] + pose.position == pytest.approx([1, 3, 3])
+
+
+@given(st.lists(st.floats(-1, 1), min_size=4, max_size=4).filter(lambda q: np.linalg.norm(q) > 0.1))
+def test_rotations_are_rotations(numbers):
+    unit = np.array(numbers) / np.linalg.norm(numbers)
+    pose = Pose.of((1.0, -2.0, 3.0), tuple(unit))
+    assert pose.rotation @ pose.rotation.T == pytest.approx(np.eye(3), abs=1e-9)
+    assert np.linalg.det(pose.rotation) == pytest.approx(1)
+    back = pose @ pose.inverse
+    assert back.rotation == pytest.approx(np.eye(3), abs=1e-9)
+    assert back.position == pytest.approx([0, 0, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("quaternion", [(0, 0, 0, 0), (0, 0, 0, 2), (np.nan, 0, 0, 1)])
+def test_what_is_no_pose(quaternion):
+    with pytest.raises(InputError, match="quaternion"):
+        Pose.of((0.0, 0.0, 0.0), quaternion)
+
+
+def test_a_tree_goes_up_and_down():
+    tree = PoseTree()
+    still = (0.0, 0.0, 0.0, 1.0)
+    tree.put("map", "road", Pose.of((10.0, 0.0, 0.0), still))
+    tree.put("/map", "/mast", Pose.of((0.0, 0.0, 8.0), (0.0, 0.0, HALF, HALF)))
+    tree.put("mast", "camera", Pose.of((1.0, 0.0, 0.0), still))
+    assert tree.find("camera", "road").position == pytest.approx([-10, 1, 8])
+    assert tree.find("road", "camera").position == pytest.approx([-1, -10, -8])
+    tree.put("mast", "camera", Pose.of((2.0, 0.0, 0.0), still))
+    assert tree.find("camera", "road").position == pytest.approx([-10, 2, 8])
+
+
+def test_frames_that_are_not_connected():
+    tree = PoseTree()
+    with pytest.raises(InputError, match="does not connect"):
+        tree.find("camera", "road")
+    still = Pose.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+    tree.put("a", "b", still)
+    tree.put("b", "a", still)  # a loop ends too
+    with pytest.raises(InputError, match="does not connect"):
+        tree.find("a", "road")

@@ -1,0 +1,159 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Parameters of the mapping from pixels to the road."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.road.calibration import parse_lens, parse_pairs, parse_pose
+from vehicle_pf_tracker.road.lens import MODELS, Lens
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane
+from vehicle_pf_tracker.road.poses import Pose
+
+
+@dataclass(frozen=True, slots=True)
+class RoadParameters:
+    """Mapping from pixels to the road: by pairs of points, or by the camera's lens and pose.
+
+    Lists of numbers are strings, because ROS reads a list of integers and reals as neither.
+    """
+
+    pairs: str = parameter(
+        "",
+        "Pixels and the road points that they show, `u,v=x,y; …` in px and m, at least four: "
+        "positions and speeds are then given on the road too.",
+    )
+    intrinsics: str = parameter(
+        "",
+        "Focal lengths and principal point of the camera, `fx,fy,cx,cy` as in CameraInfo: needed "
+        "to remove distortion, and for the road from the camera's pose.",
+        unit="px",
+    )
+    distortion_model: str = parameter(
+        "none", "Model of the lens's distortion, by its name in CameraInfo.", choices=MODELS
+    )
+    distortion: str = parameter(
+        "", "Coefficients of the distortion, in the order of CameraInfo, apart by commas."
+    )
+    camera_pose: str = parameter(
+        "",
+        "Pose of the camera's optical frame in the road's, `x,y,z,qx,qy,qz,qw`: without pairs, the "
+        "road is the plane z = 0 there.",
+        unit="m",
+    )
+    from_camera_info: bool = parameter(
+        False,
+        "Nodes: take the lens from the topic camera_info beside the images.",
+    )
+    from_tf: bool = parameter(
+        False,
+        "Nodes: take the camera's pose from TF, from road.frame_id to the images' frame.",
+    )
+    rectified: bool = parameter(
+        False,
+        "Images are rectified: camera_info's projection matrix counts, without distortion.",
+    )
+    frame_id: str = parameter(
+        "road", "Frame that positions on the road are published in; its z = 0 is the road."
+    )
+    margin: float = parameter(
+        0.1,
+        "Larger: positions are also given farther outside the hull of the pairs.",
+        minimum=0.0,
+        maximum=10.0,
+        unit="share of its size",
+    )
+    coarsest: float = parameter(
+        1.0,
+        "Larger: positions are also given farther away, where a pixel is so long on the road.",
+        minimum=0.001,
+        maximum=1000.0,
+        unit="m",
+    )
+    acceleration: float = parameter(
+        1.0,
+        "Larger: the speed follows braking faster, and is less steady.",
+        minimum=0.01,
+        maximum=100.0,
+        unit="m/s per second",
+    )
+
+    @property
+    def is_set(self) -> bool:
+        """True where a mapping is asked for."""
+        return bool(self.parsed_pairs or self.camera_pose or self.from_tf)
+
+    @property
+    def parsed_pairs(self) -> tuple[Pair, ...]:
+        """Pairs as points."""
+        return parse_pairs(self.pairs)
+
+    @property
+    def lens(self) -> Lens | None:
+        """Lens by the parameters; None where they give none."""
+        return parse_lens(self.intrinsics, self.distortion_model, self.distortion)
+
+    @property
+    def pose(self) -> Pose | None:
+        """Pose of the camera by the parameters; None where they give none."""
+        return parse_pose(self.camera_pose)
+
+    def plane(self, lens: Lens | None, pose: Pose | None) -> RoadPlane:
+        """Make the plane of the pairs, else of the camera.
+
+        Raises
+        ------
+        InputError
+            If the pairs do not determine it, or lens or pose are missing.
+        """
+        pairs = self.parsed_pairs
+        if pairs:
+            return RoadPlane.of_pairs(pairs, lens, margin=self.margin, coarsest=self.coarsest)
+        if lens is None or pose is None:
+            raise InputError("the road of a camera needs both its lens and its pose")
+        return RoadPlane.of_camera(lens, pose, coarsest=self.coarsest)
+
+    def validate(self) -> None:
+        """Refuse what makes no road, as far as it does not wait for CameraInfo or TF."""
+        lens, pose = self.lens, self.pose
+        problem = self._problem()
+        if problem:
+            raise InputError(problem)
+        if self.parsed_pairs:
+            self.plane(lens, None)
+        elif pose is not None and lens is not None:
+            self.plane(lens, pose)
+
+    def _problem(self) -> str:
+        """Say which parameters contradict each other, or lack another one."""
+        by_pose = bool(self.camera_pose.strip() or self.from_tf)
+        by_pairs = bool(self.pairs.strip())
+        has_lens = bool(self.intrinsics.strip() or self.from_camera_info)
+        rules = {
+            "give either road.pairs or the camera's pose, not both": by_pairs and by_pose,
+            "give either road.camera_pose or road.from_tf, not both": (
+                bool(self.camera_pose.strip()) and self.from_tf
+            ),
+            "give either road.intrinsics or road.from_camera_info, not both": (
+                bool(self.intrinsics.strip()) and self.from_camera_info
+            ),
+            "the camera's pose needs its lens beside it: road.intrinsics (fx,fy,cx,cy), or in a "
+            "node road.from_camera_info": by_pose and not has_lens,
+            "road.frame_id must name the frame of the road": not self.frame_id,
+        }
+        return next((words for words, broken in rules.items() if broken), "")
