@@ -69,6 +69,15 @@ def test_a_report_tells_counts_rates_and_mode(bench):
     assert float(told["age of frames (ms)"]) > 0
 
 
+def answered(rig, index) -> bool:
+    """Publish one image; a best-effort one may be lost on its way."""
+    rig.camera.publish(image_message(header(index), road(1)[0]))
+    try:
+        return rig.bench.wait_for(lambda: rig.modes[-1].header == header(index), 5.0)
+    except AssertionError:
+        return False
+
+
 def test_images_that_were_overwritten_are_counted(bench):
     rig = Rig(bench, on_target())
     rig.play(road(1))
@@ -76,9 +85,10 @@ def test_images_that_were_overwritten_are_counted(bench):
     for index in range(1, 61):
         rig.camera.publish(image_message(header(index), road(1)[0]))
     rig.bench.executor.add_node(rig.node)
-    bench.wait_for(lambda: rig.modes[-1].header == header(60))
+    bench.wait_for(lambda: len(rig.modes) > 1)
+    last = next(index for index in range(61, 70) if answered(rig, index))
     told = table(Reports(bench).next())
-    assert int(told["images"]) + int(told["dropped"]) == 61
+    assert int(told["images"]) + int(told["dropped"]) == last + 1
     assert int(told["dropped"]) >= 10
 
 

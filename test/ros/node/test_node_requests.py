@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import statistics
 import time
 
 import pytest
@@ -76,10 +77,12 @@ def test_every_request_of_a_burst_is_answered(bench, client, count):
 
 
 def test_calls_one_after_the_other_do_not_wait_for_a_gate(bench, client):
-    began, count = time.monotonic(), 100
-    for number in range(count):
+    times = []
+    for number in range(50):
+        began = time.monotonic()
         future = client.call_async(request(number))
         bench.wait_for(future.done)
-    rate = count / (time.monotonic() - began)
-    assert rate >= 50, f"{rate:.0f} calls a second"
+        times.append(time.monotonic() - began)
+    # A request that waited for the executor's next round would wait for 0.1 s on average.
+    assert statistics.median(times) < 0.05
     assert client.camera.answers[-1].status[0].message == "TRACKING"
