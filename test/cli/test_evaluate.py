@@ -112,7 +112,7 @@ def test_a_baseline_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_pa
 def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
     words = ["--variants", "baseline:csrt", "--baselines-python", tmp_path / "none"]
     assert evaluate(tmp_path / "out", bags / "one", *words) == 1
-    assert capsys.readouterr().err.endswith("error: nothing could run; the report says why\n")
+    assert capsys.readouterr().err.endswith("error: no system could run; the report says why\n")
 
 
 @pytest.mark.parametrize(

@@ -58,8 +58,8 @@ def test_the_other_verbs_load_without_it(verb):
 
 def test_a_recording_is_made_and_tracked_without_it(tmp_path):
     made = on_a_robot("synth", "bar", tmp_path / "recording")
-    assert (made.returncode, made.stderr) == (0, "")
+    assert made.returncode == 0, made.stderr  # a slow machine shows progress there
     words = ("--variant", "pf", "--set", "kernels=opencv", "-o", tmp_path / "out")
     run = on_a_robot("run", tmp_path / "recording", *words)
-    assert (run.returncode, run.stderr) == (0, "")
+    assert run.returncode == 0, run.stderr
     assert (tmp_path / "out" / "metrics.json").is_file()

@@ -72,8 +72,8 @@ def test_words_become_options(words, expected):
     ("words", "told"),
     [
         ("-r 0", "0 is not more than 0"),
-        ("-r fast", "'fast' is no number"),
-        ("-r nan", "'nan' is no number"),
+        ("-r fast", "'fast' is not a number"),
+        ("-r nan", "'nan' is not a number"),
         ("--start-offset -1", "-1 is less than 0"),
         ("--clock 0", "not more than 0"),
         ("-m /a", "'/a' is not FROM:=TO"),

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Where the default parameter files are, however the package was installed."""
+"""Location of the default parameter files, however the package was installed."""
 
 from __future__ import annotations
 

@@ -31,16 +31,16 @@ _WIDE = 200
 
 
 class UsageError(Exception):
-    """The command line lacks something that no file could give; ends with status 2."""
+    """Error in the command line itself; the program ends with status 2."""
 
 
 def tell_error(sentence: str, program: str = PROGRAM) -> None:
-    """Say why nothing came of it, in one line."""
+    """Print an error as one line on stderr."""
     print(f"{program}: error: {' '.join(sentence.split())}", file=sys.stderr, flush=True)
 
 
 def tell_notices(sentences: Iterable[str]) -> None:
-    """Say what was not as it should be, a line each."""
+    """Print notices on stderr, one per line."""
     for sentence in sentences:
         print(f"{PROGRAM}: note: {sentence}", file=sys.stderr, flush=True)
 
@@ -51,7 +51,7 @@ def show(table: Comparison) -> None:
 
 
 def print_table(table: RichTable) -> None:
-    """Print a table on stdout; as wide as it is where that is no terminal."""
+    """Print a table on stdout; not wrapped where that is not a terminal."""
     from rich.console import Console
 
     console = Console()

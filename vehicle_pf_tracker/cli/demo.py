@@ -43,8 +43,8 @@ from vehicle_pf_tracker.trackers.registry import find_variant
 SCENE, SCENE_SEED = "highway", 0
 ROS_SEED = 0
 _PATIENCE = 600.0
-"""Seconds that a busy machine may take for what a quiet one does in a few; a node that ends is
-noticed at once."""
+"""Patience with a busy machine, s; a quiet one needs a few, and a node that ends is noticed at
+once."""
 
 # Particles and features are the same for both. Each has its own best sigma, found on other scenes
 # and seeds: `python -m reproduction.demo_sigma`.
@@ -70,7 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Go through the whole chain; 1 if frames were lost or ROS and offline runs differ."""
+    """Run the whole chain; return 1 if frames were lost or ROS and offline runs differ."""
     folder = make_folder(args.output)
     recording = _record(folder / "recording")
     answers = {name: _through_ros(recording, name) for name in CONTESTANTS}
@@ -136,7 +136,7 @@ def _through_ros(recording: Recording, name: str) -> Sequence[EstimateRow]:
 
 
 def _stay_local() -> None:
-    """Keep away from robots and other demos, unless the user has chosen a domain."""
+    """Choose a ROS domain of its own, away from robots and other demos, unless the user has."""
     os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 101))
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
@@ -152,7 +152,7 @@ def _track(recording: Recording, tracker: OfflineTracker) -> list[EstimateRow]:
 
 
 def _numbers(rows: Sequence[EstimateRow]) -> list[tuple[object, ...]]:
-    """Everything that does not depend on how fast the machine is."""
+    """Return the part of a result that does not depend on the machine's speed."""
     return [(r.frame, r.stamp_ns, r.x, r.y, r.mode, r.confidence, r.n_eff) for r in rows]
 
 

@@ -43,12 +43,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     add(
         "-o", "--output", type=Path, required=True, metavar="DIR",
-        help="folder of the evaluation; what was run there before is not run again",
+        help="evaluation folder; finished runs in it are kept",
     )  # fmt: skip
     system_options.add_arguments(parser)
     add(
         "--seeds", type=positive, metavar="N",
-        help=f"runs of each system that has randomness (default: {SEEDS}, with --stress "
+        help=f"seeds of each stochastic system (default: {SEEDS}, with --stress "
         f"{stress.SEEDS})",
     )  # fmt: skip
     add("--first-seed", type=natural, default=0, metavar="S", help="the first of the seeds")
@@ -74,16 +74,16 @@ def _add_timing(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "--timing", action="store_true",
-        help="then measure the speed of all systems, one after the other; let nothing run beside",
+        help="afterwards measure the speed of each system in turn, on an otherwise idle machine",
     )  # fmt: skip
     add(
         "--timing-frames", type=positive, default=TIMING_FRAMES, metavar="N",
-        help="frames of each recording to measure it on (default: %(default)s)",
+        help="frames per recording for --timing (default: %(default)s)",
     )  # fmt: skip
 
 
 def _add_robustness(parser: argparse.ArgumentParser) -> None:
-    robust = parser.add_argument_group("robustness, beside the grid")
+    robust = parser.add_argument_group("robustness runs, in addition to the grid")
     robust.add_argument(
         "--shifted-starts", action="store_true",
         help="also start on twelve shifted and scaled boxes, with the first seed",
@@ -99,12 +99,12 @@ def _add_robustness(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run what is missing, write the report, and print the table."""
+    """Run the missing cells, write the report, and print the table."""
     stress.check(args)
     try:
         return stress.run(args) if args.stress else _run_grid(args)
     except KeyboardInterrupt:
-        tell_notices(["interrupted; the same command goes on where this one stopped"])
+        tell_notices(["interrupted; run the same command to resume"])
         raise
 
 
@@ -156,7 +156,7 @@ def _show(summaries: Sequence[SystemSummary]) -> None:
 
 def _judge(summaries: Sequence[SystemSummary], limit: float | None) -> int:
     if not any(summary.runs for summary in summaries):
-        tell_error("nothing could run; the report says why")
+        tell_error("no system could run; the report says why")
         return 1
     if limit is None:
         return 0

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`import`: a video file or a frame folder becomes a recording."""
+"""`import`: convert a video file or a frame folder to a recording."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "source", type=Path, metavar="SRC",
         help="video file, or folder with img/, and groundtruth.csv where truth is known",
     )  # fmt: skip
-    add("out", type=Path, metavar="OUT", help="rosbag2 folder to make")
+    add("out", type=Path, metavar="OUT", help="rosbag2 folder to write")
     add(
         "--truth", type=Path, metavar="FILE",
         help="truth of a video: a table frame,x,y,w,h,occ (frames from 1, top-left corner in px, "
@@ -39,13 +39,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     add(
         "--format", choices=FORMATS,
-        help="how images are kept (default: JPEG files as they are, everything else raw)",
+        help="how images are stored (default: JPEG files as they are, everything else raw)",
     )  # fmt: skip
-    add("--overwrite", action="store_true", help="replace a recording that is there")
+    add("--overwrite", action="store_true", help="overwrite an existing recording")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Import, and say what the recording holds."""
+    """Import the footage, and print a summary of the recording."""
     with counting("imported") as progress:
         made = import_recording(
             args.source,

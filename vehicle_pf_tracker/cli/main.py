@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The command `vehicle-pf-tracker`: picks a verb, and turns errors into a sentence and a status."""
+"""The command `vehicle-pf-tracker`: chooses a verb, turns errors into a sentence and a status."""
 
 from __future__ import annotations
 
@@ -31,14 +31,17 @@ from vehicle_pf_tracker.core.errors import InputError
 
 VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        "demo": ("demo", "show the whole chain on a made traffic scene, scored against truth"),
-        "import": ("import_footage", "make a recording of a video file or a frame folder"),
-        "synth": ("synth", "make a recording of a synthetic scene, with exact truth"),
+        "demo": ("demo", "run the whole chain on a synthetic scene, scored against truth"),
+        "import": ("import_footage", "convert a video file or a frame folder to a recording"),
+        "synth": ("synth", "render a synthetic scene to a recording, with exact truth"),
         "params": ("params", "print the commented default parameters of a variant"),
         "run": ("run", "track a recording offline, without ROS, and score it"),
         "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
-        "tune": ("tune", "search a variant's parameters on recordings, and try them on others"),
-        "report": ("report", "make the report of an evaluation again"),
+        "tune": (
+            "tune",
+            "search a variant's parameters on recordings, and validate them on others",
+        ),
+        "report": ("report", "write the report of an evaluation anew"),
         "replay": ("replay", "feed a recording to ROS nodes"),
         "compile": ("compile_kernels", "compile the kernels of the extra numba ahead of time"),
     }
@@ -129,7 +132,7 @@ def _parser(words: list[str]) -> argparse.ArgumentParser:
 
 
 def _check_extra(verb: str) -> None:
-    """Raise before hours of work, not after them, if the libraries of `verb` are not installed."""
+    """Raise at the start, not after hours of work, if the libraries of `verb` are missing."""
     for name in EVALUATION_MODULES if verb in EVALUATING else ():
         if importlib.util.find_spec(name) is None:
             raise InputError(

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ParameterSet:
-    """Parameters under a name; for one variant, or (None) for all whom they fit."""
+    """Named parameters; for one variant, or (None) for all that accept them."""
 
     name: str
     variant: str | None = None
@@ -70,13 +70,15 @@ def read_sets(
     def named(label: str) -> ParameterSet:
         variant, at, name = label.rpartition("@")
         if not name or (at and not variant):
-            raise UsageError(f"{label!r} is no label of a parameter set: LABEL or VARIANT@LABEL")
+            raise UsageError(
+                f"{label!r} is not a label of a parameter set: give LABEL or VARIANT@LABEL"
+            )
         return sets.setdefault(label, ParameterSet(name, variant or None))
 
     for word in files:
         label, equals, file = word.partition("=")
         if not (equals and file):
-            raise UsageError(f"--params wants LABEL=FILE, got {word!r}")
+            raise UsageError(f"--params expects LABEL=FILE, not {word!r}")
         named(label).files.append(Path(file))
     for word in assignments:
         label = word.partition("=")[0].rpartition(":")[0]
@@ -157,7 +159,7 @@ def configure(variant: Variant, parameter_set: ParameterSet) -> Configuration:
 
 
 def settable(variant: Variant) -> dict[str, ParameterSpec]:
-    """Everything that may differ between systems: not the seed, nor where the vehicle is."""
+    """Return the parameters that may differ between systems: neither seed nor target."""
     table = {**specs(variant.parameters), **specs(SessionParameters)}
     return {n: s for n, s in table.items() if n != "seed" and not n.startswith("target.")}
 

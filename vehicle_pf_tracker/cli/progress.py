@@ -33,7 +33,7 @@ _LINE_SECONDS = 5.0
 def counting(
     verb: str, stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
 ) -> Iterator[OnProgress]:
-    """Give a function that takes the number of frames done, and of all (None where unknown).
+    """Return a function that takes the numbers of frames done and of all (None if unknown).
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def counting(
 
 
 class _Lines:
-    """A line about every five seconds, so that quick work says nothing."""
+    """A line about every five seconds, so that quick work prints none."""
 
     def __init__(self, verb: str, stream: TextIO, clock: Callable[[], float]) -> None:
         self._verb = verb

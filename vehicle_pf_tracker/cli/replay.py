@@ -38,9 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("recording", type=Path, help="rosbag2 folder or MCAP file")
     add("-r", "--rate", type=_positive, metavar="X", help="speed, 1.0 is as recorded")
-    add("--start-offset", type=_seconds, default=0.0, metavar="S", help="skip so many seconds")
-    add("--playback-duration", type=_seconds, metavar="S", help="play so many seconds only")
-    add("-l", "--loop", action="store_true", help="begin again at the end")
+    add("--start-offset", type=_seconds, default=0.0, metavar="S", help="skip this many seconds")
+    add("--playback-duration", type=_seconds, metavar="S", help="play only this many seconds")
+    add("-l", "--loop", action="store_true", help="restart at the end")
     add("-d", "--delay", type=_seconds, default=0.0, metavar="S", help="wait before playing")
     add("--topics", nargs="+", default=[], metavar="TOPIC", help="play these topics only")
     add(
@@ -93,7 +93,7 @@ def _add_tracking_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Play the recording; Ctrl-C is a good end too.
+    """Play the recording; Ctrl-C ends it normally.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
         If options contradict each other, or there is no target to start on.
     """
     if args.loop and args.output:
-        raise UsageError("-o needs an end, so it cannot go with --loop")
+        raise UsageError("-o cannot be combined with --loop, which never ends")
     from vehicle_pf_tracker.ros.replay.interruption import noted_interrupts
     from vehicle_pf_tracker.ros.replay.replaying import NoTargetError, replay
 
@@ -204,7 +204,7 @@ def _number(text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is no number")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
     return value
 
 

@@ -35,7 +35,7 @@ _LINE_SECONDS = 5.0
 def progress_view(
     stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
 ) -> Iterator[Callable[[ReplayProgress], None]]:
-    """Give a function that shows how far the replay has come.
+    """Return a function that reports the progress of the replay.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def progress_view(
 
 
 class _Bar:
-    """A bar that is made with the first image, so that it does not stand before it."""
+    """A bar that appears with the first image."""
 
     def __init__(self, bar: Progress, clock: Callable[[], float]) -> None:
         self._bar = bar

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`report`: make the report of an evaluation again."""
+"""`report`: write the report of an evaluation anew."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from vehicle_pf_tracker.cli.console import tell_notices
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of this verb."""
     add = parser.add_argument
-    add("folder", type=Path, metavar="DIR", help="folder of an evaluation; the report goes there")
+    add("folder", type=Path, metavar="DIR", help="evaluation folder; the report is written there")
     add_report_options(parser)
 
 
 def add_report_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that say what a report is made of."""
+    """Add the options that choose the parts of a report."""
     add = parser.add_argument
     add(
         "--no-images", dest="images", action="store_false",
@@ -48,7 +48,7 @@ def add_report_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the report, and say where it is."""
+    """Write the report, and print its path."""
     write(args.folder, args)
     return 0
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The stress battery of `evaluate`: its options and its run."""
+"""Options and run of the stress battery of `evaluate`."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SEEDS = 1
 """Runs of each case: a battery has variation enough, and many seeds of one case are no more."""
 STORE = "scores.jsonl"
 _OTHERS = ("scheduler", "timing", "shifted_starts", "start_frames", "restarts", "max_rmse")
-"""Options of the grid that the battery has no use for."""
+"""Options of the grid that do not apply to the battery."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,7 +77,7 @@ def check(args: argparse.Namespace) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run what is missing of the battery, write its report, and print its tables."""
+    """Run the missing cases of the battery, write its report, and print its tables."""
     from vehicle_pf_tracker.evaluation.stress import run_battery
     from vehicle_pf_tracker.evaluation.stress.report import MARKDOWN, write_report
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`synth`: a synthetic scene becomes a recording with exact truth."""
+"""`synth`: render a synthetic scene to a recording with exact truth."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of this verb."""
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=f"one of: {', '.join(SCENES)}")
-    add("out", nargs="?", type=Path, metavar="OUT", help="rosbag2 folder to make")
+    add("out", nargs="?", type=Path, metavar="OUT", help="rosbag2 folder to write")
     add("--list", action="store_true", help="list the scenes and their settings")
     add("--seed", type=int, default=0, help="changes textures, noise and traffic (default: 0)")
     add(
@@ -45,16 +45,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--format", choices=FORMATS, default="raw",
         help="pixels, or JPEG files (default: raw)",
     )  # fmt: skip
-    add("--overwrite", action="store_true", help="replace a recording that is there")
+    add("--overwrite", action="store_true", help="overwrite an existing recording")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Render, and say what the recording holds."""
+    """Render the scene, and print a summary of the recording."""
     if args.list:
         print("\n".join(_listing()))
         return 0
     if args.scene is None or args.out is None:
-        raise UsageError("synth wants SCENE and OUT; `synth --list` shows the scenes")
+        raise UsageError("synth needs SCENE and OUT; `synth --list` shows the scenes")
     scene = make_scene(args.scene, seed=args.seed, settings=args.settings)
     record_scene(scene, args.out, args.format, overwrite=args.overwrite)
     print(

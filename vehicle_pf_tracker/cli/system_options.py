@@ -196,7 +196,7 @@ def _models(words: Iterable[str]) -> dict[str, dict[str, str]]:
         baseline, colon, rest = word.partition(":")
         name, equals, file = rest.partition("=")
         if not (colon and equals and file):
-            raise UsageError(f"--baseline-model wants BASELINE:NAME=FILE, got {word!r}")
+            raise UsageError(f"--baseline-model expects BASELINE:NAME=FILE, not {word!r}")
         models.setdefault(baseline, {})[name] = str(Path(file).absolute())
     return models
 
@@ -205,7 +205,7 @@ def _baseline_system(
     name: str, python: Path | None, models: dict[str, dict[str, str]], notes: list[str]
 ) -> BaselineSystem:
     if name not in MODELS:
-        raise InputError(f"there is no baseline {name!r}; the baselines are {', '.join(MODELS)}")
+        raise InputError(f"unknown baseline {name!r}; the baselines are {', '.join(MODELS)}")
     own = models.get(name, {})
     files = {key: Path(path) for key, path in own.items()}
     build = ""

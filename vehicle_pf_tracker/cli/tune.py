@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`tune`: search a variant's parameters on recordings, and try the best on others."""
+"""`tune`: search a variant's parameters on recordings, and validate the best on others."""
 
 from __future__ import annotations
 
@@ -66,20 +66,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--variant", required=True, metavar="NAME", help=f"one of: {', '.join(VARIANTS)}")
     add(
         "-o", "--output", type=Path, required=True, metavar="DIR",
-        help="folder for best.yaml and the rest; what was run there before is not run again",
+        help="folder for best.yaml and the other results; finished runs in it are kept",
     )  # fmt: skip
     add(
         "--held-out", nargs="+", default=[], metavar="REC",
-        help="recordings that the search does not see; they show whether its gain is real",
+        help="held-out recordings, unseen by the search; they show whether its gain is real",
     )  # fmt: skip
     add(
         "--search", action="append", default=[], metavar="NAME[=LOW:HIGH],…",
-        help="what to search (default: the parameters marked as tuned, "
+        help="parameters to search (default: those marked as tuned, "
         f"{', '.join(default_search(find_variant('apf')))} for apf)",
     )  # fmt: skip
     add(
         "--trials", type=positive, default=TRIALS, metavar="N",
-        help="sets of parameters to try (default: %(default)s)",
+        help="parameter sets to try (default: %(default)s)",
     )  # fmt: skip
     add(
         "--seeds", type=positive, default=SEEDS, metavar="N",
@@ -103,7 +103,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """SearchTask, compare, write everything, and print the comparison."""
+    """Search, compare, write all results, and print the comparison."""
     variant = find_variant(args.variant)
     configuration = _configuration(variant, args)
     base = system_options.make_system(variant, "", configuration, {})
@@ -114,7 +114,7 @@ def run(args: argparse.Namespace) -> int:
             best = _find_best(what, output, args)
             lines = _compare(what, best, recordings, output / "evaluation", args)
     except KeyboardInterrupt:
-        tell_notices(["interrupted; the same command goes on where this one stopped"])
+        tell_notices(["interrupted; run the same command to resume"])
         raise
     told = comparison.verdict(lines, what.objective)
     file = _write_best(configuration.updated(best.values), variant, what, output)
@@ -158,7 +158,9 @@ def _search(
     seen = {source.digest for source in sources[: len(tuned)]}
     for source in sources[len(tuned) :]:
         if source.digest in seen:
-            raise InputError(f"{source.path} is held out and tuned on; it can only be one of both")
+            raise InputError(
+                f"{source.path} is both held out and tuned on; it can only be one of the two"
+            )
     seeds = range(SEARCH_SEED, SEARCH_SEED + args.seeds)
     objective = OBJECTIVES[args.objective]
     what = SearchTask(

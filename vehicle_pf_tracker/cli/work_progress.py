@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Progress of many runs: what is done, what runs, and how long it may still take."""
+"""Progress of many runs: the runs done, those running, and the time left."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _SHOWN = 4
 def telling(
     name: str, stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
 ) -> Iterator[OnProgress]:
-    """Give a function that tells how far the work `name` is.
+    """Return a function that reports the progress of the work `name`.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def telling(
 
 
 class _Lines:
-    """A line about every five seconds, so that quick work says nothing."""
+    """A line about every five seconds, so that quick work prints none."""
 
     def __init__(self, name: str, stream: TextIO, clock: Callable[[], float]) -> None:
         self._name = name

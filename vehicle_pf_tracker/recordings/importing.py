@@ -76,7 +76,7 @@ def import_recording(
     source : Path
         The video file or the frame folder.
     out : Path
-        The rosbag2 folder to make.
+        The rosbag2 folder to write.
     truth : Path or None
         The truth of a video, a table like a frame folder's ``groundtruth.csv``.
     format : str or None

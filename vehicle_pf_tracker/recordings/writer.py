@@ -123,7 +123,7 @@ class RecordingWriter:
     Parameters
     ----------
     folder : Path
-        The rosbag2 folder to make.
+        The rosbag2 folder to write.
     compression : str
         ``lz4``, ``zstd`` or ``none``: how the chunks of the MCAP file are compressed.
     overwrite : bool

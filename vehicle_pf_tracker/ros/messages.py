@@ -34,7 +34,7 @@ WAITING = "WAITING"
 """Message of `~/mode` while there is no target."""
 
 NOT_READY = "loading kernels"
-"""How a node's answer begins that will be another one once its kernels are loaded."""
+"""Beginning of every answer that a node gives only until its kernels are loaded."""
 
 REJECTED = "REJECTED"
 """Message of `~/mode` for an image that could not be used."""
@@ -59,7 +59,7 @@ def stamp_ns(header: Header) -> int:
 
 
 def key_values(values: Mapping[str, object]) -> list[KeyValue]:
-    """Write values as text from which every number can be read back to its last digit."""
+    """Format values as text; every number can be read back to its last digit."""
     return [KeyValue(key=key, value=_text(value)) for key, value in values.items()]
 
 
@@ -97,7 +97,7 @@ def mode_message(
 def position_message(
     header: Header, estimate: Estimate, kept: PointStamped | None = None
 ) -> PointStamped:
-    """Make the position, in px of the image; in a message `kept` from before if there is one."""
+    """Make the position, px; reuses the message `kept` if there is one."""
     message = PointStamped() if kept is None else kept
     message.header = header
     message.point.x, message.point.y = map(float, estimate.position)

@@ -55,7 +55,7 @@ _HANDLER = ["self", "entity", "node", "take_from_wait_list"]
 
 
 def missing(node: Node) -> list[str]:
-    """Name what this rclpy lacks for `node`, one sentence for each, with what serves instead."""
+    """List the features that this rclpy lacks for `node`, a sentence each, with the fallback."""
     sentences = []
     if not can_run_directly():
         sentences.append("its executor differs: images cost more CPU time in the public one")
@@ -102,7 +102,7 @@ def destroy_state_machine(node: LifecycleNode) -> None:
 
 
 def can_run_directly() -> bool:
-    """Tell whether `DirectExecutor` works with this rclpy."""
+    """Return whether `DirectExecutor` works with this rclpy."""
     make_handler = getattr(Executor, "_make_handler", None)
     wait = getattr(Executor, "_wait_for_ready_callbacks", None)
     if make_handler is None or wait is None:

@@ -86,7 +86,7 @@ def profile(size: int) -> str:
 
 
 def is_free_to_choose(environment: Mapping[str, str], middleware: str) -> bool:
-    """Tell whether the middleware is Fast DDS and the user has not chosen its transports."""
+    """Return whether the middleware is Fast DDS and the user has not chosen its transports."""
     is_fast_dds = middleware.startswith("rmw_fastrtps")
     return is_fast_dds and not any(environment.get(name) for name in USER_VARIABLES)
 

@@ -100,7 +100,7 @@ def test_a_dead_worker_is_named():
 @pytest.mark.parametrize(
     ("name", "models", "words"),
     [
-        ("boost", {}, "there is no baseline 'boost'; the baselines are csrt, kcf, mil, vit, nano"),
+        ("boost", {}, "unknown baseline 'boost'; the baselines are csrt, kcf, mil, vit, nano"),
         ("csrt", {"net": "a.onnx"}, "csrt needs no model files; got net"),
         ("nano", {"backbone": "a.onnx"}, "model files: backbone, neckhead; got backbone"),
         (

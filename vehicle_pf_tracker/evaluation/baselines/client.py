@@ -233,7 +233,7 @@ class Baseline:
 
 def _checked_models(name: str, models: Mapping[str, Path]) -> dict[str, Path]:
     if name not in MODELS:
-        raise InputError(f"there is no baseline {name!r}; the baselines are {', '.join(MODELS)}")
+        raise InputError(f"unknown baseline {name!r}; the baselines are {', '.join(MODELS)}")
     required = MODELS[name]
     if set(models) != set(required):
         words = f"these model files: {', '.join(required)}" if required else "no model files"

@@ -84,7 +84,7 @@ class StressSource:
 
 
 def is_grey(frame: Frame) -> bool:
-    """Tell whether the three channels of a frame are equal."""
+    """Return whether the three channels of a frame are equal."""
     return bool(np.array_equal(frame[..., 0], frame[..., 1])) and bool(
         np.array_equal(frame[..., 0], frame[..., 2])
     )

@@ -108,7 +108,7 @@ def _carrier(background: Background) -> str:
 
 
 def _is_too_large(placed: Placed, footage: StressFootage) -> bool:
-    """Tell whether the occluder ever covers most of the image."""
+    """Return whether the occluder ever covers most of the image."""
     width, height = footage.source.width, footage.source.height
     image = np.array([[0, 0], [width, 0], [width, height], [0, height]], np.float32)
     for index in range(placed.first, placed.first + placed.count, 5):

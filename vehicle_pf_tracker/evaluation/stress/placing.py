@@ -201,7 +201,7 @@ class Placer:
         return occluder.visible_share(truth.box, index, self._size)
 
     def _in_view(self, first: int, last: int) -> bool:
-        """Tell whether the sequence itself shows the vehicle, in full where the case begins."""
+        """Return whether the sequence itself shows the vehicle, in full where the case begins."""
         own = [truth.occlusion for truth in self._truth[first : last + 1] if truth is not None]
         return own[0] is Occlusion.NONE and Occlusion.TOTAL not in own
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Memory for images, kept instead of given back to the system after every one.
+"""Memory for images is kept, instead of returned to the system after every one.
 
 By default glibc maps fresh pages for each block as large as an image, and the kernel has to clear
 them. Keeping them takes a third of the CPU time off a node that receives 640x480 at 30 Hz.
@@ -31,11 +31,11 @@ _OPTIONS = {
     "MALLOC_TOP_PAD_": (-2, 2 * _LARGEST_BLOCK),
     "MALLOC_MMAP_THRESHOLD_": (-3, _LARGEST_BLOCK),
 }
-"""Number and value of each of glibc's options, by the variable that a user would set it with."""
+"""Number and value of each of glibc's options, by its environment variable."""
 
 
 def keep_image_memory() -> bool:
-    """Let freed blocks of the size of images be used again.
+    """Make glibc reuse freed blocks of the size of images.
 
     Returns
     -------

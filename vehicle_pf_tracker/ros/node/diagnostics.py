@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`/diagnostics` at 1 Hz: how the node is, and why nothing arrives."""
+"""`/diagnostics` at 1 Hz: the node's health, and why no images arrive."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from vehicle_pf_tracker.ros.node.image_input import ImageInput
 
 PERIOD = 1.0
 SILENCE = 5.0
-"""Seconds without an image that are worth a warning."""
+"""Time without an image after which a warning is published, s."""
 
 _WARNING_PERIOD = 30.0
 
@@ -61,7 +61,7 @@ class Diagnostics:
         self._timer = node.create_timer(PERIOD, self.publish, clock=clock)
 
     def begin(self) -> Health:
-        """Begin to count anew, and return the counters."""
+        """Reset the counters, and return them."""
         self._health = Health()
         return self._health
 

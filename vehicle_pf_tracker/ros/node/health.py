@@ -60,7 +60,7 @@ class Health:
         return self._clock() - self._heard
 
     def listen(self) -> None:
-        """Begin to wait for images: neither the time nor the images missed before count."""
+        """Start waiting for images: neither the time nor the images missed before count."""
         self._heard = self._clock()
         self._number = None
 

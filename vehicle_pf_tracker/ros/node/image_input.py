@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The subscription that images come in by, and who publishes on its topic."""
+"""Subscription to images, and the publishers on its topic."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class ImageInput:
         self._node.destroy_subscription(self._subscription)
 
     def explain_silence(self) -> str:
-        """Say why no images may be coming: every publisher with its QoS, and what does not fit."""
+        """Explain the lack of images: every publisher with its QoS, and each mismatch."""
         publishers = self._node.get_publishers_info_by_topic(self.topic)
         if not publishers:
             return f"nobody publishes on it{self._elsewhere()}"
@@ -142,7 +142,7 @@ class ImageInput:
         return bool(self._node.count_publishers(topic))
 
     def _is_foreign(self, topic: str) -> bool:
-        """Tell whether another node publishes on `topic`: not our own overlay."""
+        """Return whether another node publishes on `topic`: not our own overlay."""
         own = self._node.get_name(), self._node.get_namespace()
         publishers = self._node.get_publishers_info_by_topic(topic)
         return any((one.node_name, one.node_namespace) != own for one in publishers)

@@ -36,7 +36,7 @@ _BODY = 4
 
 
 class _Layout(NamedTuple):
-    """The numbers before the frame_id, before the encoding, and before the pixels."""
+    """Numbers before the frame_id, before the encoding, and before the pixels."""
 
     stamp: struct.Struct
     size: struct.Struct
@@ -108,11 +108,11 @@ def read_image(message: Image | SerializedImage | CompressedImage) -> Frame:
 
 
 def _text(message: bytes, at: int, length: int) -> tuple[str, int]:
-    """Text of `length` bytes with the zero at its end, and where the next field begins."""
+    """Return the text of `length` bytes without its final zero, and the next field's offset."""
     text = message[at : at + max(length - 1, 0)]
     return text.decode("utf-8", "replace"), at + length
 
 
 def _aligned(at: int) -> int:
-    """Where a number of four bytes begins at or after `at`."""
+    """Return the offset of the next four-byte number at or after `at`."""
     return at + -at % 4

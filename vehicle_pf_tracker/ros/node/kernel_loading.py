@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Loading kernels beside a node that answers already."""
+"""Loading of kernels while the node already answers."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class KernelLoading:
 
     @property
     def reason(self) -> str:
-        """Why there are no kernels (yet), in one sentence."""
+        """Reason why there are no kernels (yet), in one sentence."""
         return self._problem or _REASON
 
     @property
@@ -77,5 +77,5 @@ class KernelLoading:
 
 
 def is_loading() -> bool:
-    """Tell whether a thread of this process still loads kernels; it cannot be ended."""
+    """Return whether a thread of this process still loads kernels; it cannot be ended."""
     return any(thread.name == _THREAD for thread in threading.enumerate())

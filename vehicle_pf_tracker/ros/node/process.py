@@ -41,12 +41,12 @@ from vehicle_pf_tracker.ros.transport import image_transport
 from vehicle_pf_tracker.trackers.registry import Variant
 
 _OVERLAY_BYTES = 1280 * 720 * 3
-"""Of the largest overlay that four of fit the segment; a larger one still fits once."""
+"""Size of the largest overlay of which the segment holds four; a larger one still fits once."""
 
 _MOST_FAILURES = 20
 _FAILING = 10.0
-"""So many failed callbacks within so many seconds are no malformed request but a broken node: it
-ends, so that ``respawn`` in a launch file can start it again."""
+"""This many failed callbacks within this many seconds mean a broken node, not malformed requests:
+it ends, so that ``respawn`` in a launch file can restart it."""
 
 _BROKEN = "a request could not be answered:"
 
@@ -102,7 +102,7 @@ def run_node(variant: Variant, arguments: Sequence[str]) -> int:
     Returns
     -------
     int
-        Exit status: 0 ended by a signal, 1 a user's mistake (told on stderr), 2 usage.
+        Exit status: 0 ended by a signal, 1 a user's mistake (printed on stderr), 2 usage.
     """
     status = _run(variant, arguments)
     if is_loading():  # a thread in LLVM would be left behind, and may not outlive Python
@@ -149,7 +149,7 @@ def _serve(variant: Variant) -> int:
 
 
 def _spin(executor: Executor, node: Node) -> int:
-    """Run callbacks until a signal comes; 1 if they fail again and again."""
+    """Run callbacks until a signal comes; return 1 if they fail repeatedly."""
     failures: deque[float] = deque(maxlen=_MOST_FAILURES)
     while rclpy.ok():
         if not _spin_once(executor, node):

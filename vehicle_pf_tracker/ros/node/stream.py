@@ -38,7 +38,7 @@ from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session
 
 _THROTTLE = 5.0
-"""Seconds between two lines of the same kind in the log."""
+"""Interval between two lines of the same kind in the log, s."""
 
 
 class Stream:
@@ -104,7 +104,7 @@ class Stream:
 
     @property
     def facts(self) -> Mapping[str, object]:
-        """Choices that the parameters left open: the seed and the kernels in use."""
+        """Choices that the parameters leave open: the seed and the kernels in use."""
         if self._session is None:
             return {"seed": self._configuration.tracker.seed, "kernels": self._loading.reason}
         tracker = self._session.tracker
@@ -150,7 +150,7 @@ class Stream:
         self._asked = check_target(box, MAX_SIDE, MAX_SIDE)
 
     def refuse_target(self, reason: str) -> None:
-        """Say that a target cannot be used; the track goes on."""
+        """Report that a target cannot be used; the track continues."""
         self._health.refuse_target(reason)
         self._log.error(f"target refused: {reason}", throttle_duration_sec=_THROTTLE)
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Messages that name a target, as boxes in px."""
+"""Target messages as boxes, px."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ from vehicle_pf_tracker.ros.rclpy_internals import missing
 from vehicle_pf_tracker.trackers.registry import Variant
 
 _POLL = 0.1
-"""Seconds between two looks whether the kernels are loaded, where no image asks for them."""
+"""Interval of the check for loaded kernels while no image asks for them, s."""
 
 
 class TrackerNode(ManagedNode):
@@ -114,7 +114,7 @@ class TrackerNode(ManagedNode):
             self.destroy_subscription(self._target_inputs.pop())
 
     def cleanup(self) -> None:
-        """Let go of session and outputs."""
+        """Release session and outputs."""
         if self._outputs is not None:
             self._outputs.close()
             self.destroy_service(self._reset_service)
@@ -156,7 +156,7 @@ class TrackerNode(ManagedNode):
         return response
 
     def _await_kernels(self) -> None:
-        """Say once that the node is ready: active, and with kernels."""
+        """Log once that the node is ready: active, and with kernels."""
         source = self._diagnostics.source
         if self._stream is None or not self._stream.get_ready():
             return

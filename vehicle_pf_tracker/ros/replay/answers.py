@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Which images a node has answered, and what it said."""
+"""Images that a node has answered, and its answers."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Answers:
         self.count += 1
 
     def has(self, frame: int) -> bool:
-        """Tell whether image number `frame` of this pass was answered."""
+        """Return whether image number `frame` of this pass was answered."""
         return frame in self._rows
 
     def rows(self) -> tuple[EstimateRow, ...]:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Who is there: tracker nodes, and what they subscribe to."""
+"""Discovery of tracker nodes and their subscriptions."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from vehicle_pf_tracker.recordings.topics import DIAGNOSTIC_ARRAY, IMAGE_TYPES
 from vehicle_pf_tracker.ros.replay.spinner import Spinner
 
 DISCOVERY = 5.0
-"""As long as discovery usually takes at most, in s; no search for a node is shorter."""
+"""Shortest search for a node, s: discovery takes no longer on a quiet machine."""
 
 _MODE = "/mode"
 _QUIET = 1.0
@@ -35,7 +35,7 @@ _QUIET = 1.0
 
 
 def full_name(name: str) -> str:
-    """Write a node's name with its namespace: ``apf_tracker`` is ``/apf_tracker``."""
+    """Return a node's name with its namespace: ``apf_tracker`` is ``/apf_tracker``."""
     return "/" + name.strip("/")
 
 
@@ -97,7 +97,7 @@ class Lookout:
         return sorted(found)
 
     def nobody(self) -> str:
-        """Say that no tracker node subscribes, and what those that are there subscribe to."""
+        """Explain that no tracker node subscribes, and what the running ones subscribe to."""
         trackers = sorted(self._trackers())
         hint = "is one running and active?" if not trackers else self._inputs(trackers[0])
         return f"no tracker node subscribes to {self._topic}: {hint}"

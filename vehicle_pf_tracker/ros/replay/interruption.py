@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Ctrl-C as a wish that is noted, not as an exception that comes anywhere."""
+"""Ctrl-C as an event, not as an exception raised anywhere."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from typing import Any
 
 @contextmanager
 def noted_interrupts() -> Iterator[threading.Event]:
-    """Give an event that SIGINT, SIGTERM and SIGHUP set, however often they come.
+    """Return an event that SIGINT, SIGTERM and SIGHUP set, however often they come.
 
     SIGHUP, from a terminal that closes, would otherwise leave the segments in shared memory. Launch
     files send SIGINT twice, and the second must not break the cleaning up. Outside of the main

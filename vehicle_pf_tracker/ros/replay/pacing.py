@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""When to publish a message that was recorded at some log time."""
+"""Pace of a replay: log times mapped to the monotonic clock."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Pace:
         self._latest_ns = 0
 
     def restart(self) -> None:
-        """Take the next log time as now; a loop does this when it begins again."""
+        """Take the next log time as now; a loop does this at each restart."""
         self._begin = None
 
     def due(self, log_time_ns: int) -> float:
@@ -53,7 +53,7 @@ class Pace:
         return began + (log_time_ns - first_ns) * 1e-9 / self._rate
 
     def log_time_ns(self) -> int | None:
-        """Log time that it is now, never beyond the message asked for last; None before the first.
+        """Present log time, never beyond the message asked for last; None before the first.
 
         Without a rate, time advances with the messages.
         """

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Interface that the player needs of a recording; `recordings.reader.Recording` has it."""
+"""Interface of a recording that can be played; `recordings.reader.Recording` has it."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Playable(Protocol):
 
     @property
     def path(self) -> object:
-        """Where it is, for messages to the user."""
+        """Path or URL, for messages to the user."""
 
     @property
     def image_topic(self) -> str:

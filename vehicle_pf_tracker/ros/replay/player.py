@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The bag player: a recording goes out, and what tracker nodes answer comes in."""
+"""The bag player: publishes a recording and collects the tracker nodes' answers."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ class Player:
         return message.topic == self._recording.image_topic
 
     def _publish(self, message: PlayableMessage) -> bool:
-        """Publish a message; False if it is not fit to be."""
+        """Publish a message; False if it cannot be converted."""
         if self._clock is not None and self._options.lockstep:
             self._clock.publish()
         try:

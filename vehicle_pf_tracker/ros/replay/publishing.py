@@ -67,7 +67,7 @@ class TopicPublisher:
             self._publisher = node.create_publisher(kind, name, qos)
         except NameValidationException as error:
             reason = str(error).splitlines()[0].rstrip(":").rpartition(": ")[2]
-            raise InputError(f"{name!r} is no topic name: {reason}") from None
+            raise InputError(f"{name!r} is not a topic name: {reason}") from None
         self._convert = convert
 
     @property
@@ -90,7 +90,7 @@ class TopicPublisher:
         return int(self._publisher.get_subscription_count())
 
     def is_acknowledged(self, timeout: float) -> bool:
-        """Tell whether every reliable subscription has all messages, waiting up to `timeout` s."""
+        """Return whether all reliable subscriptions have everything; wait up to `timeout` s."""
         return bool(self._publisher.wait_for_all_acked(Duration(seconds=timeout)))
 
 

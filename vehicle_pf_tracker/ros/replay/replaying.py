@@ -113,7 +113,7 @@ class _Replay:
         self._player = Player(node, spinner, recording, options, self._publishers, self._links)
 
     def run(self, on_progress: Callable[[Progress], None]) -> ReplayReport:
-        """Get ready, play and report; an interruption ends it early and well."""
+        """Prepare, play and report; an interruption ends the replay early, with its report."""
         began = time.monotonic()
         try:
             targets = self._get_ready()
@@ -221,7 +221,7 @@ def _initialise(context: Context, options: ReplayOptions) -> None:
 
 
 def _image_bytes(recording: Playable, options: ReplayOptions) -> int:
-    """Size of the images as they go out, judged by the first."""
+    """Size of the published images in bytes, judged by the first."""
     first = first_image(recording, options)
     if options.decompress and recording.image_type == COMPRESSED_IMAGE:
         return len(decompressed(first.data).data)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Waiting while callbacks run, until something holds, a time has come or the user interrupts."""
+"""Waiting while callbacks run: for a condition, a time or an interruption."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _SLICE = 0.05
 
 
 class Interrupted(Exception):  # noqa: N818 (no error: the user wants it so)
-    """The user asked to end."""
+    """The user asked the replay to end."""
 
 
 class Spinner:
@@ -51,7 +51,7 @@ class Spinner:
         self._watch = watch
 
     def check(self) -> None:
-        """Raise `Interrupted` if the user asked to end, or whatever `watch` raises."""
+        """Raise `Interrupted` if the user asked to end, or what `watch` raises."""
         if self._stop.is_set():
             raise Interrupted
         self._watch()
@@ -76,5 +76,5 @@ class Spinner:
             left = moment - time.monotonic()
 
     def close(self) -> None:
-        """Let go of the node."""
+        """Release the node."""
         self._executor.shutdown()

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Setting the tracker nodes on their target, at the image it is known for."""
+"""Setting of the tracker nodes' target, at the image it belongs to."""
 
 from __future__ import annotations
 
@@ -111,8 +111,8 @@ def first_image(recording: Playable, options: ReplayOptions) -> PlayableMessage:
 class Targets:
     """Sets the nodes on `target` through their parameters.
 
-    A service call ends when the node has taken the target, so that it cannot overtake an image, or
-    be overtaken by one, as a message could.
+    A service call ends when the node has accepted the target, so that it cannot overtake an image,
+    or be overtaken by one, as a message could.
 
     Parameters
     ----------

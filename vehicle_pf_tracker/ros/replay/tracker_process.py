@@ -31,7 +31,7 @@ _SCRIPT = "import sys; from vehicle_pf_tracker.ros.executables import main; sys.
 
 
 class TrackerProcess(NamedTuple):
-    """A node's process."""
+    """Process of a node."""
 
     variant: str
     process: subprocess.Popen[bytes]
