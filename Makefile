@@ -17,20 +17,32 @@ COVERED := 92
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: demo test coverage test-slow test-noble lint types format config colcon baselines peers bench reproduce clean
+.PHONY: demo test test-offline test-ros test-slow test-noble lint types format config colcon baselines peers bench reproduce clean
 
 demo: .venv/installed
 	$(BIN)/vehicle-pf-tracker demo -o results/demo
 
+ifdef PYTEST_ARGS
+# A selection of the tests, which says nothing about coverage.
 test: .venv/installed
 	$(BIN)/python -m pytest -m "not slow" $(PYTEST_ARGS)
-
-# What `make test` does, about half as fast.
-coverage: .venv/installed
+else
+# With branch coverage. The tests through ROS mostly wait and the others mostly compute, so the two run
+# side by side; in processes of their own, since rclpy and Dask in one have ended in a crash.
+test: .venv/installed
 	$(BIN)/coverage erase
-	$(BIN)/coverage run -m pytest -m "not slow" $(PYTEST_ARGS)
+	$(MAKE) --no-print-directory --jobs=2 --keep-going test-offline test-ros
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report --fail-under=$(COVERED)
+endif
+
+test-offline: .venv/installed
+	$(BIN)/coverage run -m pytest -m "not slow" --ignore test/ros
+
+# Shown when it has ended, so that the two do not mix.
+test-ros: .venv/installed
+	@log=$$(mktemp); $(BIN)/coverage run -m pytest -m "not slow" test/ros > $$log 2>&1; \
+	status=$$?; cat $$log; rm -f $$log; exit $$status
 
 # The slow tests try every way to install, colcon's too.
 test-slow: .venv/installed .venv/colcon

@@ -91,7 +91,7 @@ def test_words_that_do_not_fit_are_usage_errors(capsys, words, told):
 
 
 def test_a_loop_has_no_estimates_to_write():
-    with pytest.raises(UsageError, match="cannot go with --loop"):
+    with pytest.raises(UsageError, match="never ends"):
         replay.run(parse("--loop", "-o", "out"))
 
 
