@@ -107,4 +107,4 @@ def test_what_is_tuned_on_cannot_be_held_out(bags, tmp_path, capsys):
     (tmp_path / "copy").mkdir()
     copy = record(tmp_path / "copy" / "one")
     assert tune(tmp_path / "out", bags[0], *QUICK, "--held-out", copy) == 1
-    assert "is held out and tuned on" in capsys.readouterr().err
+    assert "is both held out and tuned on" in capsys.readouterr().err

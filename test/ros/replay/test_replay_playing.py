@@ -133,7 +133,7 @@ def test_topics_are_renamed(bench, tmp_path):
     [
         ({"remap": {"/camera": "/x"}}, "has no topic /camera; it has /camera/image_raw"),
         ({"topics": ("/nothing",)}, "has no topic /nothing"),
-        ({"remap": {IMAGE_TOPIC: "/a b"}}, "'/a b' is no topic name"),
+        ({"remap": {IMAGE_TOPIC: "/a b"}}, "'/a b' is not a topic name"),
         ({"remap": {IMAGE_TOPIC: "/ground_truth/box"}}, "published as /ground_truth/box"),
         ({"ros_args": ("-r", "nonsense")}, "after --ros-args are not understood"),
     ],
