@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "source", type=Path, metavar="SRC",
-        help="video file, or folder with img/, and groundtruth.csv where truth is known",
+        help="video file, or folder of images, with groundtruth.csv where truth is known",
     )  # fmt: skip
     add("out", type=Path, metavar="OUT", help="rosbag2 folder to write")
     add(
@@ -37,9 +37,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="truth of a video: a table frame,x,y,w,h,occ (frames from 1, top-left corner in px, "
         "0 in view, 1 partly, 2 totally hidden); a frame without a row has none",
     )  # fmt: skip
+    add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SRC states")
     add(
         "--format", choices=FORMATS,
-        help="how images are stored (default: JPEG files as they are, everything else raw)",
+        help="how images are stored (default: JPEG files as they are, videos as JPEG, PNG raw)",
     )  # fmt: skip
     add("--overwrite", action="store_true", help="overwrite an existing recording")
 
@@ -51,6 +52,7 @@ def run(args: argparse.Namespace) -> int:
             args.source,
             args.out,
             truth=args.truth,
+            fps=args.fps,
             format=args.format,
             progress=progress,
             overwrite=args.overwrite,

@@ -35,7 +35,7 @@ LOWEST_FPS, HIGHEST_FPS = 1e-4, 1e6
 which the fastest cameras reach."""
 LARGEST_PX = 2.0**24
 """Largest coordinate of a true box, px: beyond it a polygon's single precision loses whole px."""
-_LAST_STAMP_NS = (2**31 - 1) * 10**9
+LAST_STAMP_NS = (2**31 - 1) * 10**9
 """Last stamp: `builtin_interfaces/Time` has a signed 32-bit number of seconds."""
 
 
@@ -77,13 +77,17 @@ class Footage(Protocol):
         """Yield the pictures in the order of time; raise `InputError` for one that is broken."""
         ...
 
+    def truths(self) -> list[Truth]:
+        """Return the truth that is known before the pictures are read, in the order of time."""
+        ...
+
     def notices(self) -> list[str]:
         """Return irregularities found while reading, a sentence each."""
         ...
 
 
-def check_fps(fps: float, source: Path) -> float:
-    """Return the frame rate of `source`, in 1/s.
+def check_fps(fps: float, source: Path | str) -> float:
+    """Return the frame rate that `source` states, in 1/s.
 
     Raises
     ------
@@ -106,7 +110,7 @@ def stamp_of(index: int, fps: float) -> int:
     InputError
         If it is later than ROS can express.
     """
-    if index * 1e9 / fps > _LAST_STAMP_NS - START_NS:
+    if index * 1e9 / fps > LAST_STAMP_NS - START_NS:
         raise InputError(
             f"image {index} at {fps:g} frames per second is later than the last time that ROS can "
             "express, 2^31 s"

@@ -12,12 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Footage in a frame folder: `img/000001.jpg`..., `sequence.json`, `groundtruth.csv`."""
+"""Footage in a folder of images: their numbers, their frame rate, and truth if there is any."""
 
 from __future__ import annotations
 
+import configparser
 import json
 import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -36,10 +38,27 @@ FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
 """The image files that are read, and what a CompressedImage calls them."""
 
 
+IMAGE_FOLDERS = ("img", "img1", ".")
+"""Places of the images in a folder, the first that has any; ``img1`` is MOTChallenge's."""
+
+ASSUMED_FPS = 30.0
+"""Frame rate of a folder that states none, 1/s; the commonest of video cameras."""
+
+
 class FrameFolder:
     """A folder of numbered images with their frame rate, and with truth if there is any.
 
-    A gap in the numbers is a gap in the stamps. Truth belongs to the image of its number.
+    Images are numbered by the digits that end their names, or by their order where a name has none.
+    A gap in the numbers is a gap in the stamps. Truth belongs to the image of its number. The frame
+    rate is the one given, else that of ``sequence.json`` or ``seqinfo.ini``, else `ASSUMED_FPS`,
+    which `notices` reports.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder; images are in one of `IMAGE_FOLDERS` below it.
+    fps : float or None
+        Frame rate, 1/s; None to look for it.
 
     Attributes
     ----------
@@ -55,14 +74,17 @@ class FrameFolder:
     Raises
     ------
     InputError
-        If there are no images, two have one number, the frame rate is missing, or the truth is
+        If there are no images, two have one number, the frame rate is invalid, or the truth is
         faulty or belongs to none of the images.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, fps: float | None = None) -> None:
+        self._folder = folder
         self.images = _numbered_images(folder)
         self.total: int | None = len(self.images)
-        self.fps = _frame_rate(folder / "sequence.json")
+        stated = _frame_rate(folder) if fps is None else check_fps(fps, "--fps")
+        self._is_assumed = stated is None
+        self.fps = ASSUMED_FPS if stated is None else stated
         stamp_of(max(self.images) - min(self.images), self.fps)  # refuses what ROS cannot express
         truth_path = folder / "groundtruth.csv"
         self.truth = read_truth_table(truth_path) if truth_path.exists() else {}
@@ -76,44 +98,89 @@ class FrameFolder:
             stamp = stamp_of(number - first, self.fps)
             yield _picture(path, stamp, self.truth.get(number))
 
+    def truths(self) -> list[Truth]:
+        """Return the truth of all images, in order."""
+        first = min(self.images)
+        return [
+            Truth(stamp_of(number - first, self.fps), row.box, row.occlusion)
+            for number, row in sorted(self.truth.items())
+            if number in self.images
+        ]
+
     def notices(self) -> list[str]:
-        """Report truth without an image."""
+        """Report an assumed frame rate, and truth without an image."""
+        notices = []
+        if self._is_assumed:
+            notices.append(
+                f"the folder {self._folder} states no frame rate; {ASSUMED_FPS:g} frames/s are "
+                "assumed, give --fps or a sequence.json to change that"
+            )
         lost = len(self.truth.keys() - self.images.keys())
-        return [f"frames of the truth without an image: {lost}"] if lost else []
+        return notices + ([f"frames of the truth without an image: {lost}"] if lost else [])
 
 
 def _numbered_images(folder: Path) -> dict[int, Path]:
-    images: dict[int, Path] = {}
-    for path in sorted((folder / "img").glob("*")):
-        if path.suffix.lower() not in FORMATS or not path.stem.isdecimal():
-            continue
+    for name in IMAGE_FOLDERS:
+        paths = sorted(p for p in (folder / name).glob("*") if p.suffix.lower() in FORMATS)
+        if paths:
+            return dict(sorted(_by_number(paths).items()))
+    raise InputError(f"the folder {folder} has no images img/000001.jpg, ... (jpg or png)")
+
+
+def _by_number(paths: list[Path]) -> dict[int, Path]:
+    """Return images by number: their name, else its last digits, else their order."""
+    for path in paths:
         if not path.is_file():
             raise InputError(f"the image {path} is not a regular file")
-        number = int(path.stem)
+    numbered = [path for path in paths if path.stem.isdecimal()]
+    ending = [re.search(r"[0-9]+$", path.stem) for path in paths]
+    if numbered:
+        numbers = [int(path.stem) for path in numbered]
+    elif all(ending):
+        numbered, numbers = paths, [int(found.group()) for found in ending if found]
+    else:
+        numbered, numbers = paths, list(range(1, len(paths) + 1))
+    images: dict[int, Path] = {}
+    for number, path in zip(numbers, numbered, strict=True):
         if number in images:
             raise InputError(f"{path} and {images[number].name} have the same number")
         images[number] = path
-    if not images:
-        raise InputError(f"the folder {folder} has no images img/000001.jpg, ... (jpg or png)")
-    return dict(sorted(images.items()))
+    return images
 
 
-def _frame_rate(path: Path) -> float:
-    if path.exists() and not path.is_file():
-        raise InputError(f"{path} is not a regular file")
-    try:
-        fps = json.loads(path.read_text(encoding="utf-8"))["fps"]
-    except OSError as error:
-        raise InputError(
-            f"cannot read {path}: {error.strerror}; the frame rate is needed, "
-            'a file with {"fps": 30} will do'
-        ) from error
-    except (ValueError, KeyError, TypeError, RecursionError):
-        raise InputError(
-            f'{path} does not state the frame rate; it must hold {{"fps": 30}}'
-        ) from None
+def _frame_rate(folder: Path) -> float | None:
+    """Return the frame rate that a file in the folder states, 1/s; None without such a file."""
+    for name, read in (("sequence.json", _of_json), ("seqinfo.ini", _of_ini)):
+        path = folder / name
+        if not path.exists():
+            continue
+        if not path.is_file():
+            raise InputError(f"{path} is not a regular file")
+        try:
+            fps = read(path.read_text(encoding="utf-8"))
+        except OSError as error:
+            raise InputError(f"cannot read {path}: {error.strerror}") from error
+        except (ValueError, KeyError, TypeError, RecursionError, configparser.Error):
+            raise InputError(
+                f"{path} does not state the frame rate; it must hold {_EXAMPLES[name]}"
+            ) from None
+        return check_fps(fps, path)
+    return None
+
+
+_EXAMPLES = {"sequence.json": '{"fps": 30}', "seqinfo.ini": "[Sequence] frameRate=30"}
+
+
+def _of_json(text: str) -> float:
+    fps = json.loads(text)["fps"]
     is_number = isinstance(fps, int | float) and not isinstance(fps, bool)
-    return check_fps(fps if is_number else math.nan, path)
+    return fps if is_number else math.nan
+
+
+def _of_ini(text: str) -> float:
+    parser = configparser.ConfigParser(interpolation=None)
+    parser.read_string(text)
+    return float(parser["Sequence"]["frameRate"])
 
 
 def _picture(path: Path, stamp_ns: int, row: TruthRow | None) -> Picture:

@@ -26,6 +26,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.recordings.footage import Footage, Picture
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
+from vehicle_pf_tracker.recordings.source import is_recording, refuse_other_bags
 from vehicle_pf_tracker.recordings.video import VideoFile
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
@@ -65,6 +66,7 @@ def import_recording(
     out: Path,
     *,
     truth: Path | None = None,
+    fps: float | None = None,
     format: str | None = None,  # noqa: A002 (named as the option of the command)
     progress: Callable[[int, int | None], None] | None = None,
     overwrite: bool = False,
@@ -79,9 +81,11 @@ def import_recording(
         The rosbag2 folder to write.
     truth : Path or None
         The truth of a video, a table like a frame folder's ``groundtruth.csv``.
+    fps : float or None
+        Frame rate, 1/s; None takes what the source states.
     format : str or None
         ``compressed`` keeps JPEG and PNG files as they are and codes the frames of a video as JPEG;
-        ``raw`` writes pixels. None keeps JPEG files and writes everything else raw.
+        ``raw`` writes pixels. None writes what is lossy already compressed, PNG files raw.
     progress : callable or None
         Called after each image with the number done and the total, None where that is unknown.
     overwrite : bool
@@ -94,7 +98,7 @@ def import_recording(
     """
     if format is not None and format not in FORMATS:
         raise InputError(f"the format {format!r} is unknown; choose from {', '.join(FORMATS)}")
-    footage = _open(source, truth)
+    footage = _open(source, truth, fps)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
         for picture in footage.pictures():
@@ -109,21 +113,21 @@ def import_recording(
     return ImportSummary(out, frames, truths, footage.fps, *size, tuple(footage.notices()))
 
 
-def _open(source: Path, truth: Path | None) -> Footage:
+def _open(source: Path, truth: Path | None, fps: float | None) -> Footage:
     if not source.exists():
         raise InputError(f"there is no file or folder {source} to import")
-    is_bag = source.is_dir() and (source / "metadata.yaml").exists()
-    if is_bag or source.suffix in {".mcap", ".db3", ".bag"}:
+    refuse_other_bags(source)
+    if is_recording(source):
         raise InputError(f"{source} is a recording already")
     if not source.is_dir() and not source.is_file():
         raise InputError(f"{source} is not a regular file or a folder")
     if not source.is_dir():
-        return VideoFile(source, truth)
+        return VideoFile(source, truth, fps)
     if truth is not None:
         raise InputError(
             f"the truth of the frame folder {source} is its groundtruth.csv; --truth is for videos"
         )
-    return FrameFolder(source)
+    return FrameFolder(source, fps)
 
 
 def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:
@@ -137,7 +141,7 @@ def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:
 
 
 def _write_picture(writer: RecordingWriter, picture: Picture, wanted: str | None) -> None:
-    if wanted == "raw" or (wanted is None and picture.coded_format != "jpeg"):
+    if wanted == "raw" or (wanted is None and picture.coded_format == "png"):
         writer.write_image(picture.stamp_ns, picture.frame)
     elif picture.coded_format is not None:
         writer.write_compressed(picture.stamp_ns, picture.coded_format, picture.coded)

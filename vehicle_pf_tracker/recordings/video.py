@@ -12,12 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Footage in a video file."""
+"""Footage in a video file, and from a camera or a stream."""
 
 from __future__ import annotations
 
 import math
 import os
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -28,7 +29,14 @@ import cv2
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.recordings.footage import Picture, check_fps, read_truth_table, stamp_of
+from vehicle_pf_tracker.recordings.footage import (
+    LAST_STAMP_NS,
+    START_NS,
+    Picture,
+    check_fps,
+    read_truth_table,
+    stamp_of,
+)
 
 # The decoder's own complaints would go to the terminal beside our sentence.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
@@ -37,15 +45,24 @@ _SILENT = 0
 """OpenCV's log level that says nothing; not every version names it."""
 
 
+_ROUNDING_NS = 1_000_000
+"""Largest difference of a stated time from an even rate that is rounding: containers keep ms."""
+
+
 class VideoFile:
-    """The frames of a video file, at the frame rate that the file states.
+    """The frames of a video file, at the times that the file states.
+
+    Where these keep to the frame rate but for rounding, stamps are those of that rate; elsewhere,
+    as in videos of a variable frame rate, they are the file's own.
 
     Parameters
     ----------
-    path : Path
-        The file.
+    path : Path or str
+        The file, or a URL of one.
     truth : Path or None
         A table as `truth_table` reads it, frames counted from 1.
+    fps : float or None
+        Frame rate, 1/s, that takes the place of all stated times.
 
     Raises
     ------
@@ -53,34 +70,55 @@ class VideoFile:
         If the file is not a video, has no frame or no frame rate, or the truth is invalid.
     """
 
-    def __init__(self, path: Path, truth: Path | None = None) -> None:
+    def __init__(
+        self, path: Path | str, truth: Path | None = None, fps: float | None = None
+    ) -> None:
         self._path = path
         self._truth = {} if truth is None else read_truth_table(truth)
-        self._read = 0
+        self._read = self._without_time = 0
+        self._keeps_times = fps is None
         video = self._open()
-        self.fps = float(video.get(cv2.CAP_PROP_FPS))
+        self.fps = float(video.get(cv2.CAP_PROP_FPS)) if fps is None else check_fps(fps, "--fps")
         stated = video.get(cv2.CAP_PROP_FRAME_COUNT)
         self.total = int(stated) if math.isfinite(stated) and stated > 0 else None
         video.release()
         if not math.isfinite(self.fps) or self.fps <= 0:
-            raise InputError(f"the video {path} states no frame rate; convert it to MP4 first")
+            raise InputError(f"the video {path} states no frame rate; give it with --fps")
         check_fps(self.fps, path)
 
     def pictures(self) -> Iterator[Picture]:
-        """Yield the frames, stamped by their index."""
+        """Yield the frames with their stamps."""
         video = self._open()
         try:
-            self._read = 0
+            self._read = self._without_time = 0
+            last = 0
             while (frame := _next_frame(video)) is not None:
-                stamp, number = stamp_of(self._read, self.fps), self._read + 1
+                stamp, number = self._stamp(video, last), self._read + 1
                 row = self._truth.get(number)
                 truth = None if row is None else Truth(stamp, row.box, row.occlusion)
                 yield Picture(stamp, frame, f"frame {number} of {self._path}", truth=truth)
-                self._read = number
+                self._read, last = number, stamp
         finally:
             video.release()
         if not self._read:
             raise InputError(f"no frame of the video {self._path} can be decoded")
+
+    def truths(self) -> list[Truth]:
+        """Return nothing: the times of a video's frames are known when they are read."""
+        return []
+
+    def _stamp(self, video: cv2.VideoCapture, last: int) -> int:
+        """Return the stamp of the frame just read, in ns, later than the one before."""
+        even = stamp_of(self._read, self.fps)
+        if not self._keeps_times:
+            return even
+        stated = START_NS + round(video.get(cv2.CAP_PROP_POS_MSEC) * 1e6)
+        if abs(stated - even) <= _ROUNDING_NS and even > last:
+            return even
+        if stated > last and stated <= LAST_STAMP_NS:
+            return stated
+        self._without_time += 1
+        return last + round(1e9 / self.fps) if last else START_NS
 
     def notices(self) -> list[str]:
         """Report fewer frames than the file states, and truth without a frame."""
@@ -88,6 +126,11 @@ class VideoFile:
         if self.total is not None and self._read < self.total:
             notices.append(
                 f"the video {self._path} states {self.total} frames, {self._read} could be read"
+            )
+        if self._without_time:
+            notices.append(
+                f"the video {self._path} states no time, or none after the frame before, for "
+                f"{self._without_time} frames; they follow at {self.fps:g} frames/s"
             )
         lost = sum(not 1 <= number <= self._read for number in self._truth)
         return notices + ([f"frames of the truth without an image: {lost}"] if lost else [])
@@ -117,6 +160,58 @@ def _backend() -> int:
     """Choose FFmpeg where OpenCV has it: the other decoders complain on the terminal."""
     has_ffmpeg = cv2.CAP_FFMPEG in cv2.videoio_registry.getStreamBackends()
     return cv2.CAP_FFMPEG if has_ffmpeg else cv2.CAP_ANY
+
+
+class Camera:
+    """Frames of a camera or a network stream, stamped by the clock as they arrive.
+
+    Parameters
+    ----------
+    source : int or str
+        Index of a camera, or URL of a stream.
+
+    Raises
+    ------
+    InputError
+        If it cannot be opened.
+    """
+
+    def __init__(self, source: int | str) -> None:
+        self._name = f"the camera {source}" if isinstance(source, int) else f"the stream {source}"
+        with _quiet():
+            backend = cv2.CAP_ANY if isinstance(source, int) else _backend()
+            self._video = cv2.VideoCapture(source, backend)
+        if not self._video.isOpened():
+            raise InputError(f"{self._name} cannot be opened")
+        self.fps = float(self._video.get(cv2.CAP_PROP_FPS))
+        self.total: int | None = None
+        self._read = 0
+
+    @property
+    def is_endless(self) -> bool:
+        """True for a live source; False where the URL is that of a video file."""
+        return self._video.get(cv2.CAP_PROP_FRAME_COUNT) <= 0
+
+    def pictures(self) -> Iterator[Picture]:
+        """Yield frames until the source ends."""
+        last = 0
+        try:
+            while (frame := _next_frame(self._video)) is not None:
+                self._read += 1
+                last = max(time.time_ns(), last + 1)
+                yield Picture(last, frame, f"frame {self._read} of {self._name}")
+        finally:
+            self._video.release()
+        if not self._read:
+            raise InputError(f"{self._name} sends no images")
+
+    def truths(self) -> list[Truth]:
+        """Return nothing: nobody knows the truth."""
+        return []
+
+    def notices(self) -> list[str]:
+        """Return nothing: a stream states nothing that could be missed."""
+        return []
 
 
 def _next_frame(video: cv2.VideoCapture) -> Frame | None:

@@ -1,0 +1,185 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Any source of images by its name: what it is taken for, its times, its truth."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings.importing import import_recording
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.source import FootageSource, open_source
+from vehicle_pf_tracker.recordings.video import VideoFile
+
+START = 1_000_000_000
+
+
+def write_images(folder: Path, names) -> Path:
+    folder.mkdir(parents=True)
+    for index, name in enumerate(names):
+        cv2.imwrite(str(folder / name), np.full((24, 32, 3), 20 * index, np.uint8))
+    return folder
+
+
+def write_video(path: Path, fps: float = 12.5, count: int = 6) -> Path:
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), fps, (32, 24))
+    for index in range(count):
+        writer.write(np.full((24, 32, 3), 20 * index, np.uint8))
+    writer.release()
+    return path
+
+
+def stamps(source) -> list[int]:
+    return [found.stamp_ns - START for found in source.frames()]
+
+
+def test_a_plain_folder_of_images_is_numbered_by_the_ends_of_their_names(tmp_path):
+    folder = write_images(tmp_path / "a", ["cam_0004.jpg", "cam_0002.jpg", "cam_0003.png"])
+    source = open_source(folder, fps=10)
+    assert source.frame_count == 3
+    assert stamps(source) == [0, 100_000_000, 200_000_000]
+    brightness = [int(found.frame.mean()) for found in source.frames()]
+    assert brightness == [20, 40, 0]
+    assert source.notices == []
+
+
+def test_images_without_numbers_follow_their_names(tmp_path):
+    folder = write_images(tmp_path / "a", ["b.png", "a.png", "c7.png"])
+    brightness = [int(found.frame.mean()) for found in open_source(folder, fps=10).frames()]
+    assert brightness == [20, 0, 40]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "period"),
+    [
+        ("sequence.json", json.dumps({"fps": 25}), 40_000_000),
+        ("seqinfo.ini", "[Sequence]\nname=x\nframeRate=20\n", 50_000_000),
+    ],
+)
+def test_a_folder_states_its_frame_rate(tmp_path, name, text, period):
+    folder = tmp_path / "a"
+    write_images(folder / "img1", ["000001.png", "000002.png"])
+    (folder / name).write_text(text)
+    source = open_source(folder)
+    assert stamps(source) == [0, period]
+    assert source.notices == []
+
+
+def test_a_rate_that_nothing_states_is_assumed_and_said(tmp_path):
+    source = open_source(write_images(tmp_path / "a", ["1.png", "2.png"]))
+    assert stamps(source) == [0, 33_333_333]
+    (notice,) = source.notices
+    assert "states no frame rate; 30 frames/s are assumed" in notice
+
+
+@pytest.mark.parametrize("text", ["", "[Sequence]\n", "[Sequence]\nframeRate=fast\n"])
+def test_a_broken_seqinfo_is_named(tmp_path, text):
+    folder = tmp_path / "a"
+    write_images(folder / "img1", ["000001.png"])
+    (folder / "seqinfo.ini").write_text(text)
+    with pytest.raises(InputError, match=r"seqinfo\.ini does not state the frame rate"):
+        open_source(folder)
+
+
+def test_the_truth_of_a_folder_is_known_before_it_is_read(tmp_path):
+    folder = write_images(tmp_path / "a", ["2.png", "3.png"])
+    (folder / "groundtruth.csv").write_text("frame,x,y,w,h\n3,1,2,9,8\n")
+    (truth,) = open_source(folder, fps=10).truth()
+    assert (truth.stamp_ns - START, truth.box.x) == (100_000_000, 1.0)
+
+
+def test_a_video_of_an_even_rate_keeps_to_it_to_the_nanosecond(tmp_path):
+    source = open_source(write_video(tmp_path / "v.avi", fps=30))
+    assert stamps(source) == [round(n * 1e9 / 30) for n in range(6)]
+    assert isinstance(source, FootageSource)
+
+
+def test_a_rate_given_takes_the_place_of_the_one_stated(tmp_path):
+    source = open_source(write_video(tmp_path / "v.avi"), fps=100)
+    assert stamps(source) == [n * 10_000_000 for n in range(6)]
+
+
+class StatedTimes:
+    """A video whose frames state these times in ms."""
+
+    def __init__(self, times) -> None:
+        self.times = times
+        self.index = -1
+
+    def read(self):
+        self.index += 1
+        return self.index < len(self.times), np.zeros((4, 4, 3), np.uint8)
+
+    def get(self, key):
+        return self.times[min(self.index, len(self.times) - 1)]
+
+    def release(self):
+        pass
+
+
+def test_the_times_of_a_variable_rate_are_kept(tmp_path, monkeypatch):
+    video = VideoFile(write_video(tmp_path / "v.avi"))
+    video.fps = 1000 / 60
+    monkeypatch.setattr(video, "_open", lambda: StatedTimes([0.0, 40.0, 120.0, 160.0, 240.0]))
+    assert [p.stamp_ns - START for p in video.pictures()] == [
+        0, 40_000_000, 120_000_000, 160_000_000, 240_000_000
+    ]  # fmt: skip
+
+
+def test_times_that_go_back_are_replaced_and_counted(tmp_path, monkeypatch):
+    video = VideoFile(write_video(tmp_path / "v.avi"))
+    monkeypatch.setattr(video, "_open", lambda: StatedTimes([0.0, 0.0, 0.0, 500.0]))
+    video.fps = 100.0
+    found = [p.stamp_ns - START for p in video.pictures()]
+    assert found == [0, 10_000_000, 20_000_000, 500_000_000]
+    assert any("for 2 frames" in notice for notice in video.notices())
+
+
+def test_recordings_are_opened_as_such(tmp_path):
+    import_recording(write_video(tmp_path / "v.avi"), tmp_path / "bag")
+    assert isinstance(open_source(tmp_path / "bag"), Recording)
+    (mcap,) = (tmp_path / "bag").glob("*.mcap")
+    assert isinstance(open_source(str(mcap)), Recording)
+    with pytest.raises(InputError, match="leave --fps out"):
+        open_source(tmp_path / "bag", fps=30)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("old.bag", "a ROS 1 bag; convert it to MCAP: rosbags-convert --src"),
+        ("data_0.db3", "a bag in SQLite; convert it to MCAP: rosbags-convert --src"),
+        ("nothing.mp4", "no file or folder"),
+        ("rtsp://127.0.0.1:9/none", "cannot be opened"),
+        ("97", "the camera 97 cannot be opened"),
+    ],
+)
+def test_what_cannot_be_opened_is_said_with_the_remedy(tmp_path, monkeypatch, name, words):
+    monkeypatch.chdir(tmp_path)
+    if name.endswith((".bag", ".db3")):
+        Path(name).touch()
+    with pytest.raises(InputError, match=words):
+        open_source(name)
+
+
+def test_only_recordings_have_topics(tmp_path):
+    with pytest.raises(InputError, match="leave --topic out"):
+        open_source(write_video(tmp_path / "v.avi"), topic="/image")

@@ -1,0 +1,163 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Images from any source: recordings, video files, folders of images, cameras and streams."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Protocol
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.recordings.footage import Footage
+from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
+from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
+from vehicle_pf_tracker.recordings.video import Camera, VideoFile
+
+_CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
+
+
+class Source(Protocol):
+    """A stream of stamped images, with truth where it is known.
+
+    Attributes
+    ----------
+    image_topic : str
+        Topic of the images; empty outside of recordings.
+    """
+
+    image_topic: str
+
+    @property
+    def frame_count(self) -> int | None:
+        """Number of images; None where it is unknown."""
+
+    @property
+    def notices(self) -> list[str]:
+        """Irregularities, a sentence each; complete when all images are read."""
+
+    def frames(self) -> Iterator[StampedFrame]:
+        """Yield the images in the order of time."""
+
+    def truth(self) -> Sequence[Truth]:
+        """Return the true state of the vehicle, in the order of time."""
+
+
+class FootageSource:
+    """Images of a video file, a folder, a camera or a stream.
+
+    Parameters
+    ----------
+    footage : Footage
+        Reader of the images.
+    """
+
+    image_topic = ""
+
+    def __init__(self, footage: Footage) -> None:
+        self._footage = footage
+
+    @property
+    def frame_count(self) -> int | None:
+        """Number of images; None where it is unknown."""
+        return self._footage.total
+
+    @property
+    def notices(self) -> list[str]:
+        """Irregularities, a sentence each; complete when all images are read."""
+        return self._footage.notices()
+
+    def frames(self) -> Iterator[StampedFrame]:
+        """Yield the images in the order of time.
+
+        Raises
+        ------
+        InputError
+            If one cannot be read.
+        """
+        for picture in self._footage.pictures():
+            yield StampedFrame(picture.stamp_ns, picture.frame)
+
+    def truth(self) -> Sequence[Truth]:
+        """Return the truth of a folder that has any, in the order of time."""
+        return self._footage.truths()
+
+
+def open_source(
+    source: str | Path, *, topic: str | None = None, fps: float | None = None
+) -> Recording | FootageSource:
+    """Open a recording, a video file, a folder of images, a camera or a stream.
+
+    Parameters
+    ----------
+    source : str or Path
+        Path; index of a camera, as ``0``; or URL, as ``rtsp://...`` or ``https://...``.
+    topic : str or None
+        The image topic, where a recording has several.
+    fps : float or None
+        Frame rate of a folder or a video, 1/s; None takes what it states.
+
+    Raises
+    ------
+    InputError
+        If there is no such source, or an option does not fit it.
+    """
+    text = str(source)
+    if text.isdecimal() and not Path(text).exists():
+        return _footage(Camera(int(text)), text, topic)
+    if "://" in text:
+        camera = Camera(text)
+        return _footage(camera if camera.is_endless else VideoFile(text, fps=fps), text, topic)
+    path = Path(text)
+    if is_recording(path):
+        if fps is not None:
+            raise InputError(f"{path} is a recording, whose images have stamps; leave --fps out")
+        return Recording(path, topic)
+    refuse_other_bags(path)
+    if not path.exists():
+        raise InputError(f"there is no file or folder {path}")
+    if path.is_dir():
+        return _footage(FrameFolder(path, fps), text, topic)
+    if not path.is_file():
+        raise InputError(f"{path} is not a regular file or a folder")
+    return _footage(VideoFile(path, fps=fps), text, topic)
+
+
+def is_recording(path: Path) -> bool:
+    """Return whether `path` is a rosbag2 folder or an MCAP file, by its name and content."""
+    return path.suffix == ".mcap" or (path / "metadata.yaml").exists()
+
+
+def refuse_other_bags(path: Path) -> None:
+    """Raise for a bag of ROS 1 or of SQLite, with the command that converts it.
+
+    Raises
+    ------
+    InputError
+        If it is one.
+    """
+    kinds = {".bag": "a ROS 1 bag", ".db3": "a bag in SQLite"}
+    if path.suffix in kinds:
+        folder = path.parent if path.suffix == ".db3" else path
+        raise InputError(
+            f"{path} is {kinds[path.suffix]}; convert it to MCAP: {_CONVERSION.format(path=folder)}"
+        )
+
+
+def _footage(footage: Footage, name: str, topic: str | None) -> FootageSource:
+    if topic is not None:
+        raise InputError(f"{name} is not a recording and has no topics; leave --topic out")
+    return FootageSource(footage)
