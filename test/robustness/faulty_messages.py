@@ -60,15 +60,24 @@ class Drive:
     def __init__(self, width: int = WIDTH, height: int = HEIGHT) -> None:
         noise = np.random.default_rng(7).integers(90, 130, (height, width, 3), np.uint8)
         self._frames = [self._frame(noise, offset) for offset in range(_TURN)]
+        self._empty = noise
 
     def frame(self, number: int) -> Frame:
         """Frame of the image `number`."""
-        place = number % (2 * _TURN - 2)
-        return self._frames[min(place, 2 * _TURN - 2 - place)]
+        return self._frames[_offset(number)]
 
-    def image(self, number: int) -> Image:
-        """Make the image `number`."""
-        return image_message(header_at(FIRST_NS + number * PERIOD_NS), self.frame(number))
+    def image(self, number: int, *, is_hidden: bool = False) -> Image:
+        """Make the image `number`, with the vehicle or with the road alone."""
+        frame = self._empty if is_hidden else self.frame(number)
+        return image_message(header_at(FIRST_NS + number * PERIOD_NS), frame)
+
+    def target(self, number: int) -> PolygonStamped:
+        """Make the target that the vehicle of the image `number` is."""
+        made = PolygonStamped(header=header_at(0, "camera"))
+        x, y, width, height = TARGET
+        left, right = x + _offset(number), x + _offset(number) + width
+        made.polygon.points = [Point32(x=left, y=y), Point32(x=right, y=y + height)]
+        return made
 
     @staticmethod
     def _frame(noise: Frame, offset: int) -> Frame:
@@ -77,6 +86,12 @@ class Drive:
         frame[y : y + height, x + offset : x + offset + width] = (200, 40, 30)
         frame[y : y + height // 2, x + offset : x + offset + width] = (30, 60, 210)
         return frame
+
+
+def _offset(number: int) -> int:
+    """How far the vehicle has driven in the image `number`, in px."""
+    place = number % (2 * _TURN - 2)
+    return min(place, 2 * _TURN - 2 - place)
 
 
 class Faults:

@@ -31,7 +31,9 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from faulty_messages import TARGET
 from geometry_msgs.msg import PointStamped, PolygonStamped
+from rcl_interfaces.srv import SetParameters
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import Image, RegionOfInterest
 
@@ -83,6 +85,8 @@ class NodeProcess:
             kind: self._node.create_publisher(kind, f"{own}/{name}", 10)
             for kind, name in _TOPICS.items()
         }
+        self._parameters = self._node.create_client(SetParameters, f"{own}/set_parameters")
+        self.changes: list[bool] = []
         self._sent: deque[object] = deque(maxlen=8)
 
     def begin(self, image: Image) -> None:
@@ -107,6 +111,14 @@ class NodeProcess:
         self._sent.append(message)
         publisher = self._targets.get(type(message), self._camera)
         publisher.publish(message)
+
+    def set_parameter(self, name: str, value: object) -> None:
+        """Ask for a value; `changes` has whether it was taken, once that is answered."""
+        wanted = Parameter(name, value=value).to_parameter_msg()
+        future = self._parameters.call_async(SetParameters.Request(parameters=[wanted]))
+        future.add_done_callback(
+            lambda done: self.changes.append(done.result().results[0].successful)
+        )
 
     def spin(self, seconds: float) -> None:
         """Listen for this long."""

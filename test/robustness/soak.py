@@ -16,8 +16,10 @@
 
     python test/robustness/soak.py --minutes 10
 
-prints images in and out, the time from sending a good image to its answer, and how the resident
-memory went. Exit status 1 if a good image stayed unanswered or had no estimate.
+The vehicle is hidden now and then, somebody sets targets, right ones and impossible ones, and
+somebody turns parameters. Prints images in and out, the time from sending a good image to its
+answer, and how the resident memory went. Exit status 1 if a good image stayed unanswered or had no
+estimate, or a change of parameters was refused or stayed unanswered.
 """
 
 from __future__ import annotations
@@ -32,9 +34,34 @@ from faulty_messages import Drive, Faults
 from node_process import NodeProcess
 from sensor_msgs.msg import Image
 
+from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import stamp_ns
+from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 MB = 1e6
+SETTLED = 600.0
+"""Seconds until memory has to stay as it is; a shorter run counts from its half on."""
+OCCLUSION_EVERY, OCCLUSION = 20.0, 2.0
+TARGET_EVERY = 13.0
+CHANGE_EVERY = 5.0
+"""Seconds between such events; the first of them also how long one lasts."""
+CHANGES: list[tuple[str, object]] = [
+    ("num_particles", 300),
+    ("histogram_bits", 4),  # of the reference's effect "relearns"
+    ("lost_after", 1.0),
+    ("seed", 5),
+    ("publish.velocity", False),
+    ("num_particles", 100),
+    ("window.width", 14.0),
+    ("histogram_bits", 3),
+    ("publish.velocity", True),
+    ("evidence.clear_above", 0.85),
+    ("seed", 6),
+    ("window.width", 0.0),
+    ("lost_after", 5.0),
+    ("evidence.clear_above", 0.8),
+    ("num_particles", 200),
+]
 
 
 class Soak:
@@ -44,6 +71,8 @@ class Soak:
     ----------
     node : NodeProcess
         The node.
+    changes : list of (str, object)
+        Parameters to set, one after the other and again.
     rate : float
         Good images per second.
     share : float
@@ -55,9 +84,15 @@ class Soak:
     """
 
     def __init__(
-        self, node: NodeProcess, rate: float, share: float, size: tuple[int, int], seed: int
+        self,
+        node: NodeProcess,
+        changes: list[tuple[str, object]],
+        rate: float,
+        share: float,
+        size: tuple[int, int],
+        seed: int,
     ) -> None:
-        self._node, self._rate, self._share = node, rate, share
+        self._node, self._changes, self._rate, self._share = node, changes, rate, share
         self._drive = Drive(*size)
         self._faults = Faults(self._drive, seed)
         self._random = random.Random(seed)
@@ -66,13 +101,17 @@ class Soak:
         self.latencies: list[float] = []
         self.sizes: list[tuple[float, int]] = []
         self.answers: Counter[str] = Counter()
+        self.asked = 0
 
     def run(self, seconds: float) -> None:
         """Send for this long, and wait for the last answers."""
         began = time.monotonic()
         for number in range(1, int(seconds * self._rate)):
             self._disturb(number)
-            image = self._drive.image(number)
+            self._turn(number)
+            is_hidden = self._is_due(number, OCCLUSION_EVERY, OCCLUSION)
+            self.answers["hidden"] += is_hidden
+            image = self._drive.image(number, is_hidden=is_hidden)
             self.sent[stamp_ns(image.header)] = image, time.monotonic()
             self._node.publish(image)
             self._faults.good()
@@ -93,8 +132,32 @@ class Soak:
             self.answers["targets"] += 1
             return
         image = self._faults.image(number)
-        self.faulty[stamp_ns(image.header)] = image
         self._node.publish(image)
+        # Without its pixels, of which there would be gigabytes in an hour.
+        self.faulty[stamp_ns(image.header)] = Image(
+            header=image.header, height=image.height, width=image.width
+        )
+
+    def _turn(self, number: int) -> None:
+        """Set the right target, or a parameter, when it is time to."""
+        if self._is_due(number, TARGET_EVERY):
+            self._node.publish(self._drive.target(number))
+            self.answers["right targets"] += 1
+        if self._changes and self._is_due(number, CHANGE_EVERY):
+            self._node.set_parameter(*self._changes[self.asked % len(self._changes)])
+            self.asked += 1
+
+    def _is_due(self, number: int, every: float, lasting: float = 0.0) -> bool:
+        """Test whether an event that comes `every` s happens with this image."""
+        return (
+            number % round(every * self._rate) <= lasting * self._rate
+            and number >= every * self._rate
+        )
+
+    @property
+    def changes(self) -> list[bool]:
+        """Whether each change of parameters was taken, of those answered."""
+        return self._node.changes
 
     def _hear(self) -> None:
         now = time.monotonic()
@@ -116,14 +179,18 @@ def report(soak: Soak) -> None:
     print(f"good images without an answer: {len(soak.sent)}")
     for answer, count in sorted(soak.answers.items()):
         print(f"  {answer:18} {count}")
+    taken = sum(soak.changes)
+    print(f"changes of parameters: {soak.asked} asked, {len(soak.changes)} answered, {taken} taken")
     middle, high, most = np.percentile(np.array(soak.latencies) * 1e3, [50, 95, 99])
     print(f"answers to good images after {middle:.1f} ms (p50), {high:.1f} (p95), {most:.1f} (p99)")
     times, sizes = np.array(soak.sizes).T
-    settled = times >= min(60.0, times[-1] / 2)
-    slope = np.polyfit(times[settled] / 60, sizes[settled] / MB, 1)[0]
+    since = min(SETTLED, times[-1] / 2)
+    settled = sizes[times >= since]
+    slope = np.polyfit(times[times >= since] / 60, settled / MB, 1)[0]
     print(
-        f"resident memory {sizes[settled][0] / MB:.1f} MB when settled, {sizes[-1] / MB:.1f} MB at "
-        f"the end ({100 * (sizes[-1] / sizes[settled][0] - 1):+.1f} %), {slope:+.3f} MB a minute"
+        f"resident memory {settled[0] / MB:.1f} MB after {since / 60:.1f} minutes, "
+        f"{settled[-1] / MB:.1f} MB at the end ({100 * (settled[-1] / settled[0] - 1):+.1f} %), "
+        f"{settled.max() / MB:.1f} MB at most, {slope:+.3f} MB a minute"
     )
 
 
@@ -138,12 +205,14 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     args = parser.parse_args()
     node = NodeProcess(args.variant, "queue_depth:=10")
-    soak = Soak(node, args.rate, args.faults, tuple(args.size), args.seed)
+    known = Configuration.of(VARIANTS[args.variant]).specs()
+    changes = [change for change in CHANGES if change[0] in known]
+    soak = Soak(node, changes, args.rate, args.faults, tuple(args.size), args.seed)
     node.begin(Drive(*args.size).image(0))
     soak.run(args.minutes * 60)
     report(soak)
     node.end()
-    raise SystemExit(1 if soak.sent else 0)
+    raise SystemExit(1 if soak.sent or sum(soak.changes) < soak.asked else 0)
 
 
 if __name__ == "__main__":
