@@ -12,44 +12,105 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""JPEG and PNG images as RGB frames, whose size is known before anything is decoded.
+"""JPEG and PNG images as RGB frames, whose size and cost are known before anything is decoded.
 
-A file of a few bytes may claim a picture, or a chunk, of gigabytes, for which OpenCV would allocate
-memory. So lengths are checked and the size is read first, in the way of the decoders behind it
-(libjpeg's `next_marker`, the chunks of a PNG one after the other), and what is too large, or longer
-than its data, never gets to them.
+A file of a few bytes may claim a picture, or a chunk, of gigabytes, for which a decoder would
+allocate memory, or take minutes. So the structure is read first, in the way of the decoders behind
+it, and what costs too much, or is cut off, never gets to them: an image costs at most a second of
+CPU time and 200 MB.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
+import numpy as np
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.encodings import MAX_SIDE, Buffer, Bytes, flat_bytes
+from vehicle_pf_tracker.image import jpeg_structure, png_structure
+from vehicle_pf_tracker.image.encodings import MAX_SIDE, Buffer, flat_bytes
+from vehicle_pf_tracker.image.jpeg_structure import JpegStructure, read_jpeg_structure
+from vehicle_pf_tracker.image.png_structure import PngStructure, read_png_structure
 
-MAX_PIXELS = 100_000_000
-"""Three times those of 8K video; as a frame 300 MB."""
+MAX_PIXELS = 30_000_000
+"""Three and a half times those of 4K video."""
 
-MAX_SCANS = 64
-"""Scans of a JPEG; progressive ones have about ten. Each may cost 0.55 ns per pixel however few
-bytes it has, so that 64 over the largest image of several scans take 0.8 s."""
+MAX_SECONDS = 1.0
+MAX_BYTES = 200_000_000
+"""CPU time and memory to decode one image, by the costs below."""
 
-MAX_SCANNED_PIXELS = 24_000_000
-"""Of a JPEG of several scans, whose decoder keeps 6.7 bytes for each pixel: 160 MB."""
+# Of the dearest files that were made for it: benchmarks/hostile_images.py. By them a camera's JPEG
+# of 4K takes 0.1 s.
+_PIXEL, _BYTE = 12e-9, 9e-9
+_SCANNED_PIXEL, _SCANNED_BYTE = 7e-9, 35e-9
+_SCAN = 0.7e-9
+"""Seconds for a pixel and for a byte of a JPEG of one scan, of one of several scans, and for a
+pixel in each scan, however few bytes that has."""
+_RAW_BYTE, _PACKED_BYTE = 12e-9, 8e-9
+"""Seconds for an inflated byte of a PNG and a deflated one, which is inflated twice: once to see
+that it ends."""
+_FRAME_BYTES, _SCANNED_BYTES, _COPIES = 6, 6, 2
+"""Bytes of memory for a pixel: two frames in OpenCV 5, and what a JPEG of several scans keeps
+besides. Copies of the file."""
 
-_PNG, _JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
-_CHUNK_FRAME = 12
-"""Length, kind and checksum around the data of a chunk."""
-_FILL, _START_OF_SCAN, _END = 0xFF, 0xDA, 0xD9
-_ALONE = frozenset({0x01, *range(0xD0, 0xD9)})
-"""Markers without a length: TEM, restarts and the start of the image."""
-_FRAME_HEADERS = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
-"""SOF0 to SOF15: the same range holds DHT, JPG and DAC."""
+_KINDS = frozenset({0, 1, 2})
+"""Frame headers of the JPEGs that cameras write: baseline, extended, progressive. Others are
+arithmetic, lossless or hierarchical coding, which few decoders read."""
+
+_GREY = 128
+"""Value of every channel where a decoder of JPEG has no data."""
+_EXTRA = bytes(1 + (37 * at + at * at) % 254 for at in range(256))
+"""Bytes that decode to anything but grey, with no marker among them."""
+
+
+@dataclass(frozen=True, slots=True)
+class CodedImage:
+    """A JPEG or PNG that may be decoded, of a size that its header states.
+
+    Attributes
+    ----------
+    name : str
+        What errors call it.
+    size : (int, int)
+        Width and height in px, before the file's orientation is applied.
+    """
+
+    name: str
+    size: tuple[int, int]
+    _data: bytes
+    _structure: JpegStructure | PngStructure
+
+    def decode(self) -> Frame:
+        """Decode it to an RGB frame.
+
+        Raises
+        ------
+        InputError
+            If it is damaged or cut off.
+        """
+        structure = self._structure
+        if isinstance(structure, PngStructure) and not structure.inflates_to_its_size():
+            raise InputError(f"{self.name} cannot be decoded: its data are damaged")
+        image = _decoded(self._data)
+        if image is None:
+            raise InputError(f"{self.name} cannot be decoded: its data are damaged")
+        if isinstance(structure, JpegStructure) and _ends_early(structure, self._data, image):
+            raise InputError(f"{self.name} is cut off before its end")
+        return _to_rgb(image)
 
 
 def decode_compressed(format: str, data: Buffer) -> Frame:  # noqa: A002 (the ROS field's name)
     """Decode the data of a `sensor_msgs/CompressedImage` (JPEG or PNG) to an RGB frame.
+
+    Parameters and errors are those of `read_compressed` and of `CodedImage.decode`.
+    """
+    return read_compressed(format, data).decode()
+
+
+def read_compressed(format: str, data: Buffer) -> CodedImage:  # noqa: A002
+    """Read the structure of a `sensor_msgs/CompressedImage`, without decoding it.
 
     Parameters
     ----------
@@ -61,108 +122,97 @@ def decode_compressed(format: str, data: Buffer) -> Frame:  # noqa: A002 (the RO
     Raises
     ------
     InputError
-        If the data are empty, cut off, neither JPEG nor PNG, or damaged, or if they claim a side
-        above `MAX_SIDE` or more than `MAX_PIXELS` pixels.
+        If the data are empty, cut off, neither JPEG nor PNG, or if they claim a side above
+        `MAX_SIDE`, more than `MAX_PIXELS` pixels, or take more than `MAX_SECONDS` to decode.
     """
-    coded = flat_bytes(data)
     name = f"a compressed image (format {format!r})"
-    if coded.size == 0:
+    coded = flat_bytes(data).tobytes()
+    if not coded:
         raise InputError(f"{name} holds no data")
-    width, height = _size_of(name, coded.tobytes())
+    if coded.startswith(png_structure.SIGNATURE):
+        return _read_png(name, coded)
+    if coded.startswith(jpeg_structure.SIGNATURE):
+        return _read_jpeg(name, coded)
+    raise InputError(f"{name} is neither JPEG nor PNG")
+
+
+def _read_png(name: str, data: bytes) -> CodedImage:
+    png = read_png_structure(data)
+    if png is None:
+        raise InputError(f"{name} is cut off before its end")
+    size = png.width, png.height
+    if not png.raw_bytes:
+        raise InputError(f"{name} cannot be decoded: it does not state its size")
+    seconds = png.raw_bytes * _RAW_BYTE + len(data) * _PACKED_BYTE
+    _check_cost(name, size, seconds, _memory(size, data))
+    return CodedImage(name, size, png.needed, png)
+
+
+def _read_jpeg(name: str, data: bytes) -> CodedImage:
+    jpeg = read_jpeg_structure(data)
+    if jpeg.end is None:
+        raise InputError(f"{name} is cut off before its end")
+    if jpeg.kind is None:
+        raise InputError(f"{name} cannot be decoded: it does not state its size")
+    if jpeg.kind not in _KINDS:
+        raise InputError(f"{name} is a JPEG of a kind that is not read (SOF{jpeg.kind})")
+    size, pixels, scans = (jpeg.width, jpeg.height), jpeg.width * jpeg.height, len(jpeg.scans)
+    seconds, memory = pixels * _PIXEL + len(data) * _BYTE, _memory(size, data)
+    if scans > 1:
+        seconds = pixels * (_SCANNED_PIXEL + scans * _SCAN) + len(data) * _SCANNED_BYTE
+    if scans > 1 or jpeg.is_progressive:
+        memory += pixels * _SCANNED_BYTES
+    _check_cost(name, size, seconds, memory)
+    if jpeg.lacks_scans or jpeg.lacks_restarts:
+        raise InputError(f"{name} is cut off before its end")
+    return CodedImage(name, size, data[: jpeg.end], jpeg)
+
+
+def _memory(size: tuple[int, int], data: bytes) -> int:
+    return size[0] * size[1] * _FRAME_BYTES + len(data) * _COPIES
+
+
+def _check_cost(name: str, size: tuple[int, int], seconds: float, memory: int) -> None:
+    width, height = size
     if max(width, height) > MAX_SIDE or width * height > MAX_PIXELS:
         raise InputError(
             f"{name} claims {width}x{height} px, above the {MAX_PIXELS // 10**6} megapixels and "
             f"{MAX_SIDE} px a side that are read; is it broken?"
         )
-    _check_scans(name, coded.tobytes(), width * height)
-    return _decoded(name, coded)
-
-
-def _check_scans(name: str, data: bytes, pixels: int) -> None:
-    """Refuse a JPEG whose scans would keep the decoder busy for long; PNG has none."""
-    # Within coded pixels every 255 is followed by 0, so that only metadata can be counted besides.
-    scans = data.count(b"\xff\xda") if data.startswith(_JPEG) else 1
-    if scans > MAX_SCANS:
-        raise InputError(f"{name} has {scans} scans, above the {MAX_SCANS} that are read")
-    if scans > 1 and pixels > MAX_SCANNED_PIXELS:
+    if seconds > MAX_SECONDS or memory > MAX_BYTES:
         raise InputError(
-            f"{name} has several scans and {pixels / 1e6:.0f} megapixels, above the "
-            f"{MAX_SCANNED_PIXELS // 10**6} that are read of such"
+            f"{name} of {width}x{height} px would take {seconds:.1f} s and {memory / 1e6:.0f} MB, "
+            f"above the {MAX_SECONDS:g} s and {MAX_BYTES // 10**6} MB that an image may; is it "
+            "broken?"
         )
 
 
-def _size_of(name: str, data: bytes) -> tuple[int, int]:
-    if data.startswith(_PNG):
-        is_cut, read_size = _is_cut_png, _png_size
-    elif data.startswith(_JPEG):
-        is_cut, read_size = _is_cut_jpeg, _jpeg_size
-    else:
-        raise InputError(f"{name} is neither JPEG nor PNG")
-    if is_cut(data):
-        raise InputError(f"{name} is cut off before its end")
-    size = read_size(data)
-    if size is None:
-        raise InputError(f"{name} cannot be decoded: it does not state its size")
-    return size
-
-
-def _decoded(name: str, coded: Bytes) -> Frame:
+def _decoded(data: bytes) -> Frame | None:
     try:
-        image = cv2.imdecode(coded, cv2.IMREAD_COLOR)
+        image: Frame | None = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)  # type: ignore[assignment]
     except cv2.error:
-        image = None
-    if image is None:
-        raise InputError(f"{name} cannot be decoded: its data are damaged")
-    return cv2.cvtColor(image, cv2.COLOR_BGR2RGB, dst=image)  # type: ignore[return-value]
-
-
-def _is_cut_png(data: bytes) -> bool:
-    """Test whether a PNG lacks its last chunk, or has a chunk that is longer than the data."""
-    offset = len(_PNG)
-    while offset + _CHUNK_FRAME <= len(data):
-        kind = data[offset + 4 : offset + 8]
-        offset += _CHUNK_FRAME + int.from_bytes(data[offset : offset + 4], "big")
-        if kind == b"IEND":
-            return offset > len(data)
-    return True
-
-
-def _png_size(data: bytes) -> tuple[int, int] | None:
-    """Width and height in the first chunk; None if that is another one than the header."""
-    header = data[len(_PNG) :]
-    if header[4:8] != b"IHDR":
         return None
-    return int.from_bytes(header[8:12], "big"), int.from_bytes(header[12:16], "big")
+    return image
 
 
-def _jpeg_size(data: bytes) -> tuple[int, int] | None:
-    """Width and height of the first frame header; None if the pixels begin without one."""
-    offset = 2
-    while True:
-        offset = data.find(_FILL, offset)
-        if offset < 0:
-            return None
-        while data[offset : offset + 1] == b"\xff":
-            offset += 1
-        marker, offset = data[offset : offset + 1], offset + 1
-        if not marker or marker[0] in (_START_OF_SCAN, _END):
-            return None
-        if marker[0] in _FRAME_HEADERS:
-            return _frame_size(data[offset : offset + 7])
-        if marker[0] != 0 and marker[0] not in _ALONE:  # 0: no marker, but an escaped 255
-            offset += int.from_bytes(data[offset : offset + 2], "big")
+def _ends_early(jpeg: JpegStructure, data: bytes, image: Frame) -> bool:
+    """Test whether the pixels end before the image does, and the decoder filled it up with grey.
 
-
-def _frame_size(header: bytes) -> tuple[int, int] | None:
-    """Read what stands behind a frame header's marker: length, precision, height, width."""
-    if len(header) < 7:
-        return None
-    return int.from_bytes(header[5:7], "big"), int.from_bytes(header[3:5], "big")
-
-
-def _is_cut_jpeg(data: bytes) -> bool:
-    """Test whether a JPEG has no end marker, which its decoder would fill up with grey.
-
-    The marker cannot occur within the coded pixels; a thumbnail has its own in the first half.
+    It says so on stderr alone. So, where the last block is grey, more data are put before the end:
+    a whole image does not change by them.
     """
-    return data.find(b"\xff\xd9", len(data) // 2) < 0
+    corners = image[:: max(image.shape[0] - 1, 1), :: max(image.shape[1] - 1, 1)]
+    is_grey = bool((corners == _GREY).all(axis=2).any())  # any corner may be the last: orientation
+    if jpeg.is_progressive or not (is_grey or len(jpeg.scans) > 1):
+        return False
+    longer = _decoded(data[:-2] + _EXTRA + data[-2:])
+    return longer is None or not np.array_equal(image, longer)
+
+
+def _to_rgb(image: Frame) -> Frame:
+    """Swap the channels in place, in bands: OpenCV copies what it converts in place."""
+    rows = max(2**20 // (3 * image.shape[1]), 1)
+    for top in range(0, image.shape[0], rows):
+        band = image[top : top + rows]
+        cv2.cvtColor(band, cv2.COLOR_BGR2RGB, dst=band)
+    return image

@@ -23,15 +23,21 @@ from __future__ import annotations
 import copy
 from typing import Any
 
+import numpy as np
+
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.clock import StampClock, StampEvent, Tick
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.core.frame import CodedFrame, Frame, check_frame, frame_size
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.base import DEFAULT_PERIOD, BaseTracker
 from vehicle_pf_tracker.trackers.continuity import Continuation, Continuity, StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
+
+
+class TargetError(InputError):
+    """Target that no tracker can start on in the image that it was given for."""
 
 
 class Session:
@@ -66,7 +72,7 @@ class Session:
         self.tracker = variant.tracker(parameters)
         self._clock = StampClock(parameters.frame_rate)
         self._continuity = Continuity()
-        self._aside: tuple[Frame, int] | None = None
+        self._aside: tuple[Frame | CodedFrame, int] | None = None
         self._backup: tuple[StampClock, BaseTracker[Any]] | None = None
         self._pending: Box | None = self.settings.target.box
         self._size: tuple[int, int] | None = None
@@ -99,13 +105,14 @@ class Session:
         self.tracker.reconfigure(parameters)
         self._clock.set_frame_rate(parameters.frame_rate)
 
-    def feed(self, frame: Frame, stamp_ns: int) -> Estimate | None:
+    def feed(self, image: Frame | CodedFrame, stamp_ns: int) -> Estimate | None:
         """Take the next image; None while there is no target.
 
         Parameters
         ----------
-        frame : (H, W, 3) array
-            RGB; not written to, and copied where it has to be kept.
+        image : (H, W, 3) array or CodedFrame
+            RGB; not written to, and copied where it has to be kept. A coded one is decoded only if
+            it continues the stream, or the next one agrees with it.
         stamp_ns : int
             The image's stamp in ns.
 
@@ -113,24 +120,38 @@ class Session:
         ------
         StrayImageError
             If the image does not continue the stream; the track is kept.
+        TargetError
+            If the target to start on is not valid in it. Where there is a track, such a target is
+            reported in `events` instead, and the track continues.
         InputError
-            If the frame is not usable, or the target to start on is not valid in it. Where there is
-            a track, such a target is reported in `events` instead, and the track continues.
+            If the frame is not usable.
         """
         self.events = []
         aside, self._aside = self._aside, None
-        size = frame_size(check_frame(frame))
+        if aside is not None and _size(aside[0]) == _size(image):
+            image = _decoded(image)
         try:
-            continuation = self._continuity.judge(size, stamp_ns, timed=self._size is not None)
+            continuation = self._continuity.judge(
+                _size(image), stamp_ns, timed=self._size is not None
+            )
         except StrayImageError:
-            self._aside = frame.copy(), stamp_ns
+            self._aside = image.copy() if isinstance(image, np.ndarray) else image, stamp_ns
             raise
         if continuation is Continuation.CONFIRMS and aside is not None:
-            self._take(*aside)
+            self._take_aside(*aside)
         if continuation is Continuation.CORRECTS:
             self._take_back()
         self._backup = self._copied() if continuation is Continuation.LEAPS else None
-        return self._take(frame, None if continuation is Continuation.UNTIMED else stamp_ns)
+        is_timed = continuation is not Continuation.UNTIMED
+        return self._take(_decoded(image), stamp_ns if is_timed else None)
+
+    def _take_aside(self, image: Frame | CodedFrame, stamp_ns: int) -> None:
+        """Take the rejected image after all, unless it proves to be damaged."""
+        try:
+            frame = _decoded(image)
+        except InputError:
+            return
+        self._take(frame, stamp_ns)
 
     def _copied(self) -> tuple[StampClock, BaseTracker[Any]]:
         """Copy what an image changes; kernels have no state of their own."""
@@ -181,7 +202,7 @@ class Session:
             check_target(box, *size)
         except InputError as error:
             if self._size is None:
-                raise
+                raise TargetError(str(error)) from None
             self.events.append(f"target refused: {error}")
             return False
         return True
@@ -195,3 +216,11 @@ class Session:
         # A box that was just set is newer than the one configured.
         self._size = None
         self._pending = self._pending or self.settings.target.box
+
+
+def _size(image: Frame | CodedFrame) -> tuple[int, int]:
+    return frame_size(check_frame(image)) if isinstance(image, np.ndarray) else image.size
+
+
+def _decoded(image: Frame | CodedFrame) -> Frame:
+    return image if isinstance(image, np.ndarray) else image.decode()

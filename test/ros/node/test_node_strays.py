@@ -16,14 +16,25 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
-from sensor_msgs.msg import Image
+from sensor_msgs.msg import CompressedImage, Image
 from test_node_targets import Targets, polygon
-from tracker_rig import FIRST_NS, PERIOD_NS, Rig, header, header_at, on_target, road, values_of
+from tracker_rig import (
+    FIRST_NS,
+    PERIOD_NS,
+    Rig,
+    header,
+    header_at,
+    on_target,
+    overrides,
+    road,
+    values_of,
+)
 
 from vehicle_pf_tracker.ros.messages import image_message
 
@@ -75,6 +86,34 @@ def test_a_stray_stamp_is_rejected_and_costs_the_track_nothing(bench, stamp, wor
     ]
     bench.remove(disturbed.node)
     assert answers == undisturbed(bench, frames)
+
+
+def test_a_compressed_stray_is_not_decoded(bench, monkeypatch):
+    """28 kB may claim 25 megapixels in a stream of small images."""
+    rig = Rig(
+        bench,
+        [*on_target(), *overrides(image_transport="compressed")],
+        kind=CompressedImage,
+        topic="image/compressed",
+    )
+
+    def show(index, frame):
+        data = cv2.imencode(".jpg", frame)[1].tobytes()
+        return rig.show(CompressedImage(header=header(index), format="jpeg", data=data))
+
+    frames = road(6)
+    assert [mode(show(i, frame)) for i, frame in enumerate(frames[:3])] == ["TRACKING"] * 3
+    huge = np.zeros((5000, 5000, 3), np.uint8)
+    with monkeypatch.context() as patch:
+        patch.setattr(cv2, "imdecode", lambda *_: pytest.fail("decoded"))
+        answer = show(3, huge)
+    assert mode(answer) == "REJECTED"
+    assert "5000x5000 px among images of 160x120 px" in values_of(answer)["reason"]
+    assert mode(show(4, frames[4])) == "TRACKING"
+    assert mode(show(5, huge)) == "REJECTED"
+    answer = show(6, huge)  # two that agree are a change of the stream
+    assert mode(answer) == "TRACKING"
+    assert "image size changed from 160x120 to 5000x5000" in values_of(answer)["event"]
 
 
 def test_a_stray_size_is_rejected_and_costs_the_track_nothing(bench):

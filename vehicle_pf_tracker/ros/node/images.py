@@ -28,7 +28,7 @@ from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.compressed_image import decode_compressed
+from vehicle_pf_tracker.image.compressed_image import CodedImage, read_compressed
 from vehicle_pf_tracker.image.encodings import to_rgb
 
 _BODY = 4
@@ -87,8 +87,20 @@ def read_serialized(message: bytes) -> SerializedImage:
     return SerializedImage(header, height, width, encoding, is_bigendian, step, data)
 
 
-def read_image(message: Image | SerializedImage | CompressedImage) -> Frame:
+def read_image(
+    message: Image | SerializedImage | CompressedImage, size: tuple[int, int] | None = None
+) -> Frame | CodedImage:
     """Return the RGB frame of `message`; for rgb8 a view of its data.
+
+    A compressed image whose header claims another size than that of the stream is not decoded: it
+    may be a stray, of any size.
+
+    Parameters
+    ----------
+    message : Image, SerializedImage or CompressedImage
+        The image.
+    size : (int, int), optional
+        Width and height of the stream's images in px; None before the first.
 
     Raises
     ------
@@ -96,7 +108,9 @@ def read_image(message: Image | SerializedImage | CompressedImage) -> Frame:
         If the encoding is unknown, or size and data do not fit each other.
     """
     if isinstance(message, CompressedImage):
-        return decode_compressed(message.format, message.data)
+        coded = read_compressed(message.format, message.data)
+        # A camera that was turned by 90 degrees says so in the file, and is turned in decoding.
+        return coded.decode() if size in (None, coded.size, coded.size[::-1]) else coded
     return to_rgb(
         message.encoding,
         message.height,

@@ -26,6 +26,7 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns
@@ -35,7 +36,7 @@ from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
-from vehicle_pf_tracker.trackers.session import Session
+from vehicle_pf_tracker.trackers.session import Session, TargetError
 
 _THROTTLE = 5.0
 """Interval between two lines of the same kind in the log, s."""
@@ -82,6 +83,7 @@ class Stream:
         self._session: Session | None = None
         self._loading = KernelLoading(configuration.tracker.kernels)
         self._asked: Box | None = None
+        self._target_problem = ""
         self.frame_id: str | None = None
         self.estimate: Estimate | None = None
         if not self.get_ready():
@@ -124,12 +126,15 @@ class Stream:
     def take(self, message: Image | SerializedImage | CompressedImage) -> None:
         """Answer an image with exactly one `~/mode`, and with an estimate where there is one."""
         if not self.get_ready() or self._session is None:
-            self._put_off(message.header)
+            self._wait(message.header, self._loading.reason)
             return
         try:
-            frame = read_image(message)
-            self._adopt_target(self._session, frame)
-            self.estimate = self._session.feed(frame, stamp_ns(message.header))
+            image = read_image(message, self._session.size)
+            self._adopt_target(self._session, image)
+            self.estimate = self._session.feed(image, stamp_ns(message.header))
+            frame = image.decode() if isinstance(image, CodedImage) else image
+        except TargetError as error:
+            self._wait(message.header, str(error))
         except InputError as error:
             self._reject(message.header, str(error))
         except Exception as error:  # an image must not end a node that others rely on
@@ -160,15 +165,22 @@ class Stream:
         Raises
         ------
         InputError
-            If the kernels are not loaded yet, so that the next images will not be tracked in.
+            If the kernels are not loaded yet, or the configured target is outside the images, so
+            that the next ones will not be tracked in.
         """
         if not self.get_ready() or self._session is None:
             raise InputError(self._loading.reason)
+        size = self._session.size
         self._asked = self.estimate = None
         self._session.reset()
+        self._target_problem = self._misfit(self._configuration, size)
+        if self._target_problem:
+            raise InputError(f"{self._target_problem}; waiting for a target")
 
     def reconfigure(self, configuration: Configuration) -> None:
         """Take new parameters between two images, or when their kernels are loaded."""
+        if configuration.session.target != self._configuration.session.target:
+            self._target_problem = ""
         self._configuration = configuration
         if configuration.tracker.kernels != self._loading.choice:
             self._loading = KernelLoading(configuration.tracker.kernels)
@@ -190,15 +202,46 @@ class Stream:
         if session.tracker.seed != before:
             self._tell_drawn_seed(session)
 
-    def _put_off(self, header: Header) -> None:
-        self._health.answered(WAITING)
-        self._outputs.publish_mode(header, WAITING, {"reason": self._loading.reason})
+    def check(self, configuration: Configuration) -> None:
+        """Refuse a configuration with a new target that is outside the stream's images.
 
-    def _adopt_target(self, session: Session, frame: Frame) -> None:
+        Raises
+        ------
+        InputError
+            With the reason.
+        """
+        is_new = configuration.session.target != self._configuration.session.target
+        problem = self._misfit(configuration, self._session.size if self._session else None)
+        if is_new and problem:
+            raise InputError(problem)
+
+    @staticmethod
+    def _misfit(configuration: Configuration, size: tuple[int, int] | None) -> str:
+        """Say why images of this size cannot be started in on the configured target, if so."""
+        box = configuration.session.target.box
+        if box is None or size is None:
+            return ""
+        try:
+            check_target(box, *size)
+        except InputError as error:
+            return str(error)
+        return ""
+
+    def _wait(self, header: Header, reason: str) -> None:
+        """Answer an image in which nothing can be tracked, for this reason."""
+        if reason not in (self._loading.reason, self._target_problem):
+            self.refuse_target(reason)
+            self._target_problem = reason
+        self._health.answered(WAITING)
+        self._outputs.publish_mode(header, WAITING, {"reason": reason})
+
+    def _adopt_target(self, session: Session, image: Frame | CodedImage) -> None:
         # Checked here and not by the session, which would give up this image's estimate for it;
         # and not in an image of another size, which may be a stray.
-        size = frame_size(frame)
-        if self._asked is None or session.size not in (None, size):
+        if self._asked is None or isinstance(image, CodedImage):
+            return
+        size = frame_size(image)
+        if session.size not in (None, size):
             return
         box, self._asked = self._asked, None
         try:
@@ -210,9 +253,12 @@ class Stream:
         self, session: Session, header: Header, frame: Frame, estimate: Estimate | None
     ) -> None:
         events = self._events(session)
+        if estimate is None and self._target_problem:
+            events["reason"] = self._target_problem
         mode = estimate.mode.value if estimate is not None else WAITING
         switches = self._configuration.node.publish
         if estimate is not None:
+            self._target_problem = ""
             period = session.tracker.frame_period
             self._outputs.publish_estimate(header, estimate, switches, period)
         if switches.overlay:
