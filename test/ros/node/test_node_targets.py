@@ -23,9 +23,10 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from geometry_msgs.msg import Point32, PointStamped, PolygonStamped
+from rcl_interfaces.srv import SetParametersAtomically
 from sensor_msgs.msg import RegionOfInterest
 from std_srvs.srv import Trigger
-from tracker_rig import TARGET, Rig, on_target, road, values_of
+from tracker_rig import TARGET, Rig, on_target, overrides, road, values_of
 
 pytestmark = pytest.mark.ros
 
@@ -163,6 +164,60 @@ def test_reset_goes_back_to_the_configured_target(tracking):
     answer = rig.show_frame(road(1)[0], 4)
     assert values_of(answer)["regime"] == "start"
     assert box_of(answer) == TARGET
+
+
+MISSES = [
+    ({"x": -50.0}, "outside every image"),
+    ({"y": -50.0}, "outside every image"),
+    ({"x": 150.0}, "outside the image of 160x120"),
+    ({"y": 115.0}, "outside the image of 160x120"),
+    ({"x": 90_000.0}, "outside the image of 160x120"),
+    ({"width": 700.0}, "far larger than the image"),
+    ({"height": 500.0}, "far larger than the image"),
+    ({"width": 300.0}, "outside the image of 160x120"),
+    ({"x": 300.0, "y": 300.0, "width": 20.0, "height": 20.0}, "outside the image of 160x120"),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), MISSES)
+def test_a_target_that_misses_the_image_is_refused_when_it_is_set(tracking, changes, words):
+    rig, _ = tracking
+    wanted = overrides(**{f"target__{name}": value for name, value in changes.items()})
+    request = SetParametersAtomically.Request(parameters=[one.to_parameter_msg() for one in wanted])
+    result = rig.bench.call(
+        SetParametersAtomically, f"{rig.name}/set_parameters_atomically", request
+    ).result
+    assert not result.successful
+    assert words in result.reason
+    assert rig.bench.call(Trigger, f"{rig.name}/reset", Trigger.Request()).success
+    assert box_of(rig.show_frame(road(1)[0], 4)) == TARGET
+
+
+def test_a_target_set_before_the_images_that_it_misses_is_waited_for(bench):
+    rig = Rig(bench, overrides(target__x=300.0, target__width=20.0, target__height=20.0))
+    targets = Targets(rig)
+    frames = road(4)
+    for index in (0, 1):
+        answer = rig.show_frame(frames[index], index)
+        assert answer.status[0].message == "WAITING"
+        assert "outside the image of 160x120" in values_of(answer)["reason"]
+    response = rig.bench.call(Trigger, f"{rig.name}/reset", Trigger.Request())
+    assert not response.success
+    assert response.message.endswith("waiting for a target")
+    answer = rig.show_frame(frames[2], 2)
+    assert answer.status[0].message == "WAITING"
+    assert "outside the image of 160x120" in values_of(answer)["reason"]
+    targets.give(region(*TARGET))
+    answer = rig.show_frame(frames[0], 3)
+    assert answer.status[0].message == "TRACKING"
+    assert "reason" not in values_of(answer)
+
+
+def test_a_larger_stream_may_have_the_target_after_all(bench):
+    rig = Rig(bench, overrides(target__x=300.0, target__width=20.0, target__height=20.0))
+    assert rig.play(road(2)) == ["WAITING"] * 2
+    assert not rig.bench.call(Trigger, f"{rig.name}/reset", Trigger.Request()).success
+    assert rig.play(road(2, 640, 480), first=2) == ["TRACKING"] * 2
 
 
 def test_reset_goes_back_to_waiting(waiting):

@@ -73,8 +73,10 @@ class ParameterTable:
         Its overrides (files, command line) are taken over the defaults.
     defaults : Configuration
         Of the node's variant.
+    check : callable
+        Called with each new configuration before it is taken; raises InputError to refuse it.
     changed : callable
-        Called with each new configuration.
+        Called with each new configuration that was taken.
 
     Raises
     ------
@@ -86,9 +88,11 @@ class ParameterTable:
         self,
         node: Node,
         defaults: Configuration,
+        check: Callable[[Configuration], None],
         changed: Callable[[Configuration], None],
     ) -> None:
         self._specs = defaults.specs()
+        self._check = check
         self._changed = changed
         overrides = parameter_overrides(node, tuple(self._specs))
         self.configuration = defaults.updated(overrides)
@@ -110,7 +114,7 @@ class ParameterTable:
 
     def _validate(self, parameters: list[Parameter]) -> SetParametersResult:
         try:
-            self._with(parameters)
+            self._check(self._with(parameters))
         except InputError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)

@@ -67,7 +67,7 @@ class TrackerNode(ManagedNode):
         self._target_inputs: list[Subscription] = []
         try:
             defaults = Configuration.of(variant)
-            self._table = ParameterTable(self, defaults, self._reconfigure)
+            self._table = ParameterTable(self, defaults, self._check, self._reconfigure)
             self._diagnostics = Diagnostics(self)
             self._warn_of_release()
             self._warn_of(unknown_overrides(self, qos=False))
@@ -167,6 +167,10 @@ class TrackerNode(ManagedNode):
             kernels = self._stream.facts["kernels"]
             words = f"ready: images on {source}, {self._stream.target_words}, {kernels} kernels"
             self.get_logger().info(words)
+
+    def _check(self, configuration: Configuration) -> None:
+        if self._stream is not None:
+            self._stream.check(configuration)
 
     def _reconfigure(self, configuration: Configuration) -> None:
         if self._stream is not None:
