@@ -132,3 +132,24 @@ def test_the_path_through_occlusions_is_written_on_request_and_not_scored(run, b
     assert header.endswith("step_ms,x_interpolated,y_interpolated")
     assert first.endswith(f",{rows[0].x},{rows[0].y}")
     assert metrics["rmse_px"] == plain["rmse_px"]
+
+
+def test_a_road_adds_its_columns(tmp_path):
+    recording = record(tmp_path / "rec")
+    pairs = "0,0=0,0; 96,0=9.6,0; 96,64=9.6,6.4; 0,64=0,6.4"
+    words = ["run", str(recording), "--variant", "pf", "--set", f"road.pairs={pairs}"]
+    assert main([*words, "-o", str(tmp_path / "out")]) == 0
+    header, first, *_ = (tmp_path / "out" / "estimates.csv").read_text().splitlines()
+    assert header.endswith(
+        "step_ms,road_x,road_y,road_velocity_x,road_velocity_y,speed_kmh,speed_sd_kmh"
+    )
+    row = dict(zip(header.split(","), first.split(","), strict=True))
+    assert float(row["road_x"]) == pytest.approx(1.6)
+    assert float(row["road_y"]) == pytest.approx(3.6)
+
+
+def test_a_road_that_is_none_is_refused(tmp_path, capsys):
+    recording = record(tmp_path / "rec")
+    words = ["run", str(recording), "--variant", "pf", "--set", "road.pairs=0,0=0,0"]
+    assert main([*words, "-o", str(tmp_path / "out")]) == 1
+    assert "at least 4 pairs" in capsys.readouterr().err

@@ -67,12 +67,14 @@ def run(args: argparse.Namespace) -> int:
     folder = RunFolder(args.output)
     with counting("tracked") as progress:
         rows = list(tracker.rows(_frames(recording, progress)))
-    notices = [*recording.notices, *tracker.notices]
+    notices = [*recording.notices, *tracker.notices, *tracker.road_notices]
     tell_notices(notices)
     info = RunInfo(
         args.command, str(args.recording), recording.image_topic, tracker.start_frame, notices
     )
-    extra = interpolated_columns(rows) if args.interpolate_occlusions else {}
+    extra: dict[str, list[float | None]] = tracker.road_columns
+    if args.interpolate_occlusions:
+        extra |= interpolated_columns(rows)
     folder.write_run(rows, describe_run(info, tracker.session), extra)
     metrics = measure(score_frames(rows, recording.truth(), args.max_diff))
     folder.write_metrics(metrics)

@@ -17,7 +17,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -29,7 +30,10 @@ from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.trackers.continuity import StrayImageError
+from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.localisation import Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.trackers.road_follower import ROAD_COLUMNS
 from vehicle_pf_tracker.trackers.session import Session
 
 
@@ -74,6 +78,9 @@ class OfflineTracker:
         self.notices = list(self.session.tracker.kernels.notices)
         self._first_truth = first_truth if self.session.waiting else None
         self._limit_ns = max_diff_ns(max_diff)
+        self._localisation = _localisation(self.session)
+        self._on_road: list[Mapping[str, float]] = []
+        self._off_road: Counter[str] = Counter()
 
     def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]:
         """Track through (stamp in ns, frame) pairs, and give one row for each.
@@ -88,6 +95,7 @@ class OfflineTracker:
         stamped = itertools.chain(frames, [None])
         for number, (current, following) in enumerate(itertools.pairwise(stamped), start=1):
             assert current is not None
+            self._on_road.append({})
             if self._is_start(current[0], following[0] if following else None):
                 self._set_target()
             yield self._row(number, *current)
@@ -96,6 +104,21 @@ class OfflineTracker:
                 f"no image is within {self._limit_ns / 1e9:g} s of the first truth, "
                 f"at {self._first_truth.stamp_ns / 1e9:.3f} s; give a target with --target x,y,w,h"
             )
+
+    @property
+    def road_columns(self) -> dict[str, list[float | None]]:
+        """Places and speeds on the road of all frames so far, by name; none without a road."""
+        if self._localisation is None:
+            return {}
+        return {name: [one.get(name) for one in self._on_road] for name in ROAD_COLUMNS}
+
+    @property
+    def road_notices(self) -> list[str]:
+        """Reasons why frames have no place on the road, a sentence each."""
+        return [
+            f"no place on the road in {count} frame{'s' * (count > 1)}: {reason}"
+            for reason, count in self._off_road.items()
+        ]
 
     def _is_start(self, stamp_ns: int, next_ns: int | None) -> bool:
         """Return whether the image at `stamp_ns` is the one nearest to the first truth."""
@@ -127,7 +150,30 @@ class OfflineTracker:
             return EstimateRow.without(number, stamp_ns, WAITING)
         if self.start_frame is None:
             self.start_frame = number
+        self._locate(estimate, stamp_ns)
         return EstimateRow.from_scalars(number, stamp_ns, estimate.scalars())
+
+    def _locate(self, estimate: Estimate, stamp_ns: int) -> None:
+        if self._localisation is None:
+            return
+        self._localisation.follow(estimate, stamp_ns, self.session.tracker.frame_period)
+        if self._localisation.road is not None:
+            self._on_road[-1] = self._localisation.road.scalars()
+        else:
+            self._off_road[self._localisation.objection] += 1
+
+
+def _localisation(session: Session) -> Localisation | None:
+    """Make the localisation where a road is set; its lens and pose cannot come from topics here."""
+    road = session.settings.road
+    if not road.is_set:
+        return None
+    if road.from_camera_info or road.from_tf:
+        raise InputError(
+            "road.from_camera_info and road.from_tf are for nodes; offline, give road.intrinsics, "
+            "road.distortion and road.camera_pose"
+        )
+    return Localisation(session.variant.name, road)
 
 
 def with_target(settings: SessionParameters, box: Box) -> SessionParameters:

@@ -39,6 +39,8 @@ _ROUNDS = 30
 _TOLERANCE = 1e-9
 """Distance of a removal's result, distorted again, from where it came from, in focal lengths: above
 it the point is beyond the fold of the polynomial, where no ray belongs to it."""
+_SETTLED = 1e-13
+"""Error at which the steps end, in focal lengths: some roundings."""
 _STEP = 1e-6
 """Step of numerical derivatives, in focal lengths: some square roots of the rounding error."""
 
@@ -115,6 +117,8 @@ class Lens:
         with np.errstate(all="ignore"):
             for _ in range(_ROUNDS):
                 error = self._distorted(rays) - distorted
+                if not (np.abs(error) > _SETTLED).any():
+                    break
                 columns = [
                     (self._distorted(rays + step) - self._distorted(rays - step)) / (2 * _STEP)
                     for step in np.eye(2) * _STEP

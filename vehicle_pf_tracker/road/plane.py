@@ -128,16 +128,15 @@ class RoadPlane:
         derivative: Array = at_ideal @ through_lens
         return derivative
 
-    def objection(self, point: Array) -> str:
-        """Say why the pixel `point` (2,) is outside the calibrated area; empty where it is not."""
-        ideal = self.ideal(point)
+    def objection(self, ideal: Array) -> str:
+        """Say why the ideal pixel (2,) is outside the calibrated area; empty where it is not."""
         if not np.isfinite(ideal).all():
             return "outside what the lens can show"
         if self.homography.nearness(ideal) <= 0:
             return "above the horizon of the road"
         if self.hull is not None and not is_inside(self.hull, ideal):
             return "outside the calibrated area"
-        length = float(np.linalg.norm(self.jacobian(point), 2))
+        length = float(np.linalg.norm(self.homography.jacobian(ideal), 2))
         if not length <= self.coarsest:
             return f"too far away: a pixel is {length:.2g} m of road"
         return ""

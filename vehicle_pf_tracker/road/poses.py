@@ -70,6 +70,14 @@ class Pose:
     def __matmul__(self, other: Pose) -> Pose:
         return Pose(self.rotation @ other.rotation, self.rotation @ other.position + self.position)
 
+    def equals(self, other: Pose | None) -> bool:
+        """Return whether `other` is the same to the last digit."""
+        return (
+            other is not None
+            and np.array_equal(self.rotation, other.rotation)
+            and np.array_equal(self.position, other.position)
+        )
+
     @property
     def inverse(self) -> Pose:
         """Pose of the parent in the child."""

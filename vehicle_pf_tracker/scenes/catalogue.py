@@ -54,6 +54,7 @@ from vehicle_pf_tracker.scenes.occluded_drives import (
     twin,
 )
 from vehicle_pf_tracker.scenes.randomness import check_seed
+from vehicle_pf_tracker.scenes.road import RoadSceneParameters, road
 from vehicle_pf_tracker.scenes.scene import Scene
 
 
@@ -97,6 +98,7 @@ SCENES: dict[str, SceneKind] = {
     "turn": SceneKind(DriveParameters, turn, "the target turns into a side road"),
     "turn_occluded": SceneKind(DriveParameters, turn_occluded, "it turns behind a house"),
     "scale": SceneKind(ScaleParameters, scale, "the target drives into depth and changes its size"),
+    "road": SceneKind(RoadSceneParameters, road, "a road in perspective, at a speed in km/h"),
 }
 """The scenes that come with the package, by name."""
 

@@ -150,10 +150,13 @@ def _project(face: Face) -> Array:
 
 
 def _shaded(face: Face) -> Colour:
-    if face.glow:
-        return face.colour
-    light = 0.68 + 0.42 * max(0.0, float(normal_of(face) @ _SUN))
-    red, green, blue = (min(255.0, round(level * light)) for level in face.colour)
+    return face.colour if face.glow else lit(face.colour, normal_of(face))
+
+
+def lit(colour: Colour, normal: Array) -> Colour:
+    """Return `colour` as the sun lights a face of this unit normal."""
+    light = 0.68 + 0.42 * max(0.0, float(normal @ _SUN))
+    red, green, blue = (min(255.0, round(level * light)) for level in colour)
     return red, green, blue
 
 

@@ -24,6 +24,9 @@ from types import MappingProxyType
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 
+START = "start"
+"""Regime of an estimate that begins a track."""
+
 
 class Mode(str, Enum):
     """Claim about the target's visibility, from evidence in the image."""

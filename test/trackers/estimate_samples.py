@@ -1,0 +1,33 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Estimates made by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+
+
+def estimate(centre=(100.0, 80.0), *, size=(20.0, 10.0), mode=Mode.TRACKING, regime="clear",
+             velocity=(0.0, 0.0), confidence=1.0, particles=None, weights=None):  # fmt: skip
+    """Estimate at `centre` with a cloud of one particle there unless others are given."""
+    positions = np.array([centre] if particles is None else particles, float)
+    shares = np.full(len(positions), 1 / len(positions)) if weights is None else np.array(weights)
+    return Estimate(
+        centre, Box.around(centre, *size), velocity, mode, regime, confidence, {}, 1.0, 0, 0,
+        positions, shares,
+    )  # fmt: skip

@@ -1,0 +1,194 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A road in perspective: a vehicle comes or goes along it at a known speed in km/h.
+
+The camera stands on a mast or hangs from a gantry; its place, view and lens differ between seeds.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.road.lens import Lens
+from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes.compositing import Image
+from vehicle_pf_tracker.scenes.drive import PAINTS
+from vehicle_pf_tracker.scenes.perspective import Drive, RoadCamera, RoadVehicle, looking
+from vehicle_pf_tracker.scenes.randomness import stream
+from vehicle_pf_tracker.scenes.scene import Actor, Scene
+from vehicle_pf_tracker.scenes.textures import asphalt, grass
+from vehicle_pf_tracker.scenes.vehicles import car, saloon, suv
+
+WIDTH, HEIGHT = 640, 480
+LANE_WIDTH = 3.5
+LANES = (-LANE_WIDTH, 0.0, LANE_WIDTH)
+"""Middles of the lanes (x), m; the target drives in the middle one."""
+NEAR, FAR = 22.0, 70.0
+"""Stretch (y) that the target is seen on, m: a car is 80 px wide there, and 25 px."""
+LONGEST = 150
+"""Most frames: slow vehicles are seen on a part of the stretch, near the camera."""
+KMH = 3.6
+"""km/h in a m/s."""
+
+_VEHICLES = {
+    "car": (car, (0.68, 2.95)),
+    "saloon": (saloon, (0.85, 3.7)),
+    "suv": (suv, (0.9, 3.6)),
+}
+"""Maker and axles (m from the rear) of each kind of vehicle."""
+_LENSES = {
+    "none": ("none", ()),
+    "barrel": ("plumb_bob", (-0.28, 0.09, 0.0004, -0.0006, 0.0)),
+}
+_MARK = (214, 214, 206)
+_SKY = (186, 200, 214)
+_CELL = 0.06
+"""Size of a texture's cell on the ground, m."""
+_TILE = 512
+"""Cells of a texture before it is mirrored."""
+
+
+@dataclass(frozen=True, slots=True)
+class RoadSceneParameters:
+    """Parameters of the road in perspective."""
+
+    speed: float = parameter(
+        70.0, "faster vehicles move farther between two frames, and the video gets shorter",
+        minimum=20.0, maximum=130.0, unit="km/h",
+    )  # fmt: skip
+    vehicle: str = parameter("car", "the kind of vehicle that is followed", choices=_VEHICLES)
+    heading: str = parameter(
+        "coming",
+        "coming vehicles grow in the image, going ones shrink",
+        choices=("coming", "going"),
+    )
+    mount: str = parameter(
+        "gantry", "over the road, or on a mast beside it that shows vehicles from the side",
+        choices=("gantry", "mast"),
+    )  # fmt: skip
+    lens: str = parameter("none", "barrel bends straight lines outwards", choices=_LENSES)
+    noise: float = parameter(
+        2.0, "more makes histograms differ from frame to frame",
+        minimum=0.0, maximum=60.0, unit="levels of 255",
+    )  # fmt: skip
+    frame_rate: float = parameter(
+        25.0, "more frames on the same way", minimum=5.0, maximum=240.0, unit="frames/s"
+    )
+
+
+def road(parameters: RoadSceneParameters, seed: int) -> Scene:
+    """Make the scene."""
+    rng = stream(seed, "road in perspective")
+    camera = camera_of(parameters, seed)
+    step = parameters.speed / KMH / parameters.frame_rate
+    count = min(int((FAR - NEAR) / step) + 1, LONGEST)
+    shift = float(rng.uniform(-0.3, 0.3))
+    coming = parameters.heading == "coming"
+    start, way = (NEAR + (count - 1) * step, -step) if coming else (NEAR, step)
+    target = _vehicle(parameters.vehicle, (shift, start), way, camera, rng)
+    others = _others(way, camera, rng)
+    return Scene(
+        name="road",
+        width=WIDTH,
+        height=HEIGHT,
+        frame_rate=parameters.frame_rate,
+        frame_count=count,
+        backdrop=lambda: _backdrop(camera, stream(seed, "ground")),
+        actors=(*others, *target),
+        target=len(others) + 1,
+        camera=Camera(parameters.noise, seed),
+    )
+
+
+def camera_of(parameters: RoadSceneParameters, seed: int) -> RoadCamera:
+    """Return the camera of the scene of this seed."""
+    rng = stream(seed, "camera over a road")
+    model, coefficients = _LENSES[parameters.lens]
+    focal = float(rng.uniform(950, 1050))
+    lens = Lens((focal, focal), (WIDTH / 2 - 0.5, HEIGHT / 2 - 0.5), model, coefficients)
+    if parameters.mount == "gantry":
+        place = (float(rng.uniform(-3, 3)), 0.0, float(rng.uniform(6.5, 9)))
+        return RoadCamera(lens, looking(place, (0.0, float(rng.uniform(30, 34)))))
+    side = float(rng.choice([-1.0, 1.0]))
+    place = (side * float(rng.uniform(10, 13)), 4.0, float(rng.uniform(7, 10)))
+    return RoadCamera(lens, looking(place, (0.0, float(rng.uniform(34, 38)))))
+
+
+def _vehicle(
+    kind: str,
+    start: tuple[float, float],
+    step: float,
+    camera: RoadCamera,
+    rng: np.random.Generator,
+) -> tuple[Actor, Actor]:
+    """Make a vehicle that is at `start` in frame 0 and moves by `step` along y, m per frame."""
+    maker, axles = _VEHICLES[kind]
+    faces = maker(PAINTS[int(rng.integers(len(PAINTS)))])
+    drive: Drive = lambda frame: (start[0], start[1] + step * frame)  # noqa: E731 - one expression
+    heading = math.copysign(math.pi / 2, step)
+    return RoadVehicle(faces, axles, heading, drive, camera).actors()
+
+
+def _others(way: float, camera: RoadCamera, rng: np.random.Generator) -> list[Actor]:
+    """Make the vehicles of the other lanes, far to near: they never hide the target."""
+    first = FAR if way < 0 else NEAR
+    places = [(lane, first + float(rng.uniform(-10, 10))) for lane in (LANES[0], LANES[2])]
+    actors: list[Actor] = []
+    for place in sorted(places, key=lambda place: -place[1]):
+        kind = list(_VEHICLES)[int(rng.integers(len(_VEHICLES)))]
+        pace = way * float(rng.uniform(0.8, 1.2))
+        actors += _vehicle(kind, place, pace, camera, rng)
+    return actors
+
+
+def _backdrop(camera: RoadCamera, rng: np.random.Generator) -> Image:
+    """Draw the ground as the mean of two by two points in each pixel."""
+    tar, green = asphalt((_TILE, _TILE), rng), grass((_TILE, _TILE), rng)
+    plane, total = camera.plane, np.zeros((HEIGHT, WIDTH, 3))
+    for down in (0.25, 0.75):
+        for right in (0.25, 0.75):
+            rows, columns = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.0
+            pixels = np.stack([columns + right, rows + down], axis=-1)
+            ideal = plane.ideal(pixels)
+            ground = plane.homography.to_road(ideal)
+            below = (plane.homography.nearness(ideal) > 1e-3)[..., np.newaxis]
+            total += np.where(below, _ground(np.where(below, ground, 0.0), tar, green), _SKY)
+    return (total / 4).astype(np.float32)
+
+
+def _ground(points: Array, tar: Image, green: Image) -> Array:
+    """Colour of road points (…, 2)."""
+    x, y = np.moveaxis(points, -1, 0)
+    edge = 1.5 * LANE_WIDTH
+    colour = np.where((np.abs(x) < edge + 1)[..., np.newaxis], _sampled(tar, x, y),
+                      _sampled(green, x, y))  # fmt: skip
+    dashed = (np.abs(np.abs(x) - LANE_WIDTH / 2) < 0.07) & (y % 12 < 4)
+    solid = np.abs(np.abs(x) - edge) < 0.09
+    return np.where((dashed | solid)[..., np.newaxis], _MARK, colour)
+
+
+def _sampled(tile: Image, x: Array, y: Array) -> Image:
+    """Look a texture up at road points; it goes on mirrored."""
+    columns, rows = (
+        np.abs((np.floor(place / _CELL).astype(np.intp) % (2 * _TILE)) - _TILE) % _TILE
+        for place in (x, y)
+    )
+    sampled: Image = tile[rows, columns]
+    return sampled
