@@ -35,9 +35,8 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
+from vehicle_pf_tracker.image.partial_fourier import PartialFourier, Spectrum, upsampled
 
-Spectrum: TypeAlias = npt.NDArray[np.complex64]
-"""Half spectrum of cells, (channels, n, n // 2 + 1)."""
 Response: TypeAlias = npt.NDArray[np.float32]
 """Filter response by [y, x], its middle at the patch's centre; 1 is the ideal peak."""
 
@@ -59,11 +58,14 @@ class FilterWeights:
     ----------
     cells : (channels, n, n) array of float32
         The weights, zero outside the target.
+    target : (channels, rows, columns) array of float32
+        Those of the target's cells.
     spectrum : (channels, n, n // 2 + 1) array of complex64
         Their half spectrum.
     """
 
     cells: CellFeatures
+    target: CellFeatures
     spectrum: Spectrum
 
 
@@ -88,10 +90,10 @@ class CorrelationFilter:
         self._label = half_spectrum(np.fft.ifftshift(label).astype(np.float32))
         from_middle = np.abs(np.arange(cells) - (cells - 1) / 2)
         inside = (from_middle[:, np.newaxis] <= target[1] / 2) & (from_middle <= target[0] / 2)
-        # Rows without any weight need no transform along x.
-        rows = np.flatnonzero(inside.any(axis=1))
+        rows, columns = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
         self._rows = slice(int(rows[0]), int(rows[-1]) + 1)
-        self._outside = ~inside[self._rows]
+        self._columns = slice(int(columns[0]), int(columns[-1]) + 1)
+        self._target = PartialFourier(cells, self._rows, self._columns)
         window = np.hanning(cells + 2)[1:-1]
         self._window = np.outer(window, window).astype(np.float32)
         self._down = (-2j * np.pi * np.fft.fftfreq(cells))[:, np.newaxis]
@@ -142,35 +144,36 @@ class CorrelationFilter:
             # (x x^H + places * total) f = places * right, by Sherman and Morrison.
             share = (conjugate * right).sum(axis=0) / (power + places * total)
             free = (right - spectrum * share) / total
-            cells = self._confined(free + multiplier)
-            confined = self._spectrum_of_rows(cells)
+            cells = self._target.cells_of(free + multiplier)
+            confined = self._target.spectrum_of(cells)
             if step < steps - 1:
                 multiplier += free - confined
                 multiplier *= np.float32(1 / growth)
                 penalty *= growth
                 right = wanted + np.float32(penalty) * (confined - multiplier)
         weights = np.zeros((len(cells), self._cells, self._cells), np.float32)
-        weights[:, self._rows] = cells
-        return FilterWeights(weights, confined)
-
-    def _confined(self, spectrum: Spectrum) -> CellFeatures:
-        """Rows of the cells of a spectrum that the target covers, zero outside the target."""
-        rows = np.fft.ifft(spectrum, axis=1)[:, self._rows]
-        cells = np.asarray(np.fft.irfft(rows, self._cells, axis=2), np.float32)
-        cells[:, self._outside] = 0
-        return cells
-
-    def _spectrum_of_rows(self, cells: CellFeatures) -> Spectrum:
-        """Half spectrum of cells that are zero outside these rows."""
-        shape = len(cells), self._cells, self._cells // 2 + 1
-        rows = np.zeros(shape, np.complex64)
-        rows[:, self._rows] = np.fft.rfft(cells, axis=2)
-        return np.asarray(np.fft.fft(rows, axis=1), np.complex64)
+        weights[:, self._rows, self._columns] = cells
+        return FilterWeights(weights, cells, confined)
 
     def respond(self, spectrum: Spectrum) -> Response:
         """Respond to cells (half spectrum), at `UPSAMPLING` places per cell."""
         assert self.weights is not None, "train the filter first"
-        return _upsampled(spectrum, self.weights.spectrum, self._cells)
+        return _correlated(spectrum, self.weights.spectrum)
+
+    @property
+    def extent(self) -> int:
+        """Cells along the longer side of the target; even."""
+        assert self.weights is not None, "train the filter first"
+        return max(int(side) for side in self.weights.target.shape[1:])
+
+    def respond_in_middle(self, features: CellFeatures) -> float:
+        """Respond to the cells (channels, m, m) of a smaller patch at its centre only; m even."""
+        assert self.weights is not None, "train the filter first"
+        margin = (self._cells - features.shape[1]) // 2
+        rows = slice(self._rows.start - margin, self._rows.stop - margin)
+        columns = slice(self._columns.start - margin, self._columns.stop - margin)
+        seen = features[:, rows, columns] * self._window[self._rows, self._columns]
+        return float(np.vdot(seen, self.weights.target))
 
     def respond_wide(self, features: CellFeatures) -> Response:
         """Respond to the cells (channels, m, m) of a larger patch, m even and above n."""
@@ -178,7 +181,7 @@ class CorrelationFilter:
         size = features.shape[1]
         margin = (size - self._cells) // 2
         padded = np.pad(self.weights.cells, ((0, 0), (margin, margin), (margin, margin)))
-        return _upsampled(half_spectrum(features), half_spectrum(padded), size)
+        return _correlated(half_spectrum(features), half_spectrum(padded))
 
 
 def half_spectrum(cells: npt.NDArray[np.float32]) -> Spectrum:
@@ -191,11 +194,6 @@ def cells_of(spectrum: Spectrum, size: int) -> CellFeatures:
     return np.asarray(np.fft.irfft2(spectrum, s=(size, size)), np.float32)
 
 
-def _upsampled(spectrum: Spectrum, weights: Spectrum, size: int) -> Response:
-    """Correlate and sum over channels; zeros in the spectrum interpolate between cells."""
-    product = (spectrum * weights.conj()).sum(axis=0)
-    fine, half = size * UPSAMPLING, size // 2
-    padded = np.zeros((fine, fine // 2 + 1), np.complex64)
-    padded[:half, :half] = product[:half, :half]
-    padded[fine - half :, :half] = product[size - half :, :half]
-    return np.asarray(np.fft.fftshift(cells_of(padded, fine)) * np.float32(UPSAMPLING**2))
+def _correlated(spectrum: Spectrum, weights: Spectrum) -> Response:
+    """Correlate and sum over channels."""
+    return upsampled((spectrum * weights.conj()).sum(axis=0), UPSAMPLING)

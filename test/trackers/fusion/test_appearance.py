@@ -115,11 +115,17 @@ def test_a_wrong_size_answers_less():
     appearance = learnt()
     view_at(appearance, frame(), PLACE)
     answers = [
-        appearance.peak(appearance.patch(frame(), PLACE, factor * SIZE))
+        appearance.response_at(frame(), PLACE, factor * SIZE)
         for factor in (0.85, 0.93, 1.0, 1.08, 1.18)
     ]
     assert np.argmax(answers) == 2
     assert answers == sorted(answers[:3]) + sorted(answers[3:], reverse=True)
+
+
+def test_the_response_at_a_box_is_that_of_the_whole_view_there():
+    appearance = learnt()
+    view = view_at(appearance, frame(), PLACE)
+    assert appearance.response_at(frame(), PLACE, SIZE) == pytest.approx(view.at(PLACE), abs=0.02)
 
 
 @pytest.mark.parametrize("away", [2.0, 14.0], ids=["shifted cells", "measured again"])
@@ -188,6 +194,6 @@ def test_an_image_without_any_contrast_gives_finite_responses(level, colour):
     appearance.learn_first(appearance.patch(blank, np.array([80.0, 60.0]), SIZE))
     view = view_at(appearance, blank, (80, 60))
     assert np.isfinite(view.response).all()
-    assert np.isfinite(appearance.peak(view.patch))
+    assert np.isfinite(appearance.response_at(blank, np.array([80.0, 60.0]), SIZE))
     appearance.learn(blank, view, np.array([80.0, 60.0]), SIZE, 5.0)
     assert np.isfinite(view_at(appearance, blank, (80, 60)).response).all()

@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.canonical_patch import cut_patch
+from vehicle_pf_tracker.trackers.fusion import surface_points
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 
 SIZE = np.array([40.0, 40.0])
@@ -117,6 +118,38 @@ def test_an_occluder_ends_the_points_that_it_covers(left, low, high):
     assert survival == drive.points.survival
 
 
+@pytest.mark.parametrize("degrees", [20, -40])
+def test_the_turn_of_places_is_found_among_strays(degrees):
+    places = surface_points._grid(6, 0.4)
+    angle = np.radians(degrees)
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    moved = places @ turn
+    moved[:4] += 0.5
+    found = moved - places @ surface_points._turn(places, moved)
+    assert np.hypot(*found[4:].T).max() < 0.12
+    assert np.hypot(*found[:4].T).min() > 0.4
+
+
+def test_few_places_hardly_turn():
+    places = np.array([[0.1, 0.1], [0.12, 0.1]])
+    assert surface_points._turn(places, 2 * places) == pytest.approx(np.eye(2), abs=0.1)
+
+
+def test_points_of_a_turning_vehicle_survive():
+    """Four degrees a frame: after ten frames its corners are a quarter of the side away."""
+    points, position = SurfacePoints(), START
+    for frames in range(11):
+        matrix = cv2.getRotationMatrix2D((float(START[0]), float(START[1])), 4.0 * frames, 1.0)
+        picture = cv2.warpAffine(ROAD, matrix, ROAD.shape[1::-1])
+        patch = patch_of(picture, position)
+        if frames:
+            survival = points.track(patch, np.zeros(2), position, SIZE)
+        points.renew(position, SIZE)
+        points.keep(patch)
+    assert survival > 0.9
+    assert points._latest > 0.6
+
+
 def test_what_stays_behind_with_a_standing_part_ends():
     """Where the box leaves its points behind, they hold on to what is not the vehicle."""
     drive = Drive()
@@ -197,6 +230,15 @@ def test_a_part_that_moves_before_a_standing_background_is_found():
 
 def test_a_standing_vehicle_has_no_first_motion():
     assert first_motion(frame(START), frame(START)) is None
+
+
+def test_noise_of_a_magnified_vehicle_is_no_first_motion():
+    """A px of the frame is 2.6 canonical ones."""
+    small, move = np.array([20.0, 12.0]), np.array([1.0, 0.0])
+    before, after = frame(START), frame(START + move)
+    assert first_motion(before, after, SIZE) is None
+    assert first_motion(before, after, small) is None
+    assert first_motion(before, frame(START + 3 * move), small) is not None
 
 
 def test_points_that_disagree_give_no_first_motion():

@@ -47,9 +47,9 @@ MAGNITUDE_OF.flags.writeable = False
 def _direction_histograms(
     grey: Grey, direction_of: npt.NDArray[np.uint8], magnitude_of: npt.NDArray[np.float32]
 ) -> npt.NDArray[np.float32]:
-    """Sum magnitudes by cell and direction, one cell more on each side, (r + 2, c + 2, 18)."""
+    """Sum magnitudes by direction and cell, one cell more on each side, (18, r + 2, c + 2)."""
     height, width = grey.shape
-    cells = np.zeros((height // CELL + 2, width // CELL + 2, DIRECTIONS), np.float32)
+    cells = np.zeros((DIRECTIONS, height // CELL + 2, width // CELL + 2), np.float32)
     for y in range(1, height - 1):
         place_y = (y + 0.5) / CELL + 0.5
         row = int(place_y)
@@ -62,59 +62,77 @@ def _direction_histograms(
             column = int(place_x)
             right = np.float32(place_x - column)
             upper, lower = (1 - low) * magnitude, low * magnitude
-            cells[row, column, o] += (1 - right) * upper
-            cells[row, column + 1, o] += right * upper
-            cells[row + 1, column, o] += (1 - right) * lower
-            cells[row + 1, column + 1, o] += right * lower
+            cells[o, row, column] += (1 - right) * upper
+            cells[o, row, column + 1] += right * upper
+            cells[o, row + 1, column] += (1 - right) * lower
+            cells[o, row + 1, column + 1] += right * lower
     return cells
 
 
-@compiled(
-    numba.void(numba.types.Array(numba.float32, 3, "C"), numba.types.Array(numba.float32, 3, "C"))
-)
-def _normalise(  # noqa: C901 - loops over cells, directions and neighbourhoods, compiled as one
-    cells: npt.NDArray[np.float32], features: CellFeatures
-) -> None:
-    """Write the channels of the inner cells."""
-    rows, columns = features.shape[1], features.shape[2]
+@compiled(numba.types.Array(numba.float32, 3, "C")(numba.types.Array(numba.float32, 3, "C")))
+def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+    """Inverse norms of the four neighbourhoods of the inner cells, (4, r, c)."""
+    rows, columns = cells.shape[1] - 2, cells.shape[2] - 2
     energy = np.zeros((rows + 2, columns + 2), np.float32)
-    for y in range(rows + 2):
-        for x in range(columns + 2):
-            # Beyond the border the outermost cell is repeated.
-            from_y, from_x = min(max(y, 1), rows), min(max(x, 1), columns)
-            for o in range(_HALF):
-                value = cells[from_y, from_x, o] + cells[from_y, from_x, o + _HALF]
+    for y in range(1, rows + 1):
+        for o in range(_HALF):
+            for x in range(1, columns + 1):
+                value = cells[o, y, x] + cells[o + _HALF, y, x]
                 energy[y, x] += value * value
-    scale, texture = np.empty(4, np.float32), np.empty(4, np.float32)
-    limit = np.float32(TRUNCATION)
+    # Beyond the border the outermost cell is repeated.
+    energy[1:-1, 0], energy[1:-1, -1] = energy[1:-1, 1], energy[1:-1, -2]
+    energy[0], energy[-1] = energy[1], energy[-2]
+    scales = np.empty((4, rows, columns), np.float32)
+    for k in range(4):
+        for y in range(rows):
+            top, left = y + k // 2, k % 2
+            for x in range(columns):
+                block = energy[top, left + x] + energy[top, left + x + 1]
+                block += energy[top + 1, left + x] + energy[top + 1, left + x + 1]
+                scales[k, y, x] = np.float32(1) / np.sqrt(block + np.float32(NOISE_ENERGY))
+    return scales
+
+
+@compiled(
+    numba.void(
+        numba.types.Array(numba.float32, 3, "C"), numba.types.Array(numba.float32, 3, "C"),
+        numba.types.Array(numba.float32, 3, "C"),
+    )
+)  # fmt: skip
+def _normalise(
+    cells: npt.NDArray[np.float32], scales: npt.NDArray[np.float32], features: CellFeatures
+) -> None:
+    """Write the channels of the inner cells; the inner loops, along x, are vectorised."""
+    rows, columns = features.shape[1], features.shape[2]
+    limit, half = np.float32(TRUNCATION), np.float32(0.5)
+    texture = np.empty((4, columns), np.float32)
     for y in range(rows):
-        for x in range(columns):
-            for k in range(4):
-                top, left = y + k // 2, x + k % 2
-                block = energy[top, left] + energy[top, left + 1]
-                block += energy[top + 1, left] + energy[top + 1, left + 1]
-                scale[k] = np.float32(1) / np.sqrt(block + np.float32(NOISE_ENERGY))
-                texture[k] = 0
-            for o in range(DIRECTIONS):
-                total = np.float32(0)
-                for k in range(4):
-                    cut = min(cells[y + 1, x + 1, o] * scale[k], limit)
-                    total += cut
-                    texture[k] += cut
-                features[o, y, x] = np.float32(0.5) * total
-            for o in range(_HALF):
-                value = cells[y + 1, x + 1, o] + cells[y + 1, x + 1, o + _HALF]
-                total = np.float32(0)
-                for k in range(4):
-                    total += min(value * scale[k], limit)
-                features[DIRECTIONS + o, y, x] = np.float32(0.5) * total
-            for k in range(4):
-                features[DIRECTIONS + _HALF + k, y, x] = np.float32(TEXTURE_GAIN) * texture[k]
+        texture[:] = 0
+        for o in range(DIRECTIONS):
+            for x in range(columns):
+                value = cells[o, y + 1, x + 1]
+                a, b = min(value * scales[0, y, x], limit), min(value * scales[1, y, x], limit)
+                c, d = min(value * scales[2, y, x], limit), min(value * scales[3, y, x], limit)
+                features[o, y, x] = half * (((a + b) + c) + d)
+                texture[0, x] += a
+                texture[1, x] += b
+                texture[2, x] += c
+                texture[3, x] += d
+        for o in range(_HALF):
+            for x in range(columns):
+                value = cells[o, y + 1, x + 1] + cells[o + _HALF, y + 1, x + 1]
+                a, b = min(value * scales[0, y, x], limit), min(value * scales[1, y, x], limit)
+                c, d = min(value * scales[2, y, x], limit), min(value * scales[3, y, x], limit)
+                features[DIRECTIONS + o, y, x] = half * (((a + b) + c) + d)
+        for k in range(4):
+            for x in range(columns):
+                features[DIRECTIONS + _HALF + k, y, x] = np.float32(TEXTURE_GAIN) * texture[k, x]
 
 
 def gradient_cells(grey: Grey) -> CellFeatures:
     """Compute the channels of every whole cell, (31, r, c); `grey` is contiguous."""
     rows, columns = grey.shape[0] // CELL, grey.shape[1] // CELL
     features = np.empty((GRADIENT_CHANNELS, rows, columns), np.float32)
-    _normalise(_direction_histograms(grey, DIRECTION_OF, MAGNITUDE_OF), features)
+    cells = _direction_histograms(grey, DIRECTION_OF, MAGNITUDE_OF)
+    _normalise(cells, _scales(cells), features)
     return features

@@ -30,10 +30,10 @@ from vehicle_pf_tracker.image.correlation_filter import (
     UPSAMPLING,
     CorrelationFilter,
     Response,
-    Spectrum,
 )
 from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures
 from vehicle_pf_tracker.image.kernels.interface import Kernels
+from vehicle_pf_tracker.image.partial_fourier import Spectrum
 
 _CELLS = 32
 """Cells along each side of a patch; a power of two for the Fourier transform."""
@@ -53,6 +53,8 @@ wrapped around was faded out."""
 _LEAST_USUAL = 1e-3
 """Least usual response: where nothing was learnt, as on a flat image, no ratio may become one of
 zeros."""
+_RIM = 1
+"""Cells around the target that are measured with it: their gradients normalise its outermost."""
 _COLOURS = 3
 _HUE_GAIN = 4.0
 """Weight of Lab's a and b. Paint spans some 20 of their 100 units: unweighted, a grey car answers
@@ -87,6 +89,11 @@ class View:
         last = len(self.response) - 1
         exact = (positions - self.patch.centre) * self.steps + len(self.response) / 2
         return np.clip(np.rint(exact), 0, last).astype(np.intp)
+
+    def at(self, position: Array) -> float:
+        """Response at the place nearest to a position in px."""
+        column, row = self.places(position).tolist()
+        return float(self.response[row, column])
 
     def peak_near(self, position: Array, reach: int) -> tuple[Array, float]:
         """Find the peak within `reach` places of a position: its position in px, and height."""
@@ -154,10 +161,11 @@ class Appearance:
             self.usual_response = max(float(response.max()), _LEAST_USUAL)
         return View(patch, spectrum, response / np.float32(self.usual_response))
 
-    def peak(self, patch: Patch) -> float:
-        """Largest response to a patch, relative to the usual one."""
-        response = self._filter.respond(self._filter.spectrum(self._features(patch)))
-        return float(response.max()) / self.usual_response
+    def response_at(self, frame: Frame, position: Array, size: Array) -> float:
+        """Response to a box of this centre and size (px), relative to the usual one."""
+        side = (self._filter.extent + 2 * _RIM) * CELL
+        patch = cut_patch(frame, position, self._target / size, side)
+        return self._filter.respond_in_middle(self._features(patch)) / self.usual_response
 
     def learn_first(self, patch: Patch) -> None:
         """Train the filter on the first patch, in whose middle the target is."""

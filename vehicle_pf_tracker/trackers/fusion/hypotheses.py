@@ -102,6 +102,11 @@ class Hypotheses:
         variance = self.weights @ (self.positions - self.mean) ** 2
         return float(np.sqrt(variance.max()))
 
+    def narrowed(self, centre: Array, share: float) -> Hypotheses:
+        """Draw positions towards `centre`, and velocities towards zero, to a share of theirs."""
+        positions = centre + share * (self.positions - centre)
+        return replace(self, positions=positions, velocities=share * self.velocities)
+
     def driven(
         self, rng: np.random.Generator, elapsed: float, sigmas: tuple[float, float],
         *, across: float = 1.0,

@@ -29,7 +29,7 @@ so that both sides together have every second turn."""
 
 
 def searched_size(
-    size: Array, turn: int, at_size: float, peak: Callable[[Array], float],
+    size: Array, turn: int, peak: Callable[[Array], float],
     parameters: SizeParameters,
 ) -> Array:  # fmt: skip
     """Move the size towards the vertex of the response over three sizes.
@@ -40,10 +40,8 @@ def searched_size(
         Width and height, px.
     turn : int
         Number of the frame, which decides the direction that is tried.
-    at_size : float
-        Response at `size`.
     peak : callable
-        Response at another size.
+        Response at a size.
     """
     direction = np.array(_DIRECTIONS[turn % len(_DIRECTIONS)])
     together = direction.all()
@@ -51,7 +49,7 @@ def searched_size(
     if not parameters.step or not gain:
         return size
     factor = (1 + parameters.step) ** direction
-    smaller, larger = peak(size / factor), peak(size * factor)
+    at_size, smaller, larger = peak(size), peak(size / factor), peak(size * factor)
     bend = smaller + larger - 2 * at_size
     if bend < -1e-6 * at_size:
         steps = min(max(0.5 * (smaller - larger) / bend, -1.0), 1.0)

@@ -39,7 +39,13 @@ _SEEDED_EVERY = 5
 _OLDEST = 10
 """Age in frames at which a set ends: two sets overlap, so that one is always of judging age."""
 _STRAYED = 0.2
-"""Distance from its first place in the box, of the size, at which a point has left the vehicle."""
+"""Distance from its place in the box, which turns with the others, of the size, from which on a
+point has left the vehicle."""
+_TURN_FITS = 2
+"""Fits of the turn: one for all, and one in which those that strayed from it count less."""
+_TURN_INERTIA = 0.3
+"""Resistance of the turn's fit, as the sum of the squared places of five points: the few that an
+occluder leaves must not turn all."""
 _ROUND_TRIP_PX = 1.0
 """Largest error in canonical px of a point tracked forth and back (Kalal et al. 2010)."""
 _HEALTHY = 0.6
@@ -61,7 +67,8 @@ _FIRST_GRID = 10
 _FIRST_FLOW = {"winSize": (13, 13), "maxLevel": 3}
 """The first step knows no velocity, hence larger windows and more pyramid levels."""
 _FIRST_MOVED_PX = 1.5
-"""Motion in canonical px above which a point moves against the background."""
+"""Motion in canonical px, and least in px of the frame, above which a point moves against the
+background: less is the error of the camera's motion, or noise that was magnified."""
 _FIRST_FEWEST = 8
 """Fewest points that move alike for a first velocity: a twelfth of the box."""
 _FIRST_ALIKE_PX = 2.0
@@ -111,13 +118,13 @@ class SurfacePoints:
         """
         previous = self._previous
         assert previous is not None, "keep the first patch before"
-        grid = np.linspace(-0.45, 0.45, _FIRST_GRID)
-        places = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2)
+        places = _grid(_FIRST_GRID, 0.45)
         start = (places * size * previous.zoom + previous.side / 2 - 0.5).astype(np.float32)
         start = start[:, np.newaxis]
         end, found = _flow(previous, patch, start, None, _FIRST_FLOW)
         moves = (end - start)[found, 0].astype(np.float64)
-        moves = moves[np.hypot(moves[:, 0], moves[:, 1]) > _FIRST_MOVED_PX]
+        least = _FIRST_MOVED_PX * max(float(patch.zoom.max()), 1.0)
+        moves = moves[np.hypot(moves[:, 0], moves[:, 1]) > least]
         if len(moves) < _FIRST_FEWEST:
             return None
         alike = np.linalg.norm(moves[:, np.newaxis] - moves, axis=2) < _FIRST_ALIKE_PX
@@ -148,7 +155,9 @@ class SurfacePoints:
         shares = []
         for points in self._sets:
             points.age += 1
-            strayed = (points.positions - position) / size - points.places
+            present = (points.positions - position) / size
+            turn = _turn(points.places[points.alive], present[points.alive])
+            strayed = present - points.places @ turn
             points.alive &= np.hypot(strayed[:, 0], strayed[:, 1]) < _STRAYED
             if points.age >= _SEEDED_EVERY:
                 shares.append(float(points.alive.mean()))
@@ -171,8 +180,7 @@ class SurfacePoints:
         self._sets = [points for points in self._sets if points.age < _OLDEST]
         youngest = min((points.age for points in self._sets), default=None)
         if youngest is None or (youngest >= _SEEDED_EVERY and self.survival > _HEALTHY):
-            grid = np.linspace(-_REACH, _REACH, _GRID)
-            places = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2)
+            places = _grid(_GRID, _REACH)
             alive = np.ones(len(places), bool)
             self._sets.append(_PointSet(places, position + places * size, alive))
 
@@ -197,6 +205,12 @@ class SurfacePoints:
             place += len(indices)
 
 
+def _grid(count: int, reach: float) -> Array:
+    """Square grid of places in the box, `reach` to each side of its centre."""
+    ends = np.linspace(-reach, reach, count)
+    return np.stack(np.meshgrid(ends, ends), axis=-1).reshape(-1, 2)
+
+
 def _flow(
     before: Patch, after: Patch, start: npt.NDArray[np.float32],
     guess: npt.NDArray[np.float32] | None, options: dict[str, object],
@@ -209,6 +223,20 @@ def _flow(
     error = np.linalg.norm(again - start, axis=2).ravel()
     good = (found.ravel() > 0) & (refound.ravel() > 0) & (error < _ROUND_TRIP_PX)
     return np.asarray(end, np.float32), np.asarray(good, np.bool_)
+
+
+def _turn(before: Array, after: Array) -> Array:
+    """Linear map (2, 2) that most places (N, 2) in the box have moved by: a vehicle that turns.
+
+    It has no shift, so that points which stay behind with an occluder do not fit into it.
+    """
+    turn = np.eye(2)
+    for _ in range(_TURN_FITS):
+        off = after - before @ turn
+        weighted = before / (1 + (off**2).sum(axis=1) / _STRAYED**2)[:, np.newaxis]
+        kept = _TURN_INERTIA * np.eye(2)
+        turn = np.linalg.solve(weighted.T @ before + kept, weighted.T @ after + kept)
+    return turn
 
 
 def _stretch(before: Array, after: Array, size: Array) -> Array:

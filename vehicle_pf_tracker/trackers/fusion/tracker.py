@@ -52,6 +52,8 @@ from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.visibility import (
     CLIMB_FREELY,
     CLIMB_ON_PATH,
+    STAY,
+    likeliest_peak,
     points_evidence,
     response_evidence,
 )
@@ -60,11 +62,6 @@ _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
 _WIDE_FROM = 0.5
 """Spread of the hypotheses, of the size, from which a wide patch is searched."""
-_PEAK_REACH = 6
-"""Places of the response around the mean within which its peak is the estimate: a third of the
-target's side."""
-_SAME_VEHICLE = 0.5
-"""Distance from the best hypothesis, of the size, within which others mean the same vehicle."""
 _STRONG = 0.8
 """Probability of visibility from which the size is followed."""
 _WEAK_RESPONSE = 0.6
@@ -77,6 +74,8 @@ _LEAST_SIDE, _LARGEST_SHARE = 3.0, 1.5
 """Bounds of the sides: px, and share of the image."""
 _NEW_VELOCITY = 3.0
 """Spread of the first velocities in units of the change per frame: none is known yet."""
+_MEASURED_SPREAD = 0.3
+"""Spread of the hypotheses after a first motion was measured, of the one before: about a px."""
 
 
 class FusionTracker(ParticleTracker[FusionParameters]):
@@ -90,6 +89,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._position = np.array(box.centre)
         self._velocity = np.zeros(2)
         self._frames = 0
+        self._set_off = False
         self._visible = True
         self._sightings = Sightings()
         self._points = SurfacePoints()
@@ -139,7 +139,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._frames += 1
         before = self._position
         self._move_with_camera(frame, elapsed)
-        self._on_path = not self._visible
+        self._set_off = False
         if self._frames == 1:
             self._take_first_motion(frame)
         left_image = self._predict(frame, elapsed)
@@ -186,9 +186,9 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         patch = self._appearance.patch(frame, self._position, self._learnt_size)
         move = self._points.first_motion(patch, self._size)
         if move is not None:
-            self._on_path = True
-            spread = self._particles.velocities / _NEW_VELOCITY
-            self._particles = replace(self._particles, velocities=move + spread)
+            self._set_off = True
+            known = self._particles.narrowed(self._position, _MEASURED_SPREAD)
+            self._particles = replace(known, velocities=known.velocities + move)
 
     def _predict(self, frame: Frame, elapsed: float) -> bool:
         """Drive all hypotheses on; tell whether their mean left the image."""
@@ -219,7 +219,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         wide = not self._visible and self._particles.spread > _WIDE_FROM * self._extent
         patch = self._appearance.patch(frame, self._particles.mean, self._learnt_size, wide=wide)
         view = self._appearance.view(patch)
-        climb = CLIMB_ON_PATH if self._on_path else CLIMB_FREELY
+        climb = CLIMB_FREELY if self._visible else CLIMB_ON_PATH
+        climb = STAY if self._set_off else climb
         positions, log_ratios = response_evidence(
             view, self._particles.positions, climb, self.parameters.visibility
         )
@@ -228,13 +229,10 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     def _locate(self, frame: Frame, view: View) -> tuple[Array, float]:
         """Peak of the response at the best of the visible hypotheses, and its height."""
-        votes = self._particles.weights * self._particles.visible
-        best = self._particles.positions[int(votes.argmax())]
-        apart = np.linalg.norm(self._particles.positions - best, axis=1)
-        votes = np.where(apart < _SAME_VEHICLE * self._extent, votes, 0.0)
-        mean = votes @ self._particles.positions / votes.sum()
-        reach = CLIMB_ON_PATH.reach if self._frames == 1 and self._on_path else _PEAK_REACH
-        position, response = view.peak_near(mean, reach)
+        if self._set_off:
+            position = self._kept_inside(frame, self._particles.positions.mean(axis=0))
+            return position, view.at(position)
+        position, response = likeliest_peak(view, self._particles, self._extent)
         return self._kept_inside(frame, position), response
 
     def _judge_points(self, patch: Patch, move: Array, position: Array) -> None:
@@ -256,7 +254,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._gather(frame, position, elapsed, again=again)
         surely = self._particles.probability_visible > _STRONG
         if surely and response > _WEAK_RESPONSE:
-            self._follow_size(frame, response, again=again)
+            self._follow_size(frame, again=again)
         self._sightings.add(self._position, self._size, response)
         if again:
             self._points.restart()
@@ -287,19 +285,16 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self._position = position
         self._velocity = self._particles.mean_velocity
 
-    def _follow_size(self, frame: Frame, response: float, *, again: bool) -> None:
+    def _follow_size(self, frame: Frame, *, again: bool) -> None:
         options = self.parameters.size
 
         def peak(size: Array) -> float:
-            patch = self._appearance.patch(frame, self._position, size * self._padding)
-            return self._appearance.peak(patch)
+            return self._appearance.response_at(frame, self._position, size * self._padding)
 
         size = self._size
         if not again and options.step and self._points.survival > _WHOLE:
             size = size * np.exp(options.points_gain * self._points.stretch)
-        self._size = self._bounded(
-            frame, searched_size(size, self._frames, response, peak, options)
-        )
+        self._size = self._bounded(frame, searched_size(size, self._frames, peak, options))
 
     def _learn_appearance(self, frame: Frame, view: View, response: float) -> None:
         """Train the filter, the less the less surely the vehicle is visible."""

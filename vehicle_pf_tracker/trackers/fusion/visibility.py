@@ -22,12 +22,19 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.hypotheses import Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
 
 _LARGEST_LOG_RATIO = 6.0
 """Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
 _HIGHEST_RESPONSE = 1.2
 """Response above which more of it tells nothing more."""
+
+_PEAK_REACH = 6
+"""Places of the response around the mean within which its peak is the estimate: a third of the
+target's side."""
+_SAME_VEHICLE = 0.5
+"""Distance from the best hypothesis, of the size, within which others mean the same vehicle."""
 
 
 class Climb(NamedTuple):
@@ -45,10 +52,10 @@ class Climb(NamedTuple):
     sigma: float
 
 
-CLIMB_FREELY, CLIMB_ON_PATH = Climb(5, 3.0), Climb(3, 1.0)
-"""Where the path is known better than the place it has to keep to it: while
-hidden, else all would gather at clutter; and after a first motion was measured, else a standing
-part of the first box would hold it."""
+CLIMB_FREELY, CLIMB_ON_PATH, STAY = Climb(5, 3.0), Climb(3, 1.0), Climb(0, 1.0)
+"""Where the path is known better than the place it has to keep to it: while hidden, else all would
+gather at clutter. A measured first motion is kept to exactly: a standing part of the first box
+answers better than the vehicle, and the filter cannot tell which of them it was shown."""
 
 
 def response_evidence(
@@ -83,6 +90,21 @@ def response_evidence(
     moves = np.column_stack([dx[best], dy[best]]) / view.steps
     log_ratios = ratios[np.arange(len(best)), best]
     return positions + moves, np.clip(log_ratios, -_LARGEST_LOG_RATIO, _LARGEST_LOG_RATIO)
+
+
+def likeliest_peak(view: View, particles: Hypotheses, extent: float) -> tuple[Array, float]:
+    """Peak of the response at the best of the visible hypotheses: its position in px, and height.
+
+    Parameters
+    ----------
+    extent : float
+        Geometric mean of the vehicle's sides, px.
+    """
+    votes = particles.weights * particles.visible
+    best = particles.positions[int(votes.argmax())]
+    apart = np.linalg.norm(particles.positions - best, axis=1)
+    votes = np.where(apart < _SAME_VEHICLE * extent, votes, 0.0)
+    return view.peak_near(votes @ particles.positions / votes.sum(), _PEAK_REACH)
 
 
 def points_evidence(survival: float, parameters: VisibilityParameters) -> float:
