@@ -59,7 +59,7 @@ BESIDE = {"reproduction", "benchmarks", "tools"}
 """Packages of the repository that are not installed, so that nothing may import them."""
 MESSAGES = {
     "builtin_interfaces", "diagnostic_msgs", "geometry_msgs", "lifecycle_msgs", "rcl_interfaces",
-    "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs",
+    "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "tf2_msgs", "vision_msgs",
 }  # fmt: skip
 ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", *MESSAGES}
 ON_A_ROBOT = {"rclpy", *MESSAGES, "numpy", "cv2", "yaml", "numba"}

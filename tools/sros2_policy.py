@@ -23,10 +23,14 @@ from vehicle_pf_tracker.trackers.registry import Variant
 PERMISSIONS: Mapping[str, tuple[str, ...]] = {
     'topics publish="ALLOW"': (
         "~/box",
+        "~/detection",
         "~/mode",
         "~/overlay",
         "~/particles",
+        "~/pose_with_covariance",
         "~/position",
+        "~/road_position",
+        "~/road_velocity",
         "~/transition_event",
         "~/velocity",
         "/diagnostics",
@@ -36,8 +40,12 @@ PERMISSIONS: Mapping[str, tuple[str, ...]] = {
     'topics subscribe="ALLOW"': (
         "~/clicked_point",
         "~/set_box",
+        "~/set_detection",
         "~/set_target",
         "/clock",
+        "/tf",
+        "/tf_static",
+        "camera_info",
         "image",
         "image/compressed",
     ),

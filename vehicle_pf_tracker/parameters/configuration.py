@@ -69,6 +69,11 @@ class NodeParameters:
         "Configure and activate at start-up; off waits for a lifecycle manager.",
         read_only=True,
     )
+    output_frame_suffix: str = parameter(
+        "",
+        "Appended to the images' frame_id in outputs that are in pixels (`_px`, for instance), so "
+        "that nothing takes them for metres; ~/mode and ~/overlay keep the images' own.",
+    )
     publish: PublishParameters = group(PublishParameters)
 
 

@@ -65,9 +65,12 @@ class Localisation:
         return self._parameters
 
     def reconfigure(self, parameters: RoadParameters) -> None:
-        """Take another mapping to the road; lens and pose from outside are awaited anew."""
-        self._parameters = parameters
-        self._lens, self._pose = parameters.lens, parameters.pose
+        """Take another mapping to the road; lens and pose that came from outside are kept."""
+        before, self._parameters = self._parameters, parameters
+        if not (before.from_camera_info and parameters.from_camera_info):
+            self._lens = parameters.lens
+        if not (before.from_tf and parameters.from_tf):
+            self._pose = parameters.pose
         self._make_follower()
 
     def set_lens(self, lens: Lens) -> None:

@@ -39,6 +39,8 @@ class Health:
         Targets that could not be used.
     last_rejection, last_refusal : str
         The reasons.
+    road : mapping
+        Place and speed on the road with the last estimate, by name; empty without a road.
     mode : str
         What the last `~/mode` said.
     """
@@ -48,6 +50,7 @@ class Health:
         self.images = self.rejected = self.dropped = self.refused_targets = 0
         self.last_rejection = self.last_refusal = ""
         self.mode = WAITING
+        self.road: Mapping[str, object] = {}
         self._mode_since = self._heard = self._reported = clock()
         self._images_reported = 0
         self._number: int | None = None
@@ -120,4 +123,5 @@ class Health:
             "refused targets": self.refused_targets,
             "last refused target": self.last_refusal,
             "time since last image (s)": round(now - self._heard, 1),
+            **self.road,
         }

@@ -20,13 +20,13 @@ from collections.abc import Mapping
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped, PolygonStamped, Vector3Stamped
-from rclpy.lifecycle import LifecycleNode, LifecyclePublisher
+from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image, PointCloud2
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.parameters.configuration import PublishParameters
+from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros.messages import (
     box_message,
     image_message,
@@ -35,8 +35,10 @@ from vehicle_pf_tracker.ros.messages import (
     position_message,
     velocity_message,
 )
+from vehicle_pf_tracker.ros.node.located_outputs import LocatedOutputs, in_frame, is_heard
 from vehicle_pf_tracker.ros.node.overlay import Overlay
 from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.localisation import Localisation
 
 _RELIABLE = QoSProfile(depth=10)
 _BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -64,6 +66,7 @@ class Outputs:
         self._box = create(PolygonStamped, "~/box", _RELIABLE)
         self._velocity = create(Vector3Stamped, "~/velocity", _RELIABLE)
         self._particles = create(PointCloud2, "~/particles", _BEST_EFFORT)
+        self._located = LocatedOutputs(node, _RELIABLE)
         self._picture = create(Image, "~/overlay", _BEST_EFFORT)
         self._mode = create(DiagnosticArray, "~/mode", _RELIABLE)
 
@@ -73,6 +76,7 @@ class Outputs:
             self._position, self._box, self._velocity, self._particles, self._picture, self._mode,
         ):  # fmt: skip
             self._node.destroy_lifecycle_publisher(publisher)
+        self._located.close()
 
     def discard_path(self) -> None:
         """Begin a new path in the overlay."""
@@ -82,26 +86,31 @@ class Outputs:
         self,
         header: Header,
         estimate: Estimate,
-        switches: PublishParameters,
+        own: NodeParameters,
+        localisation: Localisation,
         frame_period: float,
     ) -> None:
         """Publish where the vehicle is; `frame_period` in s makes px/frame to px/s."""
         self._overlay.follow(estimate)
-        if _is_heard(self._position):
+        switches = own.publish
+        if own.output_frame_suffix:
+            header = in_frame(header, header.frame_id + own.output_frame_suffix)
+        if is_heard(self._position):
             self._position.publish(position_message(header, estimate, self._kept_position))
-        if switches.box and _is_heard(self._box):
+        if switches.box and is_heard(self._box):
             self._box.publish(box_message(header, estimate))
-        if switches.velocity and _is_heard(self._velocity):
+        if switches.velocity and is_heard(self._velocity):
             self._velocity.publish(velocity_message(header, estimate, frame_period))
-        if switches.particles and _is_heard(self._particles):
+        if switches.particles and is_heard(self._particles):
             self._particles.publish(particles_message(header, estimate))
+        self._located.publish(header, estimate, localisation)
 
     def publish_overlay(
-        self, header: Header, frame: Frame, mode: str, estimate: Estimate | None
+        self, header: Header, frame: Frame, mode: str, estimate: Estimate | None, words: str = ""
     ) -> None:
-        """Publish the drawn-on image, if anybody looks."""
-        if _is_heard(self._picture):
-            picture = self._overlay.draw(frame, mode, estimate)
+        """Publish the drawn-on image with `words`, if anybody looks."""
+        if is_heard(self._picture):
+            picture = self._overlay.draw(frame, mode, estimate, words)
             self._picture.publish(image_message(header, picture))
 
     def publish_mode(
@@ -112,13 +121,9 @@ class Outputs:
         estimate: Estimate | None = None,
     ) -> None:
         """Publish the one `~/mode` of an image: the scalars of its estimate, and `values`."""
-        if not _is_heard(self._mode):
+        if not is_heard(self._mode):
             return
         name = f"{self._node.get_name()}: target"
         scalars = estimate.scalars() if estimate is not None else {}
         all_values = {**scalars, **values}
         self._mode.publish(mode_message(header, name, self._hardware_id, mode, all_values))
-
-
-def _is_heard(publisher: LifecyclePublisher) -> bool:
-    return bool(publisher.get_subscription_count())

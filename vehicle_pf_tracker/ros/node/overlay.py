@@ -51,8 +51,8 @@ class Overlay:
         """Add a position to the path."""
         self._path.append(estimate.position)
 
-    def draw(self, frame: Frame, mode: str, estimate: Estimate | None) -> Frame:
-        """Return a drawn-on copy of `frame`, contiguous."""
+    def draw(self, frame: Frame, mode: str, estimate: Estimate | None, more: str = "") -> Frame:
+        """Return a drawn-on copy of `frame`, contiguous; `more` is written after the mode."""
         picture = np.array(frame, order="C")
         thickness = max(1, round(min(frame_size(frame)) / 300))
         colour = _COLOURS.get(mode, _NEUTRAL)
@@ -64,7 +64,7 @@ class Overlay:
             corners = _pixels(np.asarray(estimate.box.corners))
             cv2.rectangle(picture, corners[0], corners[2], colour, thickness)
         words = mode if estimate is None else f"{mode} {estimate.confidence:.2f}"
-        _write(picture, words, colour, thickness)
+        _write(picture, f"{words}  {more}" if more else words, colour, thickness)
         return picture
 
 

@@ -34,6 +34,7 @@ from vehicle_pf_tracker.ros.node.health import Health
 from vehicle_pf_tracker.ros.node.images import SerializedImage, read_image
 from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
 from vehicle_pf_tracker.ros.node.outputs import Outputs
+from vehicle_pf_tracker.ros.node.stream_localisation import StreamLocalisation
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TargetError
@@ -64,6 +65,8 @@ class Stream:
         Of the last image that was used; None before the first.
     estimate : Estimate or None
         The last one; None while there is no target.
+    localisation : StreamLocalisation
+        Uncertainty of the estimates, and the road.
     """
 
     def __init__(
@@ -84,6 +87,7 @@ class Stream:
         self._loading = KernelLoading(configuration.tracker.kernels)
         self._asked: Box | None = None
         self._target_problem = ""
+        self.localisation = StreamLocalisation(variant.name, configuration.session.road)
         self.frame_id: str | None = None
         self.estimate: Estimate | None = None
         if not self.get_ready():
@@ -181,6 +185,8 @@ class Stream:
         """Take new parameters between two images, or when their kernels are loaded."""
         if configuration.session.target != self._configuration.session.target:
             self._target_problem = ""
+        if configuration.session.road != self._configuration.session.road:
+            self.localisation.reconfigure(configuration.session.road)
         self._configuration = configuration
         if configuration.tracker.kernels != self._loading.choice:
             self._loading = KernelLoading(configuration.tracker.kernels)
@@ -256,13 +262,17 @@ class Stream:
         if estimate is None and self._target_problem:
             events["reason"] = self._target_problem
         mode = estimate.mode.value if estimate is not None else WAITING
-        switches = self._configuration.node.publish
+        own, words = self._configuration.node, ""
         if estimate is not None:
             self._target_problem = ""
             period = session.tracker.frame_period
-            self._outputs.publish_estimate(header, estimate, switches, period)
-        if switches.overlay:
-            self._outputs.publish_overlay(header, frame, mode, estimate)
+            self.localisation.locate(estimate, header, frame, period)
+            self._outputs.publish_estimate(header, estimate, own, self.localisation, period)
+            words = self.localisation.words
+            self._health.road = self.localisation.values
+            events |= self._health.road
+        if own.publish.overlay:
+            self._outputs.publish_overlay(header, frame, mode, estimate, words)
         self._health.answered(mode, estimate.duration * 1e3 if estimate else None)
         self._outputs.publish_mode(header, mode, events, estimate)
 

@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from geometry_msgs.msg import PointStamped, PolygonStamped
 from sensor_msgs.msg import RegionOfInterest
@@ -33,7 +34,7 @@ def box_of_region(region: RegionOfInterest) -> Box:
     )
 
 
-def box_of_polygon(message: PolygonStamped, image_frame: str | None) -> Box:
+def box_of_polygon(message: PolygonStamped, image_frame: str | None, suffix: str = "") -> Box:
     """Return the upright box around the polygon's corners.
 
     Parameters
@@ -42,13 +43,15 @@ def box_of_polygon(message: PolygonStamped, image_frame: str | None) -> Box:
         In pixels of the image.
     image_frame : str or None
         The images' `frame_id`; None if none has come yet.
+    suffix : str
+        Addition to it in the node's own outputs, which may come back.
 
     Raises
     ------
     InputError
         If there are too few corners, one is not finite, or they are given in another frame.
     """
-    _check_frame_id("~/set_box", message.header, image_frame)
+    _check_frame_id("~/set_box", message.header, image_frame, suffix)
     corners = [(point.x, point.y) for point in message.polygon.points]
     if len(corners) < 2:
         raise InputError(
@@ -60,7 +63,9 @@ def box_of_polygon(message: PolygonStamped, image_frame: str | None) -> Box:
     return Box(left, top, right - left, bottom - top)
 
 
-def box_of_point(message: PointStamped, image_frame: str | None, like: Box | None) -> Box:
+def box_of_point(
+    message: PointStamped, image_frame: str | None, like: Box | None, suffix: str = ""
+) -> Box:
     """Return the box of the size of `like` around the point.
 
     Parameters
@@ -71,13 +76,15 @@ def box_of_point(message: PointStamped, image_frame: str | None, like: Box | Non
         The images' `frame_id`; None if none has come yet.
     like : Box or None
         The present box; None if there is none.
+    suffix : str
+        Addition to `image_frame` in the node's own outputs, which may come back.
 
     Raises
     ------
     InputError
         If the point is not finite or in another frame, or there is no box whose size to take.
     """
-    _check_frame_id("~/clicked_point", message.header, image_frame)
+    _check_frame_id("~/clicked_point", message.header, image_frame, suffix)
     _check_finite("~/clicked_point", message.point.x, message.point.y)
     if like is None:
         raise InputError(
@@ -87,8 +94,40 @@ def box_of_point(message: PointStamped, image_frame: str | None, like: Box | Non
     return Box.around((message.point.x, message.point.y), like.width, like.height)
 
 
-def _check_frame_id(topic: str, header: Header, image_frame: str | None) -> None:
-    if header.frame_id and image_frame is not None and header.frame_id != image_frame:
+_UPRIGHT = 1e-3
+"""Angle of a box that counts as upright, rad: over 1000 px it moves a corner by a pixel."""
+
+
+def box_of_detection(message: Any, image_frame: str | None, suffix: str = "") -> Box:
+    """Return the box of a vision_msgs/Detection2D.
+
+    Parameters
+    ----------
+    message : Detection2D
+        In pixels of the image.
+    image_frame : str or None
+        The images' `frame_id`; None if none has come yet.
+    suffix : str
+        Addition to it in the node's own outputs, which may come back.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite, the box is turned, or it is given in another frame.
+    """
+    topic, box = "~/set_detection", message.bbox
+    _check_frame_id(topic, message.header, image_frame, suffix)
+    centre = box.center.position.x, box.center.position.y
+    _check_finite(topic, *centre, box.center.theta, box.size_x, box.size_y)
+    if abs(box.center.theta) > _UPRIGHT:
+        raise InputError(
+            f"{topic} got a box turned by {box.center.theta:g} rad; boxes must be upright"
+        )
+    return Box.around(centre, float(box.size_x), float(box.size_y))
+
+
+def _check_frame_id(topic: str, header: Header, image_frame: str | None, suffix: str) -> None:
+    if image_frame is not None and header.frame_id not in ("", image_frame, image_frame + suffix):
         raise InputError(
             f"{topic} got a target in the frame {header.frame_id!r}; give it in pixels of the "
             f"image, with the image's frame_id {image_frame!r} or none"

@@ -28,15 +28,24 @@ from std_srvs.srv import Trigger
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.road.poses import PoseTree
+from vehicle_pf_tracker.ros.detections import detection_type
 from vehicle_pf_tracker.ros.messages import stamp_ns
+from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
 from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
 from vehicle_pf_tracker.ros.node.image_input import ImageInput, image_topic
 from vehicle_pf_tracker.ros.node.managed_node import ManagedNode
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, unknown_overrides
 from vehicle_pf_tracker.ros.node.stream import Stream
-from vehicle_pf_tracker.ros.node.target_messages import box_of_point, box_of_polygon, box_of_region
+from vehicle_pf_tracker.ros.node.target_messages import (
+    box_of_detection,
+    box_of_point,
+    box_of_polygon,
+    box_of_region,
+)
 from vehicle_pf_tracker.ros.rclpy_internals import missing
+from vehicle_pf_tracker.ros.road_messages import ImageLens
 from vehicle_pf_tracker.trackers.registry import Variant
 
 _POLL = 0.1
@@ -65,6 +74,7 @@ class TrackerNode(ManagedNode):
         self._stream: Stream | None = None
         self._outputs: Outputs | None = None
         self._target_inputs: list[Subscription] = []
+        self._cameras = CameraInputs(self, self._take_lens, self._take_poses)
         try:
             defaults = Configuration.of(variant)
             self._table = ParameterTable(self, defaults, self._check, self._reconfigure)
@@ -99,17 +109,23 @@ class TrackerNode(ManagedNode):
         source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
         self._warn_of(unknown_overrides(self, qos=True))
         self._diagnostics.listen_to(source)
+        self._cameras.open(self._table.configuration.session.road)
         self._target_inputs = [
             self.create_subscription(RegionOfInterest, "~/set_target", self._on_region, 10),
             self.create_subscription(PolygonStamped, "~/set_box", self._on_polygon, 10),
             self.create_subscription(PointStamped, "~/clicked_point", self._on_point, 10),
         ]
+        kind = detection_type()
+        if kind is not None:
+            wanted = self.create_subscription(kind, "~/set_detection", self._on_detection, 10)
+            self._target_inputs.append(wanted)
         self._is_told_ready = False
         self._await_kernels()
 
     def deactivate(self) -> None:
         """Close the inputs: an inactive node pays nothing for images."""
         self._diagnostics.cease()
+        self._cameras.close()
         while self._target_inputs:
             self.destroy_subscription(self._target_inputs.pop())
 
@@ -132,10 +148,28 @@ class TrackerNode(ManagedNode):
         self._set_target(lambda stream: box_of_region(message))
 
     def _on_polygon(self, message: PolygonStamped) -> None:
-        self._set_target(lambda stream: box_of_polygon(message, stream.frame_id))
+        self._set_target(lambda stream: box_of_polygon(message, stream.frame_id, self._suffix))
 
     def _on_point(self, message: PointStamped) -> None:
-        self._set_target(lambda stream: box_of_point(message, stream.frame_id, stream.box))
+        self._set_target(
+            lambda stream: box_of_point(message, stream.frame_id, stream.box, self._suffix)
+        )
+
+    def _on_detection(self, message: Any) -> None:
+        self._set_target(lambda stream: box_of_detection(message, stream.frame_id, self._suffix))
+
+    @property
+    def _suffix(self) -> str:
+        """Addition to the images' frame_id in outputs, which inputs may have too."""
+        return self._table.configuration.node.output_frame_suffix
+
+    def _take_lens(self, found: ImageLens) -> None:
+        if self._stream is not None:
+            self._stream.localisation.take_lens(found)
+
+    def _take_poses(self, tree: PoseTree) -> None:
+        if self._stream is not None:
+            self._stream.localisation.take_poses(tree)
 
     def _set_target(self, read: Callable[[Stream], Box]) -> None:
         if self._stream is None:
@@ -177,6 +211,8 @@ class TrackerNode(ManagedNode):
             self._stream.reconfigure(configuration)
             self._diagnostics.facts.update(self._stream.facts)
             self._poll.reset()
+        if self._diagnostics.source is not None:
+            self._cameras.open(configuration.session.road)
 
     def _warn_of_release(self) -> None:
         for loss in missing(self):

@@ -1,0 +1,217 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Road, uncertainty, camera_info and marked frames, through a running node."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import (
+    PointStamped,
+    PolygonStamped,
+    PoseWithCovarianceStamped,
+    Vector3Stamped,
+)
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import CameraInfo, Image
+from tracker_rig import HEIGHT, PERIOD_NS, SPEED, TARGET, WIDTH, Rig, on_target, road, values_of
+
+from vehicle_pf_tracker.ros.node import located_outputs
+
+pytestmark = pytest.mark.ros
+
+# Seen from above, 10 px to the metre.
+PAIRS = "0,0=0,0; 160,0=16,0; 160,120=16,12; 0,120=0,12"
+NODE = "/apf_tracker"
+KMH = SPEED / 10 / (PERIOD_NS * 1e-9) * 3.6
+
+
+@pytest.fixture
+def rig(bench):
+    return Rig(bench, on_target(road__pairs=PAIRS, road__frame_id="map"))
+
+
+def collect_all(bench):
+    kinds = {
+        "road_position": PointStamped,
+        "road_velocity": Vector3Stamped,
+        "pose_with_covariance": PoseWithCovarianceStamped,
+    }
+    return {name: bench.collect(kind, f"{NODE}/{name}") for name, kind in kinds.items()}
+
+
+def test_position_and_speed_on_the_road(bench, rig):
+    found = collect_all(bench)
+    for index, frame in enumerate(road(40)):
+        answer = rig.show_frame(frame, index)
+    values = values_of(answer)
+    position = rig.position_at(answer)
+    bench.wait_for(lambda: all(len(messages) == 40 for messages in found.values()))
+    place, velocity, pose = (messages[-1] for messages in found.values())
+    for message in (place, velocity, pose):
+        assert message.header.frame_id == "map"
+        assert message.header.stamp == answer.header.stamp
+    # The lower edge of the box is half its height below the position in the image.
+    expected = position.point.x / 10, (position.point.y + TARGET[3] / 2) / 10
+    assert (place.point.x, place.point.y, place.point.z) == pytest.approx((*expected, 0.0))
+    assert (pose.pose.pose.position.x, pose.pose.pose.position.y) == pytest.approx(expected)
+    assert velocity.vector.x * 3.6 == pytest.approx(KMH, rel=0.1)
+    assert float(values["speed_kmh"]) == pytest.approx(KMH, rel=0.1)
+    assert float(values["road_x"]) == place.point.x
+    assert float(values["speed_sd_kmh"]) > 0
+    assert values["road"] == "ok"
+
+
+def test_pose_is_in_pixels_without_a_road(bench):
+    rig = Rig(bench, on_target())
+    poses = bench.collect(PoseWithCovarianceStamped, f"{NODE}/pose_with_covariance")
+    places = bench.collect(PointStamped, f"{NODE}/road_position")
+    for index, frame in enumerate(road(5)):
+        answer = rig.show_frame(frame, index)
+    bench.wait_for(lambda: len(poses) == 5)
+    point = rig.position_at(answer).point
+    pose = poses[-1]
+    assert pose.header == answer.header
+    assert (pose.pose.pose.position.x, pose.pose.pose.position.y) == (point.x, point.y)
+    matrix = np.array(pose.pose.covariance).reshape(6, 6)
+    assert np.linalg.eigvalsh(matrix[:2, :2]).min() > 0
+    assert matrix == pytest.approx(matrix.T)
+    assert places == []
+    assert "road" not in values_of(answer)
+
+
+def test_covariance_grows_while_the_vehicle_is_hidden(bench):
+    rig = Rig(bench, on_target())
+    poses = bench.collect(PoseWithCovarianceStamped, f"{NODE}/pose_with_covariance")
+    frames = road(8)
+    empty = np.random.default_rng(3).integers(90, 130, (HEIGHT, WIDTH, 3), np.uint8)
+    modes = rig.play([*frames, *[empty] * 12])
+    assert modes[-1] == "OCCLUDED"
+    bench.wait_for(lambda: len(poses) == 20)
+    first = modes.index("OCCLUDED")
+    areas = [np.linalg.det(np.reshape(p.pose.covariance, (6, 6))[:2, :2]) for p in poses]
+    assert areas[-1] > 1.2 * areas[first] > 1.2 * areas[first - 2]
+
+
+def test_nothing_is_computed_without_subscribers(bench, monkeypatch):
+    rig = Rig(bench, on_target())
+    for name in ("pose_message", "place_message", "road_velocity_message"):
+        monkeypatch.setattr(located_outputs, name, lambda *_: pytest.fail("nobody looks"))
+    assert rig.play(road(3)) == ["TRACKING"] * 3
+
+
+def test_estimates_are_the_same_with_a_road(bench, rig):
+    with_road = [values_of(rig.show_frame(frame, index)) for index, frame in enumerate(road(6))]
+    bench.remove(rig.node)
+    plain = Rig(bench, on_target())
+    without = [values_of(plain.show_frame(frame, index)) for index, frame in enumerate(road(6))]
+    for one, other in zip(with_road, without, strict=True):
+        assert {name: one[name] for name in other if name != "step_ms"} == {
+            name: value for name, value in other.items() if name != "step_ms"
+        }
+
+
+def test_outside_the_area_nothing_is_published_and_the_reason_said(bench):
+    # Only the left half is calibrated.
+    pairs = "0,0=0,0; 80,0=8,0; 80,120=8,12; 0,120=0,12"
+    rig = Rig(bench, on_target(road__pairs=pairs, road__margin=0.0))
+    places = bench.collect(PointStamped, f"{NODE}/road_position")
+    reports = bench.collect(DiagnosticArray, "/diagnostics")
+    answers = [rig.show_frame(frame, index) for index, frame in enumerate(road(40))]
+    said = [values_of(answer)["road"] for answer in answers]
+    assert said[0] == "ok"
+    assert said[-1] == "outside the calibrated area"
+    bench.wait_for(lambda: len(places) == said.count("ok"))
+    reports.clear()
+    bench.wait_for(lambda: reports)
+    assert values_of(reports[-1])["road"] == "outside the calibrated area"
+
+
+def test_the_overlay_has_the_speed(bench, rig):
+    pictures = bench.collect(Image, f"{NODE}/overlay", qos_profile_sensor_data)
+    frames = road(2)
+    rig.play(frames)
+    rig.node.set_parameters_atomically(on_target(road__pairs="", road__frame_id="map"))
+    rig.play(frames[:1], first=2)
+    bench.wait_for(lambda: len(pictures) >= 2)
+    assert pictures[-1].data != pictures[0].data
+
+
+def test_a_road_that_is_none_is_refused_at_run_time(bench, rig):
+    result = rig.node.set_parameters_atomically(on_target(road__pairs="0,0=0,0"))
+    assert not result.successful
+    assert "at least 4 pairs" in result.reason
+    assert rig.node.set_parameters_atomically(on_target(road__pairs="")).successful
+    assert "road" not in values_of(rig.show_frame(road(1)[0], 0))
+
+
+def camera_info(width=WIDTH, height=HEIGHT, distortion=()):
+    message = CameraInfo(width=width, height=height, distortion_model="plumb_bob")
+    message.k = [100.0, 0.0, 79.5, 0.0, 100.0, 59.5, 0.0, 0.0, 1.0]
+    message.d = list(distortion)
+    return message
+
+
+# 10 m above the road, looking straight down: 100 px of focal length make 10 px to the metre.
+DOWN = "8,6,10,1,0,0,0"
+
+
+def test_lens_from_camera_info(bench):
+    rig = Rig(bench, on_target(road__camera_pose=DOWN, road__from_camera_info=True))
+    assert values_of(rig.show_frame(road(1)[0], 0))["road"] == "no camera_info yet"
+    publisher = bench.publisher(CameraInfo, "/camera_info")
+    local = rig.node._stream.localisation
+    bench.publish_until(lambda: not local.objection, publisher, camera_info())
+    for index, frame in enumerate(road(3), 1):
+        answer = rig.show_frame(frame, index)
+    values, point = values_of(answer), rig.position_at(answer).point
+    assert values["road"] == "ok"
+    assert float(values["road_x"]) == pytest.approx(8 + (point.x - 80) / 10)
+    assert float(values["road_y"]) == pytest.approx(6 - (point.y + TARGET[3] / 2 - 60) / 10)
+    bench.publish_until(
+        lambda: local._lens.model == "plumb_bob", publisher,
+        camera_info(distortion=(-0.3, 0.0, 0.0, 0.0, 0.0)),
+    )  # fmt: skip
+    bent = values_of(rig.show_frame(road(3)[2], 4))
+    assert float(bent["road_x"]) != pytest.approx(float(values["road_x"]), abs=1e-3)
+    # Another size than the images have.
+    bench.publish_until(lambda: local._size == (320, 240), publisher, camera_info(320, 240))
+    said = values_of(rig.show_frame(road(3)[2], 5))["road"]
+    assert said == "camera_info is for 320x240 px, the image has 160x120"
+
+
+def test_frames_of_pixel_outputs_can_be_marked(bench):
+    rig = Rig(bench, on_target(output_frame_suffix="_px", road__pairs=PAIRS))
+    boxes = bench.collect(PolygonStamped, f"{NODE}/box")
+    places = bench.collect(PointStamped, f"{NODE}/road_position")
+    answer = rig.show_frame(road(1)[0], 0)
+    assert answer.header.frame_id == "camera"
+    bench.wait_for(lambda: boxes and places)
+    assert boxes[0].header.frame_id == "camera_px"
+    assert rig.position_at(answer).header.frame_id == "camera_px"
+    assert places[0].header.frame_id == "road"
+    # What goes out may come back in.
+    publisher = bench.publisher(PolygonStamped, f"{NODE}/set_box")
+    health = rig.node._diagnostics._health
+    publisher.publish(boxes[0])
+    bench.wait_for(lambda: rig.node._stream._asked is not None)
+    assert health.refused_targets == 0
+    boxes[0].header.frame_id = "map"
+    publisher.publish(boxes[0])
+    bench.wait_for(lambda: health.refused_targets == 1)

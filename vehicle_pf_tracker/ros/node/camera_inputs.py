@@ -1,0 +1,136 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Subscriptions that tell where the camera is and how it sees: camera_info and TF."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from geometry_msgs.msg import TransformStamped
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
+from sensor_msgs.msg import CameraInfo
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.road import RoadParameters
+from vehicle_pf_tracker.road.poses import Pose, PoseTree
+from vehicle_pf_tracker.ros.node.image_input import image_topic
+from vehicle_pf_tracker.ros.road_messages import ImageLens, lens_of_info, pose_of_transform
+
+try:
+    from tf2_msgs.msg import TFMessage
+except ImportError:  # an optional package: only road.from_tf needs it
+    TFMessage = None
+
+_THROTTLE = 30.0
+"""Interval between two lines of the same kind in the log, s."""
+_NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+_MOVING = QoSProfile(depth=100)
+_LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def camera_info_topic(node: Node) -> str:
+    """Resolve the topic of CameraInfo: beside the images, as camera drivers publish it."""
+    folder = image_topic(node, "raw").rpartition("/")[0]
+    return str(node.resolve_topic_name(f"{folder}/camera_info"))
+
+
+class CameraInputs:
+    """Open subscriptions to what the road's parameters ask for.
+
+    Parameters
+    ----------
+    node : Node
+        Node to subscribe with.
+    take_lens : callable
+        Called with the lens of each CameraInfo that differs from the one before.
+    take_poses : callable
+        Called with all poses whenever some have come.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        take_lens: Callable[[ImageLens], None],
+        take_poses: Callable[[PoseTree], None],
+    ) -> None:
+        self._node = node
+        self._take_lens = take_lens
+        self._take_poses = take_poses
+        self._tree = PoseTree()
+        self._info: CameraInfo | None = None
+        self._asked: tuple[bool, bool, bool] | None = None
+        self._subscriptions: list[Subscription] = []
+
+    def open(self, road: RoadParameters) -> None:
+        """Subscribe to what `road` asks for, and to nothing else."""
+        asked = road.from_camera_info, road.from_tf, road.rectified
+        if asked == self._asked:
+            return
+        self.close()
+        self._asked, self._rectified = asked, road.rectified
+        subscribe = self._node.create_subscription
+        if road.from_camera_info:
+            topic = camera_info_topic(self._node)
+            self._subscriptions.append(subscribe(CameraInfo, topic, self._on_info, _NEWEST))
+        if road.from_tf and TFMessage is None:
+            self._node.get_logger().error(
+                "road.from_tf needs the package tf2_msgs (apt: ros-$ROS_DISTRO-tf2-msgs)"
+            )
+        elif road.from_tf:
+            for topic, qos in (("/tf", _MOVING), ("/tf_static", _LATCHED)):
+                self._subscriptions.append(subscribe(TFMessage, topic, self._on_transforms, qos))
+
+    def close(self) -> None:
+        """Destroy the subscriptions."""
+        while self._subscriptions:
+            self._node.destroy_subscription(self._subscriptions.pop())
+        self._asked = self._info = None
+
+    def _on_info(self, message: CameraInfo) -> None:
+        message.header.stamp.sec = message.header.stamp.nanosec = 0
+        if message == self._info:
+            return
+        self._info = message
+        try:
+            self._take_lens(lens_of_info(message, rectified=self._rectified))
+        except InputError as error:
+            self._warn(str(error))
+
+    def _on_transforms(self, message: Any) -> None:
+        for one in message.transforms:
+            self._put(one)
+        self._take_poses(self._tree)
+
+    def _put(self, one: TransformStamped) -> None:
+        try:
+            pose = pose_of_transform(one.transform)
+        except InputError as error:
+            self._warn(f"a transform of {one.child_frame_id} is ignored: {error}")
+        else:
+            self._tree.put(one.header.frame_id, one.child_frame_id, pose)
+
+    def _warn(self, words: str) -> None:
+        self._node.get_logger().warning(words, throttle_duration_sec=_THROTTLE)
+
+
+def camera_pose(tree: PoseTree, camera: str, road: str) -> Pose | None:
+    """Return the pose of the camera's frame in the road's; None while TF does not have it."""
+    try:
+        return tree.find(camera, road)
+    except InputError:
+        return None
