@@ -36,8 +36,8 @@ from reproduction.experiment import (
 )
 from reproduction.output import write_document, write_report
 from reproduction.running import complete
-from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.main import USAGE, exit_status
+from vehicle_pf_tracker.cli.console import USAGE, UsageError
+from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.cli.shared_options import add_workers, natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
 from vehicle_pf_tracker.evaluation.result_store import ResultStore

@@ -29,7 +29,7 @@ def run(tmp_path):
         out = tmp_path / "out"
         assert main(["run", str(recording), "--variant", variant, "-o", str(out), *words]) == 0
         names = {path.name for path in out.iterdir()}
-        assert names == {"estimates.csv", "metrics.json", "run.json"}
+        assert names == {"estimates.csv", "metrics.json", "run.json", "summary.png"}
         documents = [json.loads((out / name).read_text()) for name in ("metrics.json", "run.json")]
         return read_estimates(out / "estimates.csv"), *documents
 

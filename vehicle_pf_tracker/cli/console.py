@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.tables import Comparison
 
 PROGRAM = "vehicle-pf-tracker"
+FAILED, USAGE, INTERRUPTED, PIPE_CLOSED = 1, 2, 130, 141
+"""Exit statuses; the last two are those of a program that a signal ended."""
 _WIDE = 200
 """Columns of a table that is written to a file or a pipe, where lines may be long."""
 

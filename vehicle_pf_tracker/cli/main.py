@@ -26,7 +26,15 @@ from types import MappingProxyType
 
 from vehicle_pf_tracker import __doc__ as _summary
 from vehicle_pf_tracker import __version__
-from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, tell_error
+from vehicle_pf_tracker.cli.console import (
+    FAILED,
+    INTERRUPTED,
+    PIPE_CLOSED,
+    PROGRAM,
+    USAGE,
+    UsageError,
+    tell_error,
+)
 from vehicle_pf_tracker.core.errors import InputError
 
 VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -58,9 +66,6 @@ _REPRODUCE = (
     "the papers' experiments are not part of the installed package: run `python -m reproduction "
     "FIGURE…` or `make reproduce` in the repository"
 )
-
-FAILED, USAGE, INTERRUPTED, PIPE_CLOSED = 1, 2, 130, 141
-"""Exit statuses; the last two are those of a program that a signal ended."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -43,10 +43,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="set a parameter, over the file; repeatable",
     )  # fmt: skip
     add("--seed", type=int, help="seed of the random numbers; -1 draws one and run.json keeps it")
-    add(
-        "--target", type=parse_box, metavar="X,Y,W,H",
-        help="box to start on in px, top-left corner and size; otherwise the first true box",
-    )  # fmt: skip
 
 
 def parse_box(text: str) -> Box:
@@ -78,14 +74,7 @@ def chosen(variant: Variant, args: argparse.Namespace) -> Configuration:
     configuration = configuration.updated(parse_assignments(table, args.assignments))
     if args.seed is not None:
         configuration = configuration.updated({"seed": args.seed})
-    return configuration if args.target is None else _with_target(configuration, args.target)
-
-
-def _with_target(configuration: Configuration, box: Box) -> Configuration:
-    if not any((box.width, box.height)):  # in a file, zeros wait for a target
-        raise InputError(f"the target {box} is smaller than one pixel; give x,y,w,h in px")
-    values = {f"target.{name}": getattr(box, name) for name in ("x", "y", "width", "height")}
-    return configuration.updated(values)
+    return configuration
 
 
 def with_file(configuration: Configuration, variant: Variant, path: Path) -> Configuration:

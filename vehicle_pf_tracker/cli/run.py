@@ -12,40 +12,79 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`run`: track a recording offline, and score it where there is truth."""
+"""`run`: track vehicles in any source offline, show them, and score them where there is truth."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 from vehicle_pf_tracker.cli import parameter_options
-from vehicle_pf_tracker.cli.console import UsageError, show, tell_notices
+from vehicle_pf_tracker.cli.console import INTERRUPTED, UsageError, show, tell_notices
+from vehicle_pf_tracker.cli.picture_window import PictureWindow
 from vehicle_pf_tracker.cli.progress import OnProgress, counting
-from vehicle_pf_tracker.cli.shared_options import add_max_diff
-from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_span
+from vehicle_pf_tracker.cli.stopping import Stop, stopping
+from vehicle_pf_tracker.cli.targets import by_name, parse_target, read_targets
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.estimates import interpolated_columns
+from vehicle_pf_tracker.evaluation.association import max_diff_ns
+from vehicle_pf_tracker.evaluation.estimates import (
+    EstimateRow,
+    interpolated_columns,
+    write_tracks,
+)
+from vehicle_pf_tracker.evaluation.following import Pictures, follow
 from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.offline import OfflineTracker
+from vehicle_pf_tracker.evaluation.mode_spans import summary
+from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
 from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.tables import comparison
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
+from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
+from vehicle_pf_tracker.image.target_pixels import doubts
+from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.recordings.source import Source, open_source
+from vehicle_pf_tracker.recordings.span import numbered_part
+from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
+
+Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
+
+SHEET = "summary.png"
+TRACKS = "tracks.csv"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of this verb."""
     add = parser.add_argument
-    add("recording", type=Path, metavar="REC", help="rosbag2 folder or MCAP file")
-    add("--variant", required=True, metavar="NAME", help=f"one of: {', '.join(VARIANTS)}")
     add(
-        "-o", "--output", type=Path, required=True, metavar="DIR",
-        help="folder for estimates.csv, metrics.json and run.json; those in it are replaced",
+        "source", metavar="SOURCE",
+        help="recording, video file, folder of images, index of a camera, or URL of a stream",
     )  # fmt: skip
-    add("--topic", help="the image topic, if the recording has several")
+    add(
+        "--variant", default="fusion", metavar="NAME",
+        help=f"one of: {', '.join(VARIANTS)} (default: fusion)",
+    )  # fmt: skip
+    add(
+        "-o", "--output", type=Path, metavar="DIR",
+        help="folder for estimates.csv, run.json, summary.png, and metrics.json where there is "
+        "truth; those in it are replaced (default: results/ and the source's name)",
+    )  # fmt: skip
+    add("--topic", help="the image topic, if a recording has several")
+    add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states")
+    add_span(parser)
+    add("--targets", type=Path, metavar="FILE", help="targets that `pick` wrote")
+    add(
+        "--video", type=Path, metavar="FILE",
+        help="write the frames with box, path and mode to FILE, an mp4",
+    )  # fmt: skip
+    add("--show", action="store_true", help="show them in a window meanwhile; q ends the run")
+    add("--particles", action="store_true", help="draw the particles too")
     add_max_diff(parser)
     add(
         "--interpolate-occlusions", action="store_true",
@@ -53,47 +92,136 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "are not TRACKING; they are not scored",
     )  # fmt: skip
     parameter_options.add_arguments(parser)
+    add(
+        "--target", type=parse_target, action="append", default=[],
+        metavar="[NAME][@FRAME:]X,Y,W,H",
+        help="box to start on in px, top-left corner and size, in the first frame or in FRAME; "
+        "repeatable, for several vehicles or to correct one later; otherwise the first true box",
+    )  # fmt: skip
 
 
 def run(args: argparse.Namespace) -> int:
-    """Track, write the results, and print the metrics."""
+    """Track, write the results, and print a summary of each target."""
     variant = find_variant(args.variant)
-    chosen = parameter_options.chosen(variant, args)
-    recording = Recording(args.recording, args.topic)
-    first_truth = None if chosen.session.target.box else _first_truth(recording)
-    tracker = OfflineTracker(
-        variant, chosen.tracker, chosen.session, first_truth=first_truth, max_diff=args.max_diff
-    )
-    folder = RunFolder(args.output)
-    with counting("tracked") as progress:
-        rows = list(tracker.rows(_frames(recording, progress)))
-    notices = [*recording.notices, *tracker.notices, *tracker.road_notices]
+    source = open_source(args.source, topic=args.topic, fps=args.fps)
+    folder = RunFolder(args.output or Path("results", Path(args.source).stem or "run"))
+    window = PictureWindow(args.source) if args.show else None
+    show_in = window.show if window else None
+    pictures = Pictures(args.video, particles=args.particles, show=show_in)
+    with stopping() as stop, counting("tracked") as progress:
+        first, frames = _peeked(_frames(source, args, stop, progress))
+        targets = _targets(variant, source, args, first)
+        trackers = {name: one.tracker for name, one in targets.items()}
+        rows = follow(trackers, _doubting(frames, targets), pictures)
+    notices = list(source.notices)
+    for tracker in trackers.values():
+        notices += [*tracker.notices, *tracker.road_notices]
+    if args.video and not has_encoder():
+        notices.append(NO_ENCODER)
     tell_notices(notices)
-    info = RunInfo(
-        args.command, str(args.recording), recording.image_topic, tracker.start_frame, notices
-    )
-    extra: dict[str, list[float | None]] = tracker.road_columns
-    if args.interpolate_occlusions:
-        extra |= interpolated_columns(rows)
-    folder.write_run(rows, describe_run(info, tracker.session), extra)
-    metrics = measure(score_frames(rows, recording.truth(), args.max_diff))
+    _write(folder, args, source, trackers, rows, notices)
+    pictures.sheet.write(folder.path / SHEET)
+    for name, found in rows.items():
+        print(f"{name + ': ' if len(rows) > 1 else ''}{summary(found)}")
+    print(f"results are in {folder.path}; {SHEET} shows the key frames")
+    if args.video:
+        print(f"the video is {args.video}")
+    return INTERRUPTED if stop.came and source.frame_count is not None else 0
+
+
+def _write(
+    folder: RunFolder,
+    args: argparse.Namespace,
+    source: Source,
+    trackers: Mapping[str, OfflineTracker],
+    rows: Mapping[str, Sequence[EstimateRow]],
+    notices: Sequence[str],
+) -> None:
+    """Write the run of one target to `folder`; of several to folders in it and to one table."""
+    for earlier in (TRACKS, SHEET):
+        (folder.path / earlier).unlink(missing_ok=True)
+    for name, tracker in trackers.items():
+        info = RunInfo(args.command, args.source, source.image_topic, tracker.start_frame, notices)
+        part = folder if len(trackers) == 1 else RunFolder(folder.path / name)
+        extra: dict[str, list[float | None]] = tracker.road_columns
+        if args.interpolate_occlusions:
+            extra |= interpolated_columns(rows[name])
+        part.write_run(rows[name], describe_run(info, tracker.session), extra)
+    if len(trackers) > 1:
+        write_tracks(folder.path / TRACKS, rows)
+        return
+    (found,) = rows.values()
+    metrics = measure(score_frames(found, source.truth(), args.max_diff))
     folder.write_metrics(metrics)
-    show(comparison({variant.name: metrics}))
-    print(f"results are in {folder.path}")
-    return 0
+    if metrics.frames_scored:
+        show(comparison({args.variant: metrics}))
 
 
-def _first_truth(recording: Recording) -> Truth:
-    truth = recording.first_truth()
+@dataclass(frozen=True, slots=True)
+class _Target:
+    """A tracker, and its boxes by frame."""
+
+    tracker: OfflineTracker
+    boxes: Mapping[int, Box]
+
+
+def _targets(
+    variant: Variant, source: Source, args: argparse.Namespace, first: tuple[int, StampedFrame]
+) -> dict[str, _Target]:
+    """Make a tracker for each target; without any, one that starts on the first true box."""
+    options = [*args.target, *(read_targets(args.targets) if args.targets else [])]
+    configuration = parameter_options.chosen(variant, args)
+    parameters, settings = configuration.tracker, configuration.session
+    if not options:
+        truth = None if settings.target.box else _first_truth(source, args, first[1].stamp_ns)
+        tracker = OfflineTracker(
+            variant, parameters, settings, first_truth=truth, max_diff=args.max_diff
+        )
+        box = settings.target.box
+        return {"1": _Target(tracker, {first[0]: box} if box else {})}
+    made = {}
+    for name, boxes in by_name(options, first[0]).items():
+        initial = boxes.get(first[0])
+        later = {frame: box for frame, box in boxes.items() if frame != first[0]}
+        own = with_target(settings, initial) if initial else settings
+        tracker = OfflineTracker(variant, parameters, own, targets=later, max_diff=args.max_diff)
+        made[name] = _Target(tracker, boxes)
+    return made
+
+
+def _first_truth(source: Source, args: argparse.Namespace, first_ns: int) -> Truth:
+    earliest = first_ns - max_diff_ns(args.max_diff)
+    truth = next((t for t in source.truth() if t.stamp_ns >= earliest), None)
     if truth is None:
         raise UsageError(
-            f"the recording {recording.path} has no truth to start on; "
-            "give the vehicle's box in the first image with --target x,y,w,h"
+            f"{args.source} has no truth to start on; give the vehicle's box in the first image "
+            "with --target x,y,w,h"
         )
     return truth
 
 
-def _frames(recording: Recording, progress: OnProgress) -> Iterator[tuple[int, Frame | None]]:
-    for number, stamped in enumerate(recording.frames(), start=1):
-        progress(number, recording.frame_count)
-        yield stamped.stamp_ns, stamped.frame
+def _frames(source: Source, args: argparse.Namespace, stop: Stop, progress: OnProgress) -> Numbered:
+    part = numbered_part(stop.until(source.frames()), args.start, args.end)
+    for number, found in part:
+        progress(number, source.frame_count)
+        yield number, found
+
+
+def _peeked(frames: Numbered) -> tuple[tuple[int, StampedFrame], Numbered]:
+    first = next(frames, None)
+    if first is None:
+        raise InputError("the source ended before its first image")
+    return first, itertools.chain([first], frames)
+
+
+def _doubting(frames: Numbered, targets: Mapping[str, _Target]) -> Numbered:
+    """Pass frames on; note what speaks against the targets given for them."""
+    for number, found in frames:
+        for name, target in targets.items():
+            box = target.boxes.get(number)
+            if box is not None and found.frame is not None:
+                notices = target.tracker.notices
+                notices += [
+                    f"the target {name} is doubtful: {why}" for why in doubts(found.frame, box)
+                ]
+        yield number, found

@@ -19,7 +19,9 @@ from __future__ import annotations
 import argparse
 import os
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
+from vehicle_pf_tracker.recordings.span import Moment
 
 
 def add_max_diff(parser: argparse.ArgumentParser) -> None:
@@ -52,3 +54,19 @@ def _at_least(least: int, text: str) -> int:
     if not text.isascii() or not text.isdigit() or int(text) < least:
         raise argparse.ArgumentTypeError(f"{text!r} is not an integer >= {least}")
     return int(text)
+
+
+def add_span(parser: argparse.ArgumentParser) -> None:
+    """Add the part of the source."""
+    parser.add_argument(
+        "--start", type=_moment, metavar="AT",
+        help="first frame: its number, from 1, or its time in seconds, as 4.3s",
+    )  # fmt: skip
+    parser.add_argument("--end", type=_moment, metavar="AT", help="last frame, likewise")
+
+
+def _moment(text: str) -> Moment:
+    try:
+        return Moment.parse(text)
+    except InputError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None

@@ -123,6 +123,25 @@ def write_estimates(
     write_text(path, text.getvalue())
 
 
+def write_tracks(path: Path, rows: Mapping[str, Sequence[EstimateRow]]) -> None:
+    """Write the rows of several targets to one file: ``target`` and the columns of estimates.
+
+    Frames follow each other, and in each of them the targets in their order.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["target", *COLUMNS])
+    for of_frame in zip(*rows.values(), strict=True):
+        for name, row in zip(rows, of_frame, strict=True):
+            writer.writerow([name, *map(_text, astuple(row))])
+    write_text(path, text.getvalue())
+
+
 def read_estimates(path: Path) -> list[EstimateRow]:
     """Read the rows of the file `path`; columns after those of `EstimateRow` are ignored.
 

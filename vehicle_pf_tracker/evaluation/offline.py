@@ -20,6 +20,7 @@ import itertools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 from vehicle_pf_tracker.core.box import Box
@@ -51,6 +52,8 @@ class OfflineTracker:
     first_truth : Truth or None
         Start without such a target: its box, in the frame that its stamp belongs to;
         the frames before are waited through.
+    targets : mapping of int to Box
+        Boxes to start on, or to start again on, by the numbers of their frames.
     max_diff : float
         Largest difference of stamps that belong together, in s.
 
@@ -62,6 +65,8 @@ class OfflineTracker:
         Number of the frame that the target was first set in; None until then.
     notices : list of str
         Irregularities, a sentence each.
+    estimate : Estimate or None
+        That of the last frame; None where it has none.
     """
 
     def __init__(
@@ -71,6 +76,7 @@ class OfflineTracker:
         settings: SessionParameters | None = None,
         *,
         first_truth: Truth | None = None,
+        targets: Mapping[int, Box] = MappingProxyType({}),
         max_diff: float = MAX_DIFF,
     ) -> None:
         self.session = Session(variant, parameters, settings)
@@ -81,9 +87,13 @@ class OfflineTracker:
         self._localisation = _localisation(self.session)
         self._on_road: list[Mapping[str, float]] = []
         self._off_road: Counter[str] = Counter()
+        self._targets = targets
+        self.estimate: Estimate | None = None
 
-    def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]:
-        """Track through (stamp in ns, frame) pairs, and give one row for each.
+    def rows(
+        self, frames: Iterable[tuple[int, Frame | None]], first: int = 1
+    ) -> Iterator[EstimateRow]:
+        """Track through (stamp in ns, frame) pairs, numbered from `first`; give a row for each.
 
         An image that could not be read has no frame, and is rejected as the node would reject it.
 
@@ -93,11 +103,13 @@ class OfflineTracker:
             If the target is invalid in the first frame, or no frame belongs to the first truth.
         """
         stamped = itertools.chain(frames, [None])
-        for number, (current, following) in enumerate(itertools.pairwise(stamped), start=1):
+        for number, (current, following) in enumerate(itertools.pairwise(stamped), start=first):
             assert current is not None
             self._on_road.append({})
             if self._is_start(current[0], following[0] if following else None):
                 self._set_target()
+            if number in self._targets:
+                self.session.set_target(self._targets[number])
             yield self._row(number, *current)
         if self._first_truth is not None:
             raise InputError(
@@ -136,10 +148,11 @@ class OfflineTracker:
         self._first_truth = None
 
     def _row(self, number: int, stamp_ns: int, frame: Frame | None) -> EstimateRow:
+        self.estimate = None
         if frame is None:
             return EstimateRow.without(number, stamp_ns, REJECTED)
         try:
-            estimate = self.session.feed(frame, stamp_ns)
+            self.estimate = estimate = self.session.feed(frame, stamp_ns)
         except InputError as error:
             if self.start_frame is None and not isinstance(error, StrayImageError):
                 raise

@@ -76,6 +76,7 @@ class VideoFile:
         self._path = path
         self._truth = {} if truth is None else read_truth_table(truth)
         self._read = self._without_time = 0
+        self._ended = False
         self._keeps_times = fps is None
         video = self._open()
         self.fps = float(video.get(cv2.CAP_PROP_FPS)) if fps is None else check_fps(fps, "--fps")
@@ -91,13 +92,14 @@ class VideoFile:
         video = self._open()
         try:
             self._read = self._without_time = 0
-            last = 0
+            self._ended, last = False, 0
             while (frame := _next_frame(video)) is not None:
                 stamp, number = self._stamp(video, last), self._read + 1
                 row = self._truth.get(number)
                 truth = None if row is None else Truth(stamp, row.box, row.occlusion)
                 yield Picture(stamp, frame, f"frame {number} of {self._path}", truth=truth)
                 self._read, last = number, stamp
+            self._ended = True
         finally:
             video.release()
         if not self._read:
@@ -123,7 +125,7 @@ class VideoFile:
     def notices(self) -> list[str]:
         """Report fewer frames than the file states, and truth without a frame."""
         notices = []
-        if self.total is not None and self._read < self.total:
+        if self._ended and self.total is not None and self._read < self.total:
             notices.append(
                 f"the video {self._path} states {self.total} frames, {self._read} could be read"
             )

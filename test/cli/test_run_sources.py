@@ -1,0 +1,253 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`run` on videos and folders, in parts, with several targets, into pictures."""
+
+import os
+import signal
+import sys
+import threading
+
+import cv2
+import numpy as np
+import pytest
+import yaml
+from small_recordings import COUNT, TARGET, box_of, frame_folder, frame_of, record
+
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.evaluation.estimates import read_estimates
+from vehicle_pf_tracker.evaluation.video_writer import has_encoder
+
+
+@pytest.fixture
+def video(tmp_path):
+    """The red vehicle as a video at 25 frames/s."""
+    path = tmp_path / "traffic.avi"
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 25.0, (96, 64))
+    for index in range(COUNT):
+        writer.write(np.ascontiguousarray(frame_of(index)[:, :, ::-1]))
+    writer.release()
+    return path
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Call `run` with pf on a source; return its exit status."""
+
+    def call(source, *words, variant="pf"):
+        out = str(tmp_path / "out")
+        return main(["run", str(source), "--variant", variant, "-o", out, *map(str, words)])
+
+    return call
+
+
+def estimates(folder):
+    return read_estimates(folder / "estimates.csv")
+
+
+def at(index):
+    box = box_of(index)
+    return f"{box.x:g},{box.y:g},{box.width:g},{box.height:g}"
+
+
+def test_a_video_is_tracked_as_it_is(run, video, tmp_path, capsys):
+    assert run(video, "--target", TARGET) == 0
+    rows = estimates(tmp_path / "out")
+    assert [row.stamp_ns for row in rows] == [10**9 + n * 40_000_000 for n in range(COUNT)]
+    assert all(abs(row.x - box_of(n).centre[0]) < 4 for n, row in enumerate(rows))
+    assert f"TRACKING 0:00.0-0:00.4; {COUNT} of {COUNT} frames tracked" in capsys.readouterr().out
+
+
+def test_a_folder_with_truth_starts_on_it_and_is_scored(run, tmp_path, capsys):
+    assert run(frame_folder(tmp_path / "frames")) == 0
+    assert "on target while visible" in capsys.readouterr().out
+
+
+def test_a_folder_and_its_import_give_the_same_estimates(run, tmp_path):
+    def numbers(source):
+        assert run(source) == 0
+        return [(row.stamp_ns, row.x, row.y, row.confidence) for row in estimates(tmp_path / "out")]
+
+    folder = frame_folder(tmp_path / "frames")
+    assert main(["import", str(folder), str(tmp_path / "bag")]) == 0
+    assert numbers(folder) == numbers(tmp_path / "bag")
+
+
+@pytest.mark.parametrize(("end", "last"), [("8", 8), ("0.28s", 8), ("0.3s", 8), ("100", COUNT)])
+def test_a_part_keeps_the_numbers_of_its_frames(run, video, tmp_path, end, last):
+    assert run(video, "--target", at(3), "--start", 4, "--end", end) == 0
+    rows = estimates(tmp_path / "out")
+    assert [row.frame for row in rows] == list(range(4, last + 1))
+    assert rows[0].position == box_of(3).centre
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--start", "20"), "no frame lies between --start and --end; 12 frames"),
+        (("--start", "8", "--end", "7"), "no frame lies between"),
+        (("--start", "0"), "neither a frame (an integer >= 1) nor a time"),
+        (("--start", "fast"), "neither a frame"),
+        (("--end", "nans"), "neither a frame"),
+        (("--target", "0,0,4"), "is not x,y,w,h in px"),
+        (("--target", "a b:0,0,4,4"), "is not [NAME][@FRAME:]x,y,w,h"),
+        (("--target", "a@0:0,0,4,4"), "frames are counted from 1"),
+        (("--target", "a:8,24,16,12", "--target", "a:8,24,16,12"), "two boxes in frame 1"),
+        (("--target", "a@2:8,24,16,12", "--start", "3"), "tracking begins at 3"),
+        (("--target", "10,100,0,30"), "smaller than one pixel"),
+        (("--target", "500,24,16,12"), "outside the image of 96x64 px"),
+        (("--fps", "0"), "the frame rate (fps) in --fps must be a number from"),
+        (("--video", "out.gif", "--target", TARGET), "must end in .mp4"),
+        (("--targets", "none.yaml"), "cannot read the targets none.yaml"),
+        ((), "has no truth to start on"),
+    ],
+)
+def test_mistakes_are_told_in_one_line(run, video, capsys, words, told):
+    assert run(video, *words) in (1, 2)
+    error = capsys.readouterr().err.splitlines()[-1]
+    assert told in error
+
+
+def test_several_vehicles_in_one_pass(run, video, tmp_path, capsys):
+    words = ("--target", f"red:{TARGET}", "--target", f"@5:{at(4)}")
+    assert run(video, *words) == 0
+    out = tmp_path / "out"
+    red, later = estimates(out / "red"), estimates(out / "1")
+    assert [row.mode for row in later[:4]] == ["WAITING"] * 4
+    assert later[4].position == box_of(4).centre
+    lines = (out / "tracks.csv").read_text().splitlines()
+    assert lines[0].startswith("target,frame,stamp_ns,x,y")
+    assert [line.split(",")[:2] for line in lines[1:5]] == [
+        ["red", "1"], ["1", "1"], ["red", "2"], ["1", "2"]
+    ]  # fmt: skip
+    assert len(lines) == 1 + 2 * COUNT
+    alone = tmp_path / "alone"
+    words = ["--variant", "pf", "-o", str(alone), "--target", TARGET]
+    assert main(["run", str(video), *words]) == 0
+    assert [row.position for row in estimates(alone)] == [row.position for row in red]
+    assert "red: TRACKING" in capsys.readouterr().out
+
+
+def test_a_target_is_corrected_in_the_middle(run, video, tmp_path):
+    assert run(video, "--target", f"a:{TARGET}", "--target", "a@6:60,8,16,12") == 0
+    assert estimates(tmp_path / "out")[5].position == (68.0, 14.0)
+
+
+def test_targets_come_from_a_file(run, video, tmp_path):
+    path = tmp_path / "targets.yaml"
+    path.write_text(
+        yaml.safe_dump({"targets": [{"name": "a", "frame": 3, "box": [12, 24, 16, 12]}]})
+    )
+    assert run(video, "--targets", path) == 0
+    assert estimates(tmp_path / "out")[2].position == (20.0, 30.0)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "targets", "targets: 3", "targets: [{}]", "targets: [{box: 3}]", "a: [", "[1]"]
+)
+def test_a_broken_file_of_targets_is_named(run, video, tmp_path, capsys, text):
+    path = tmp_path / "targets.yaml"
+    path.write_text(text)
+    assert run(video, "--targets", path) == 1
+    assert "holds no targets; it must read targets:" in capsys.readouterr().err
+
+
+def test_doubtful_targets_are_followed_with_a_notice(run, tmp_path, capsys):
+    recording = record(tmp_path / "bag", truths=())
+    assert run(recording, "--target", "8,24,3,2", "--target", "big:0,0,90,60") == 0
+    error = capsys.readouterr().err
+    assert "the target 1 is doubtful: it is only 3 x 2 px large" in error
+    assert "the target big is doubtful: it covers 88% of the image" in error
+
+
+def test_a_run_leaves_nothing_of_the_one_before(run, video, tmp_path):
+    assert run(video, "--target", TARGET, "--target", TARGET) == 0
+    assert (tmp_path / "out" / "tracks.csv").exists()
+    assert run(video, "--target", TARGET) == 0
+    assert not (tmp_path / "out" / "tracks.csv").exists()
+
+
+def test_the_video_shows_every_frame_and_keeps_the_rate(run, video, tmp_path, capsys):
+    made = tmp_path / "seen" / "made.mp4"
+    assert run(video, "--target", TARGET, "--video", made, "--particles") == 0
+    shown = cv2.VideoCapture(str(made))
+    assert shown.get(cv2.CAP_PROP_FPS) == pytest.approx(25.0)
+    frames = []
+    while (frame := shown.read())[0]:
+        frames.append(frame[1])
+    assert len(frames) == COUNT
+    assert frames[0].shape == (64, 96, 3)
+    codec = int(shown.get(cv2.CAP_PROP_FOURCC)).to_bytes(4, "little")
+    if has_encoder():
+        assert codec in (b"h264", b"avc1")
+    else:
+        assert "browsers do not play" in capsys.readouterr().err
+
+
+def test_a_run_that_fails_leaves_no_video(run, tmp_path):
+    folder = frame_folder(tmp_path / "frames", count=40)
+    (folder / "img" / "000036.jpg").write_bytes(b"no image")  # after the video was begun
+    made = tmp_path / "seen" / "made.mp4"
+    assert run(folder, "--video", made) == 1
+    assert list(made.parent.iterdir()) == []
+
+
+def test_there_is_no_window_without_a_display(run, video, monkeypatch, capsys):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    assert run(video, "--target", TARGET, "--show") == 1
+    assert "--show needs a display" in capsys.readouterr().err
+
+
+def test_a_signal_ends_the_input_and_a_second_one_acts_as_ever():
+    with stopping() as stop:
+        seen = []
+        for number in stop.until(range(10)):
+            seen.append(number)
+            if number == 3:
+                os.kill(os.getpid(), signal.SIGINT)
+        assert (stop.came, seen) == (True, [0, 1, 2, 3])
+        with pytest.raises(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_other_threads_leave_the_signals_alone():
+    found = []
+
+    def work():
+        with stopping() as stop:
+            found.append(list(stop.until(range(3))))
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert found == [[0, 1, 2]]
+
+
+def test_what_was_tracked_until_ctrl_c_is_kept(run, video, tmp_path, monkeypatch):
+    module = sys.modules["vehicle_pf_tracker.cli.run"]
+    doubting = module._doubting
+
+    def interrupted(frames, targets):
+        for number, found in doubting(frames, targets):
+            if number == 6:
+                os.kill(os.getpid(), signal.SIGINT)
+            yield number, found
+
+    monkeypatch.setattr(module, "_doubting", interrupted)
+    assert run(video, "--target", TARGET) == 130
+    rows = estimates(tmp_path / "out")
+    assert 6 <= len(rows) < COUNT

@@ -1,0 +1,53 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Doubts about targets."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.image.target_pixels import doubts
+
+
+@pytest.fixture
+def frame():
+    """Asphalt with noise, and a striped vehicle on it."""
+    rng = np.random.default_rng(0)
+    image = np.clip(rng.normal(110, 6, (120, 160, 1)), 0, 255).astype(np.uint8).repeat(3, axis=2)
+    image[40:60, 40:70] = (40, 60, 160)
+    image[44:50, 45:65] = (220, 220, 230)
+    return image
+
+
+def test_a_vehicle_raises_no_doubts(frame):
+    assert doubts(frame, Box(40, 40, 30, 20)) == []
+
+
+@pytest.mark.parametrize(
+    ("box", "words"),
+    [
+        (Box(45, 44, 5, 8), "it is only 5 x 8 px large"),
+        (Box(0, 0, 120, 110), "it covers 69% of the image"),
+        (Box(90, 70, 40, 30), "nothing in it stands out"),
+        (Box(-10, 90, 40, 30), "nothing in it stands out"),
+    ],
+)
+def test_what_speaks_against_a_target(frame, box, words):
+    (found,) = doubts(frame, box)
+    assert words in found
+
+
+def test_a_box_beyond_the_image_has_no_pixels_to_doubt(frame):
+    assert doubts(frame, Box(400, 400, 20, 20)) == []
