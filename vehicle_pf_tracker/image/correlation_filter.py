@@ -95,6 +95,7 @@ class CorrelationFilter:
         self._columns = slice(int(columns[0]), int(columns[-1]) + 1)
         self._target = PartialFourier(cells, self._rows, self._columns)
         window = np.hanning(cells + 2)[1:-1]
+        self._faded = PartialFourier(cells, slice(cells), slice(cells), window)
         self._window = np.outer(window, window).astype(np.float32)
         self._down = (-2j * np.pi * np.fft.fftfreq(cells))[:, np.newaxis]
         self._right = -2j * np.pi * np.fft.rfftfreq(cells)
@@ -103,7 +104,7 @@ class CorrelationFilter:
 
     def spectrum(self, features: CellFeatures) -> Spectrum:
         """Half spectrum of cells (channels, n, n), faded out towards the border."""
-        return half_spectrum(features * self._window)
+        return self._faded.spectrum_of(features)
 
     def shifted(self, spectrum: Spectrum, x: float, y: float) -> Spectrum:
         """Spectrum of the same cells moved by (x, y) cells, circularly."""
@@ -131,26 +132,35 @@ class CorrelationFilter:
         growth: float,
     ) -> FilterWeights:  # fmt: skip
         places = self._cells**2
-        power = (spectrum.real**2 + spectrum.imag**2).sum(axis=0)
+        squares = np.square(spectrum.view(np.float32)).sum(axis=0)
+        power = squares[:, 0::2] + squares[:, 1::2]
         conjugate = spectrum.conj()
         wanted = spectrum * (self._label * np.float32(1 / places))
+        free = np.empty_like(spectrum)
         if before is not None:
-            wanted += np.float32(stiffness) * before
-        # The multiplier is kept divided by the penalty (scaled ADMM).
-        right, multiplier = wanted, np.zeros_like(spectrum)
+            wanted += np.multiply(before, np.float32(stiffness), out=free)
+        # The multiplier is kept divided by the penalty (scaled ADMM). Whole spectra are written
+        # over: new memory for each of them would take longer than the arithmetic.
+        right, multiplier = wanted.copy(), np.zeros_like(spectrum)
         penalty = self.penalty
         for step in range(steps):
             total = np.float32(penalty + stiffness)
             # (x x^H + places * total) f = places * right, by Sherman and Morrison.
-            share = (conjugate * right).sum(axis=0) / (power + places * total)
-            free = (right - spectrum * share) / total
-            cells = self._target.cells_of(free + multiplier)
+            np.multiply(conjugate, right, out=free)
+            share = free.sum(axis=0) / (power + places * total)
+            np.multiply(spectrum, share, out=free)
+            np.subtract(right, free, out=free)
+            free *= 1 / total  # not divided: numpy divides complex numbers ten times slower
+            multiplier += free
+            cells = self._target.cells_of(multiplier)
             confined = self._target.spectrum_of(cells)
             if step < steps - 1:
-                multiplier += free - confined
+                multiplier -= confined
                 multiplier *= np.float32(1 / growth)
                 penalty *= growth
-                right = wanted + np.float32(penalty) * (confined - multiplier)
+                np.subtract(confined, multiplier, out=right)
+                right *= np.float32(penalty)
+                right += wanted
         weights = np.zeros((len(cells), self._cells, self._cells), np.float32)
         weights[:, self._rows, self._columns] = cells
         return FilterWeights(weights, cells, confined)

@@ -27,6 +27,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 
 Spectrum: TypeAlias = npt.NDArray[np.complex64]
@@ -43,15 +44,22 @@ class PartialFourier:
         Cells along each side of the square; even.
     rows, columns : slice
         The part; what is outside is zero, or of no interest.
+    window : (cells,) array or None
+        Weights along both axes that cells are multiplied by before they are transformed.
     """
 
-    def __init__(self, cells: int, rows: slice, columns: slice) -> None:
+    def __init__(
+        self, cells: int, rows: slice, columns: slice, window: Array | None = None
+    ) -> None:
         down = 2j * np.pi * np.outer(np.arange(cells)[rows], np.fft.fftfreq(cells))
         right = 2j * np.pi * np.outer(np.fft.rfftfreq(cells), np.arange(cells)[columns])
         self._to_rows = (np.exp(down) / cells).astype(np.complex64)
-        self._from_rows = np.ascontiguousarray(np.exp(-down).T, np.complex64)
+        weights = np.ones(cells) if window is None else window
+        from_rows = np.exp(-down).T * weights[rows]
+        from_columns = np.exp(-right).T * weights[columns, np.newaxis]
+        self._from_rows = np.ascontiguousarray(from_rows, np.complex64)
         self._to_columns = _real_part_of(np.exp(right), cells)
-        self._from_columns = _as_pairs(np.ascontiguousarray(np.exp(-right).T, np.complex64))
+        self._from_columns = _as_pairs(np.ascontiguousarray(from_columns, np.complex64))
 
     def cells_of(self, spectrum: Spectrum) -> CellFeatures:
         """Cells of the part, (channels, rows, columns)."""

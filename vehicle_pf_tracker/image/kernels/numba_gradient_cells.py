@@ -25,7 +25,6 @@ from vehicle_pf_tracker.image.gradient_cells import (
     DIRECTION_OF,
     DIRECTIONS,
     GRADIENT_CHANNELS,
-    MAGNITUDE_OF,
     NOISE_ENERGY,
     TEXTURE_GAIN,
     TRUNCATION,
@@ -37,15 +36,13 @@ from vehicle_pf_tracker.image.kernels.numba_jit import compiled
 _HALF = DIRECTIONS // 2
 _IMAGE = numba.types.Array(numba.uint8, 2, "C")
 _BYTES = numba.types.Array(numba.uint8, 2, "C", readonly=True)
-_FLOATS = numba.types.Array(numba.float32, 2, "C", readonly=True)
 
 DIRECTION_OF.flags.writeable = False
-MAGNITUDE_OF.flags.writeable = False
 
 
-@compiled(numba.types.Array(numba.float32, 3, "C")(_IMAGE, _BYTES, _FLOATS))
+@compiled(numba.types.Array(numba.float32, 3, "C")(_IMAGE, _BYTES))
 def _direction_histograms(
-    grey: Grey, direction_of: npt.NDArray[np.uint8], magnitude_of: npt.NDArray[np.float32]
+    grey: Grey, direction_of: npt.NDArray[np.uint8]
 ) -> npt.NDArray[np.float32]:
     """Sum magnitudes by direction and cell, one cell more on each side, (18, r + 2, c + 2)."""
     height, width = grey.shape
@@ -55,17 +52,18 @@ def _direction_histograms(
         row = int(place_y)
         low = np.float32(place_y - row)
         for x in range(1, width - 1):
-            dx = np.int32(grey[y, x + 1]) - np.int32(grey[y, x - 1]) + 255
-            dy = np.int32(grey[y + 1, x]) - np.int32(grey[y - 1, x]) + 255
-            magnitude, o = magnitude_of[dy, dx], direction_of[dy, dx]
-            place_x = (x + 0.5) / CELL + 0.5
-            column = int(place_x)
-            right = np.float32(place_x - column)
-            upper, lower = (1 - low) * magnitude, low * magnitude
-            cells[o, row, column] += (1 - right) * upper
-            cells[o, row, column + 1] += right * upper
-            cells[o, row + 1, column] += (1 - right) * lower
-            cells[o, row + 1, column + 1] += right * lower
+            dx = np.int32(grey[y, x + 1]) - np.int32(grey[y, x - 1])
+            dy = np.int32(grey[y + 1, x]) - np.int32(grey[y - 1, x])
+            o = direction_of[dy + 255, dx + 255]
+            magnitude = np.sqrt(np.float32(dx * dx + dy * dy))
+            place_x = np.float32(x + 0.5) * np.float32(1 / CELL) + np.float32(0.5)
+            column = np.int32(place_x)
+            right = (place_x - column) * magnitude
+            left = magnitude - right
+            cells[o, row, column] += left - low * left
+            cells[o, row, column + 1] += right - low * right
+            cells[o, row + 1, column] += low * left
+            cells[o, row + 1, column + 1] += low * right
     return cells
 
 
@@ -133,6 +131,6 @@ def gradient_cells(grey: Grey) -> CellFeatures:
     """Compute the channels of every whole cell, (31, r, c); `grey` is contiguous."""
     rows, columns = grey.shape[0] // CELL, grey.shape[1] // CELL
     features = np.empty((GRADIENT_CHANNELS, rows, columns), np.float32)
-    cells = _direction_histograms(grey, DIRECTION_OF, MAGNITUDE_OF)
+    cells = _direction_histograms(grey, DIRECTION_OF)
     _normalise(cells, _scales(cells), features)
     return features
