@@ -126,7 +126,7 @@ def _system(label: str, setting: Setting) -> StressSystem:
     return variant_system("fusion", dict(setting), label)
 
 
-def _cases(
+def listed_cases(
     options: argparse.Namespace, name: str, kinds: Sequence[str], **limits: int
 ) -> list[Case]:
     """List cases, or read those of a run before: listing takes a minute."""
@@ -141,14 +141,14 @@ def _cases(
 
 def fit(options: argparse.Namespace) -> dict[str, Setting]:
     """Fit by all cameras (key "") and by all but each."""
-    cases = _cases(
+    cases = listed_cases(
         options, "fit_cases", FITTED_KINDS, per_sequence=options.cases, max_frames=FITTED_FRAMES
     )
     settings = draw_settings(options.budget, options.seed)
     systems = [_system(f"{index}", setting) for index, setting in enumerate(settings)]
     results = run_battery(
         cases, systems, seeds=(0,), workers=options.workers,
-        store=options.output / "fit.jsonl", on_progress=_report,
+        store=options.output / "fit.jsonl", on_progress=report_progress,
     )  # fmt: skip
     by_camera = [
         camera_means([result for result in results if result.system == system.label])
@@ -176,8 +176,8 @@ def _write_fit(
 def judge(options: argparse.Namespace, chosen: Mapping[str, Setting]) -> list[Result]:
     """Run the settings that were fitted without a camera on that camera."""
     results: list[Result] = []
-    plain = _cases(options, "plain_cases", ("plain",))
-    hard = _cases(options, "judged_cases", JUDGED_KINDS[1:], per_sequence=options.hard)
+    plain = listed_cases(options, "plain_cases", ("plain",))
+    hard = listed_cases(options, "judged_cases", JUDGED_KINDS[1:], per_sequence=options.hard)
     for cases, seeds in ((plain, range(options.seeds)), (hard, range(1))):
         for camera, setting in chosen.items():
             own = [case for case in cases if camera and case.camera == camera]
@@ -185,7 +185,7 @@ def judge(options: argparse.Namespace, chosen: Mapping[str, Setting]) -> list[Re
                 results += run_battery(
                     own, [_system("fusion", setting)], seeds=tuple(seeds),
                     workers=options.workers, store=options.output / "judged.jsonl",
-                    on_progress=_report,
+                    on_progress=report_progress,
                 )  # fmt: skip
     return results
 
@@ -231,7 +231,8 @@ def page(results: Sequence[Result]) -> str:
     return "\n".join([head, *rows]) + "\n"
 
 
-def _report(progress: Progress) -> None:
+def report_progress(progress: Progress) -> None:
+    """Tell how many runs are done, now and then."""
     if progress.done % 50 == 0 or progress.done == progress.total:
         print(f"{progress.done} of {progress.total} runs", file=sys.stderr, flush=True)
 
