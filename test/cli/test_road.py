@@ -1,0 +1,117 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+import cv2
+import numpy as np
+import pytest
+from small_recordings import record
+
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.road.calibration import parse_pairs
+
+PAIRS = ["0,0=0,0", "90,0=9,0", "90,60=9,6", "0,60=0,6"]
+
+
+@pytest.fixture
+def bag(tmp_path):
+    return str(record(tmp_path / "bag"))
+
+
+def words(pairs):
+    return [word for pair in pairs for word in ("--pair", pair)]
+
+
+def test_residuals_parameters_and_picture(bag, tmp_path, capsys):
+    out, grid = tmp_path / "road.yaml", tmp_path / "grid.png"
+    # The last pair is 1 px off in the image, 0.1 m on the road.
+    pairs = [*PAIRS, "45,31=4.5,3"]
+    options = ["-o", str(out), "--grid", str(grid), "--frame-id", "map"]
+    assert main(["road", "calibrate", bag, *words(pairs), *options]) == 0
+    text = capsys.readouterr().out
+    assert "root mean square" in text
+    assert "a pixel is 0.1 to 0.1 m" in text
+    off = [float(line.split()[2]) for line in text.splitlines()[1:6]]
+    assert 0.5 < off[4] < 1
+    assert all(one < off[4] for one in off[:4])
+    values = read_yaml(out, "fusion_tracker")
+    assert values["road.frame_id"] == "map"
+    assert parse_pairs(values["road.pairs"]) == parse_pairs(";".join(pairs))
+    assert cv2.imread(str(grid)).shape == (64, 96, 3)
+
+
+def test_the_file_runs(bag, tmp_path):
+    out = tmp_path / "road.yaml"
+    assert main(["road", "calibrate", bag, *words(PAIRS), "-o", str(out)]) == 0
+    run = ["run", bag, "--variant", "pf", "--params", str(out), "-o", str(tmp_path / "out")]
+    assert main(run) == 0
+    header = (tmp_path / "out" / "estimates.csv").read_text().splitlines()[0]
+    assert "speed_kmh" in header
+
+
+def test_pairs_from_a_file(bag, tmp_path, capsys):
+    path = tmp_path / "pairs.yaml"
+    rows = [f"  - {{pixel: [{p}], road: [{r}]}}" for p, r in (one.split("=") for one in PAIRS)]
+    path.write_text("\n".join(["pairs:", *rows]))
+    assert main(["road", "calibrate", bag, "--pairs", str(path)]) == 0
+    assert "four pairs always fit exactly" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "text", ["", "pairs: 3", "pairs: [{pixel: [1, 2]}]", "pairs: [", "a: &a *a"]
+)
+def test_files_without_pairs(bag, tmp_path, text, capsys):
+    path = tmp_path / "pairs.yaml"
+    path.write_text(text)
+    assert main(["road", "calibrate", bag, "--pairs", str(path)]) == 1
+    assert "no pairs of the form" in capsys.readouterr().err
+
+
+def test_a_grid_to_read_points_off(bag, tmp_path, capsys):
+    grid = tmp_path / "grid.png"
+    assert main(["road", "calibrate", bag, "--grid", str(grid), "--frame", "2"]) == 0
+    picture = cv2.imread(str(grid))[..., ::-1]
+    # 96 px in about 12 lines: every 10 px.
+    lines = (picture == (255, 240, 80)).all(axis=2)
+    assert lines[:, 50].mean() > 0.9
+    assert lines[:, 55].mean() < 0.3
+    assert np.all(lines[40, 45:])
+    assert "read off pixels" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "status", "message"),
+    [
+        ([], 2, "--grid to read them off"),
+        (words(PAIRS[:3]), 1, "at least 4 pairs"),
+        (words(["0,0=0,0", "1,1=1,1", "2,2=2,2", "5,0=5,0"]), 1, "on a line"),
+        (words(["0,0"]), 1, "not u,v=x,y"),
+        ([*words(PAIRS), "--frame", "99"], 1, "has 12 images"),
+        ([*words(PAIRS), "--distortion", "0.1,0,0,0"], 1, "needs road.intrinsics"),
+        ([*words(PAIRS), "--pairs", "nowhere.yaml"], 1, "cannot read the pairs"),
+    ],
+)
+def test_mistakes(bag, options, status, message, capsys):
+    assert main(["road", "calibrate", bag, *options]) == status
+    assert message in capsys.readouterr().err
+
+
+def test_distortion_is_removed(bag, tmp_path, capsys):
+    lens = ["--intrinsics", "100,100,48,32", "--distortion-model", "plumb_bob"]
+    lens += ["--distortion=-0.2,0,0,0"]
+    straight = [*PAIRS, "45,30=4.5,3"]
+    assert main(["road", "calibrate", bag, *words(straight)]) == 0
+    exact = capsys.readouterr().out
+    assert main(["road", "calibrate", bag, *words(straight), *lens]) == 0
+    assert capsys.readouterr().out != exact

@@ -1,0 +1,162 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`road calibrate`: pixels and metres that belong together become the parameters of the road."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import yaml
+
+from vehicle_pf_tracker.cli.console import UsageError
+from vehicle_pf_tracker.cli.shared_options import positive
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.evaluation.output_files import output_errors, replacing, write_text
+from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid, draw_road_grid
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
+from vehicle_pf_tracker.parameters.files import to_yaml
+from vehicle_pf_tracker.parameters.road import RoadParameters
+from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
+from vehicle_pf_tracker.recordings.source import open_source
+from vehicle_pf_tracker.road.calibration import format_pairs, parse_pairs
+from vehicle_pf_tracker.road.lens import MODELS
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
+
+_FORM = "pairs: [{pixel: [u, v], road: [x, y]}, …]"
+_TITLE = "Road. Written by `vehicle-pf-tracker road calibrate`."
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of this verb."""
+    add = parser.add_argument
+    add("action", choices=("calibrate",), help="fit the mapping from pixels to metres")
+    add(
+        "source", metavar="SOURCE",
+        help="recording, video, folder of images, camera or stream that shows the road",
+    )  # fmt: skip
+    add("--topic", help="the image topic, if a recording has several")
+    add("--frame", type=positive, default=1, metavar="N", help="image to use (default: 1)")
+    add(
+        "--pair", action="append", default=[], metavar="U,V=X,Y", dest="pairs",
+        help="a pixel and the point of the road that it shows, px and m; repeatable",
+    )  # fmt: skip
+    add("--pairs", type=Path, metavar="FILE", dest="file", help=f"YAML file with {_FORM}")
+    add("--intrinsics", default="", metavar="FX,FY,CX,CY", help="as in CameraInfo")
+    add("--distortion-model", default="none", choices=MODELS)
+    add("--distortion", default="", metavar="K1,K2,…", help="as in CameraInfo")
+    add("--frame-id", default="road", help="frame of the road (default: road)")
+    add(
+        "--grid", type=Path, metavar="PNG",
+        help="picture with pixel coordinates to read points off; with pairs, with the road's lines",
+    )  # fmt: skip
+    add("-o", "--output", type=Path, metavar="YAML", help="parameter file for nodes and `run`")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Fit, print the residuals, and write parameters and picture."""
+    pairs = (*parse_pairs(";".join(args.pairs)), *(_read_pairs(args.file) if args.file else ()))
+    if not pairs and args.grid is None:
+        raise UsageError("give pairs of points with --pair or --pairs, or --grid to read them off")
+    frame = _frame(args.source, args.topic, args.frame)
+    if not pairs:
+        _write_picture(args.grid, draw_pixel_grid(frame))
+        print(f"{args.grid}: read off pixels of points whose place on the road you know")
+        return 0
+    road = _road(args, pairs)
+    plane = road.plane(road.lens, None)
+    print(_table(plane, pairs), end="")
+    if args.grid is not None:
+        _write_picture(args.grid, draw_road_grid(frame, plane, pairs))
+    if args.output is not None:
+        _write_parameters(args.output, road)
+        print(f"{args.output}: use it with --params, or as params_file of a node")
+    return 0
+
+
+def _read_pairs(path: Path) -> tuple[Pair, ...]:
+    """Read pairs from a YAML file.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is not of the form that the help says.
+    """
+    try:
+        document: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
+        words = [
+            ",".join(str(float(one)) for one in row["pixel"])
+            + "="
+            + ",".join(str(float(one)) for one in row["road"])
+            for row in document["pairs"]
+        ]
+    except OSError as error:
+        raise InputError(f"cannot read the pairs {path}: {error.strerror}") from None
+    except (yaml.YAMLError, ValueError, TypeError, KeyError, RecursionError):
+        raise InputError(f"the file {path} has no pairs of the form {_FORM}") from None
+    return parse_pairs(";".join(words))
+
+
+def _frame(source: str, topic: str | None, number: int) -> Frame:
+    count = 0
+    for stamped in open_source(source, topic=topic).frames():
+        count += stamped.frame is not None
+        if count == number and stamped.frame is not None:
+            return stamped.frame
+    raise InputError(f"{source} has {count} images that can be read; --frame {number} is none")
+
+
+def _road(args: argparse.Namespace, pairs: tuple[Pair, ...]) -> RoadParameters:
+    values = {
+        "road.pairs": format_pairs(pairs),
+        "road.intrinsics": args.intrinsics,
+        "road.distortion_model": args.distortion_model,
+        "road.distortion": args.distortion,
+        "road.frame_id": args.frame_id,
+    }
+    return from_mapping(SessionParameters, values).road
+
+
+def _table(plane: RoadPlane, pairs: Sequence[Pair]) -> str:
+    """Write the residual of every pair, and how long a pixel is on the road."""
+    in_image, on_road = residuals(plane, pairs)
+    lines = [f"{'pixel':>18}  {'road, m':>18}  {'off, px':>8}  {'off, m':>8}"]
+    for pair, px, metres in zip(pairs, in_image, on_road, strict=True):
+        pixel, road = (f"{one[0]:.1f},{one[1]:.1f}" for one in (pair.pixel, pair.road))
+        lines.append(f"{pixel:>18}  {road:>18}  {px:8.2f}  {metres:8.3f}")
+    rms = [float(np.sqrt(np.mean(one**2))) for one in (in_image, on_road)]
+    lines.append(f"{'root mean square':>38}  {rms[0]:8.2f}  {rms[1]:8.3f}")
+    if len(pairs) == 4:
+        lines.append("four pairs always fit exactly: give more to see how well they were read")
+    lengths = [np.linalg.norm(plane.jacobian(np.array(pair.pixel)), 2) for pair in pairs]
+    lines.append(f"a pixel is {min(lengths):.2g} to {max(lengths):.2g} m of road there")
+    return "\n".join([*lines, ""])
+
+
+def _write_picture(path: Path, picture: Frame) -> None:
+    with replacing(path) as partial, output_errors(path):
+        if not cv2.imwrite(str(partial), np.ascontiguousarray(picture[..., ::-1])):
+            raise InputError(f"cannot write {path}: name a .png or .jpg file")
+
+
+def _write_parameters(path: Path, road: RoadParameters) -> None:
+    session = SessionParameters(road=road)
+    table = {name: spec for name, spec in specs(SessionParameters).items() if "road." in name}
+    write_text(path, to_yaml(table, to_mapping(session), _TITLE))
