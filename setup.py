@@ -61,7 +61,11 @@ setup(
     maintainer_email="maintainers@vehicle-pf-tracker.invalid",
     python_requires=">=3.10",
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
-    package_data={NAME: ["py.typed"], f"{NAME}.evaluation.report": ["templates/*"]},
+    package_data={
+        NAME: ["py.typed"],
+        f"{NAME}.cli": ["pick.html"],
+        f"{NAME}.evaluation.report": ["templates/*"],
+    },
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),

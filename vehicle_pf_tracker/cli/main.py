@@ -43,7 +43,8 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "import": ("import_footage", "convert a video file or a frame folder to a recording"),
         "synth": ("synth", "render a synthetic scene to a recording, with exact truth"),
         "params": ("params", "print the commented default parameters of a variant"),
-        "run": ("run", "track a recording offline, without ROS, and score it"),
+        "run": ("run", "track vehicles in a video, recording or stream, without ROS"),
+        "pick": ("pick", "point at vehicles in a frame, to get their boxes for run"),
         "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
         "tune": (
             "tune",

@@ -1,0 +1,106 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`pick`: point at vehicles in a frame, and get their boxes as targets."""
+
+from __future__ import annotations
+
+import argparse
+import webbrowser
+from pathlib import Path
+
+import cv2
+
+from vehicle_pf_tracker.cli.console import UsageError
+from vehicle_pf_tracker.cli.picking import FrameStore, PickingServer, frame_of
+from vehicle_pf_tracker.cli.shared_options import positive
+from vehicle_pf_tracker.cli.targets import TargetOption, write_targets
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.evaluation.annotation import line_width, write
+from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, replacing
+from vehicle_pf_tracker.recordings.source import open_source
+
+_LINES = 10
+"""Lines of the grid along the longer side: few enough to read, and a step is a vehicle's size."""
+_STEPS = (5, 10, 20, 25, 50, 100, 200, 250, 500, 1000)
+"""Distances of the grid's lines, px: those that people count in."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of this verb."""
+    add = parser.add_argument
+    add(
+        "source", metavar="SOURCE",
+        help="recording, video file, folder of images, index of a camera, or URL of a stream",
+    )  # fmt: skip
+    add("--frame", type=positive, default=1, metavar="N", help="frame to begin with (default: 1)")
+    add(
+        "-o", "--output", type=Path, metavar="FILE",
+        help="write the targets to FILE, for run --targets; otherwise they are printed",
+    )  # fmt: skip
+    add(
+        "--grid", type=Path, metavar="PNG",
+        help="no page: write the frame with a grid labelled in px to PNG, to read boxes off",
+    )  # fmt: skip
+    add("--topic", help="the image topic, if a recording has several")
+    add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Serve the page until the user is done, and print or write the targets."""
+    source = open_source(args.source, topic=args.topic, fps=args.fps)
+    if args.grid is not None:
+        frame = frame_of(iter(source.frames()), args.frame).frame
+        assert frame is not None
+        _write_grid(args.grid, frame)
+        print(f"frame {args.frame} with a grid is in {args.grid}")
+        return 0
+    if args.output is not None:
+        make_folder(args.output.parent)
+    with PickingServer(FrameStore(source), args.frame) as server:
+        print(f"open {server.url} in a browser on this machine; Ctrl-C ends this", flush=True)
+        webbrowser.open(server.url)
+        targets = server.pick()
+    if not targets:
+        raise UsageError("nothing was picked")
+    if args.output is not None:
+        with output_errors(args.output):
+            write_targets(args.output, targets)
+        print(f"{len(targets)} targets are in {args.output}; use run --targets {args.output}")
+    else:
+        print(" ".join(f"--target {_words(target)}" for target in targets))
+    return 0
+
+
+def _words(target: TargetOption) -> str:
+    box = target.box
+    place = f"{target.name}@{target.frame}:"
+    return place + ",".join(f"{value:g}" for value in (box.x, box.y, box.width, box.height))
+
+
+def _write_grid(path: Path, frame: Frame) -> None:
+    picture = frame.copy()
+    height, width = picture.shape[:2]
+    step = next((s for s in _STEPS if max(width, height) / s <= _LINES * 2), _STEPS[-1])
+    thickness, yellow = line_width(picture), (255, 220, 0)
+    for x in range(0, width, step):
+        cv2.line(picture, (x, 0), (x, height - 1), yellow, 1)
+        write(picture, str(x), (x + 2, 12 * thickness), yellow)
+    for y in range(step, height, step):
+        cv2.line(picture, (0, y), (width - 1, y), yellow, 1)
+        write(picture, str(y), (2, y - 2), yellow)
+    _, coded = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+    make_folder(path.parent)
+    with replacing(path) as partial:
+        partial.write_bytes(coded.tobytes())
