@@ -19,7 +19,7 @@
 The vehicle is hidden now and then, somebody sets targets, right ones and impossible ones, and
 somebody turns parameters. Prints images in and out, the time from sending a good image to its
 answer, and how the resident memory went. Exit status 1 if a good image stayed unanswered or had no
-estimate, or a change of parameters was refused or stayed unanswered.
+estimate, was answered twice, or a change of parameters was refused or stayed unanswered.
 """
 
 from __future__ import annotations
@@ -102,10 +102,11 @@ class Soak:
         self.sizes: list[tuple[float, int]] = []
         self.answers: Counter[str] = Counter()
         self.asked = 0
+        self._began = 0.0
 
     def run(self, seconds: float) -> None:
         """Send for this long, and wait for the last answers."""
-        began = time.monotonic()
+        began = self._began = time.monotonic()
         for number in range(1, int(seconds * self._rate)):
             self._disturb(number)
             self._turn(number)
@@ -168,8 +169,12 @@ class Soak:
             if kind == "good":
                 image, when = self.sent.pop(stamp)
                 self.latencies.append(now - when)
-            else:
+            elif stamp in self.faulty:
                 image = self.faulty[stamp]
+            else:
+                print(f"at {now - self._began:.1f} s a second answer to {stamp}: {answer}")
+                self.answers["second answers"] += 1
+                continue
             mode = self._node.check(answer, image, is_good=kind == "good")
             self.answers[f"{kind}: {mode}"] += 1
 
@@ -212,7 +217,8 @@ def main() -> None:
     soak.run(args.minutes * 60)
     report(soak)
     node.end()
-    raise SystemExit(1 if soak.sent or sum(soak.changes) < soak.asked else 0)
+    is_bad = soak.sent or soak.answers["second answers"] or sum(soak.changes) < soak.asked
+    raise SystemExit(1 if is_bad else 0)
 
 
 if __name__ == "__main__":

@@ -35,6 +35,7 @@ from vehicle_pf_tracker.cli.console import (
     UsageError,
     tell_error,
 )
+from vehicle_pf_tracker.core.address_space import check_address_space
 from vehicle_pf_tracker.core.errors import InputError
 
 VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -81,8 +82,9 @@ def exit_status(action: Callable[[], int], program: str = PROGRAM) -> int:
     try:
         status = action()
         sys.stdout.flush()
-    except (InputError, UsageError) as error:
-        tell_error(str(error), program)
+    except (InputError, UsageError, MemoryError) as error:
+        is_full = isinstance(error, MemoryError)
+        tell_error("there is not enough memory" if is_full else str(error), program)
         return USAGE if isinstance(error, UsageError) else FAILED
     except ModuleNotFoundError as error:
         if (error.name or "").startswith(__package__.partition(".")[0]):
@@ -108,6 +110,7 @@ def bag_replay(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(words: list[str]) -> int:
+    check_address_space()
     try:
         args = _parser(words).parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say

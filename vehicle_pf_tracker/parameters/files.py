@@ -25,6 +25,7 @@ import yaml
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec, Value
+from vehicle_pf_tracker.parameters.yaml_text import read_yaml_file
 
 _WIDTH = 96
 """Width of comments: with their indent of four and "# ", lines of at most about 100 characters."""
@@ -69,13 +70,7 @@ def read_yaml(path: Path, node_name: str) -> dict[str, object]:
         If there is no such file, it is not valid YAML, or it has no `ros__parameters` for this
         node.
     """
-    try:
-        document = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read the parameter file {path}: {error.strerror}") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"the parameter file {path} is not valid YAML: {reason}") from None
+    document = read_yaml_file(path, "parameter file")
     sections = list(_sections(document, ""))
     if not sections:
         raise InputError(

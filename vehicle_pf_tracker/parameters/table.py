@@ -27,6 +27,7 @@ import dataclasses
 import difflib
 import functools
 import math
+import reprlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -103,23 +104,27 @@ class ParameterSpec:
             allowed.
         """
         if self.kind is float and isinstance(value, int) and not isinstance(value, bool):
-            value = float(value)
+            try:
+                value = float(value)
+            except OverflowError:
+                raise InputError(f"{self.name} must be finite, got {_shown(value)}") from None
         if type(value) is not self.kind:
-            raise InputError(f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {value!r}")
+            raise InputError(f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {_shown(value)}")
         checked = value
         if self.choices and checked not in self.choices:
-            raise InputError(f"{self.name} must be one of {', '.join(self.choices)}, got {value!r}")
+            known = ", ".join(self.choices)
+            raise InputError(f"{self.name} must be one of {known}, got {_shown(value)}")
         if isinstance(checked, int | float):
             self._check_bounds(checked)
         return checked
 
     def _check_bounds(self, value: float) -> None:
-        if not math.isfinite(value):
-            raise InputError(f"{self.name} must be finite, got {value!r}")
+        if isinstance(value, float) and not math.isfinite(value):
+            raise InputError(f"{self.name} must be finite, got {_shown(value)}")
         low = -math.inf if self.minimum is None else self.minimum
         high = math.inf if self.maximum is None else self.maximum
         if not low <= value <= high:
-            raise InputError(f"{self.name} must be {self.bounds}, got {value!r}")
+            raise InputError(f"{self.name} must be {self.bounds}, got {_shown(value)}")
 
     @property
     def bounds(self) -> str:
@@ -138,7 +143,7 @@ class ParameterSpec:
             value = readers[self.kind](word)
         except ValueError:
             raise InputError(
-                f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {text!r}"
+                f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {_shown(text)}"
             ) from None
         return self.check(value)
 
@@ -281,8 +286,17 @@ def parse_assignments(
     for word in assignments:
         name, equals, text = word.partition("=")
         if not equals:
-            raise InputError(f"--set expects name=value, got {word!r}")
+            raise InputError(f"--set expects name=value, got {_shown(word)}")
         if name not in table:
             raise InputError(unknown_name(name, table))
         values[name] = table[name].parse(text)
     return values
+
+
+_BRIEF = reprlib.Repr()
+_BRIEF.maxstring = _BRIEF.maxother = _BRIEF.maxlong = 80
+
+
+def _shown(value: object) -> str:
+    """Show a value in an error, however long it is."""
+    return _BRIEF.repr(value)

@@ -21,6 +21,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from vehicle_pf_tracker.core.address_space import check_address_space
 from vehicle_pf_tracker.core.errors import InputError
 
 _NO_ROS = (
@@ -48,6 +49,7 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
     # Imported late, so that a signal while libraries load ends the program without a traceback.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
+        check_address_space()
         from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
         from vehicle_pf_tracker.trackers.registry import find_variant  # noqa: PLC0415
 
@@ -57,6 +59,9 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
         return 1
     except ModuleNotFoundError as error:
         print(f"{name}_tracker: {_NO_ROS.format(error.name)}", file=sys.stderr)
+        return 1
+    except MemoryError:
+        print(f"{name}_tracker: there is not enough memory", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 0

@@ -202,6 +202,18 @@ def test_simulated_time_is_that_of_the_reports(bench):
     diagnostics_of(bench, "apf_tracker", lambda table: table["images"] == "4")
 
 
+def test_a_negative_clock_is_passed_over(bench):
+    rig = Rig(bench, [*on_target(), Parameter("use_sim_time", value=True)])
+    clock = bench.publisher(Clock, "/clock")
+    clock.publish(Clock(clock=Time(sec=3)))
+    bench.wait_for(lambda: rig.node.get_clock().now().nanoseconds == 3_000_000_000)
+    for seconds in (-1, -(2**31)):
+        clock.publish(Clock(clock=Time(sec=seconds, nanosec=5)))
+    clock.publish(Clock(clock=Time(sec=4)))
+    bench.wait_for(lambda: rig.node.get_clock().now().nanoseconds == 4_000_000_000)
+    assert rig.play(road(3)) == ["TRACKING"] * 3
+
+
 def test_a_target_half_outside_is_followed(bench):
     rig = Rig(bench, overrides(target__x=-11.0, target__y=50.0, target__width=24.0,
                                target__height=18.0))  # fmt: skip

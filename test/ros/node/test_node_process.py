@@ -145,6 +145,16 @@ def test_a_users_mistake_is_one_sentence_and_status_1(start_node, arguments, sen
     assert sentence in told[0]
 
 
+def test_a_parameter_file_with_a_key_twice_is_refused(start_node, tmp_path):
+    """ROS would take the last one without a word."""
+    path = tmp_path / "apf.yaml"
+    path.write_text("/**:\n  ros__parameters:\n    num_particles: 100\n    num_particles: 300\n")
+    node = start_node("apf", "--params-file", str(path))
+    assert node.wait() == 1
+    assert "the key 'num_particles' is there twice" in node.output
+    assert len(node.output.splitlines()) == 1
+
+
 def test_other_arguments_are_a_usage_error(start_process):
     code = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('apf'))"
     process = start_process("-c", code, "--target", "1,2,3,4")

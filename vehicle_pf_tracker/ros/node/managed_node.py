@@ -28,6 +28,7 @@ from typing import Any
 
 from lifecycle_msgs.srv import ChangeState
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rosgraph_msgs.msg import Clock
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.rclpy_internals import (
@@ -51,6 +52,21 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
         service = change_state_service(self)
         if service is not None:
             service.callback = partial(self._answer_change_state, service.callback)
+
+    def create_subscription(
+        self, kind: Any, topic: str, callback: Callable[..., Any], *args: Any, **options: Any
+    ) -> Any:
+        """Subscribe; that of rclpy to ``/clock`` passes over times that its clock cannot take."""
+        if kind is Clock:
+            callback = partial(self._take_clock, callback)
+        return super().create_subscription(kind, topic, callback, *args, **options)
+
+    def _take_clock(self, take: Callable[[Clock], object], message: Clock) -> None:
+        if message.clock.sec < 0:
+            words = f"/clock says {message.clock.sec} s, before time begins: passed over"
+            self.get_logger().error(words, throttle_duration_sec=5.0)
+        else:
+            take(message)
 
     @abstractmethod
     def configure(self) -> None:

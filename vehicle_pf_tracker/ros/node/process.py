@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import signal
 import sys
@@ -24,6 +25,7 @@ import time
 import traceback
 from collections import deque
 from collections.abc import Sequence
+from pathlib import Path
 from types import FrameType
 
 import rclpy
@@ -32,6 +34,7 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.yaml_text import check_yaml_file
 from vehicle_pf_tracker.ros.node.allocator import keep_image_memory
 from vehicle_pf_tracker.ros.node.image_executor import node_executor
 from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
@@ -117,6 +120,7 @@ def _run(variant: Variant, arguments: Sequence[str]) -> int:
     name = f"{variant.name}_tracker"
     keep_image_memory()
     try:
+        _check_parameter_files(arguments)
         rclpy.init(args=list(arguments))
         interrupts.left_to_ros = True
         others = remove_ros_args(list(arguments))
@@ -127,6 +131,13 @@ def _run(variant: Variant, arguments: Sequence[str]) -> int:
         return _fail(name, _first_sentence(error))
     finally:
         rclpy.try_shutdown()
+
+
+def _check_parameter_files(arguments: Sequence[str]) -> None:
+    """Refuse files in which a key is there twice, of which ROS would take the last."""
+    for option, value in itertools.pairwise(arguments):
+        if option == "--params-file" and Path(value).is_file():  # of others, ROS says why
+            check_yaml_file(Path(value), "parameter file")
 
 
 def _serve(variant: Variant) -> int:
