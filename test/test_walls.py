@@ -153,6 +153,8 @@ def allowed_here(module: Module, found: Import) -> bool:
             return False
         in_core = module.room not in {"ros", "cli"}
         return not (in_core and found.name.partition(".")[0] in ROS)
+    if not module.name:  # the public names, imported when they are first used
+        return not found.at_start
     if target.partition(".")[0] == "ros" and module.room == "cli":
         return not found.at_start
     is_room = target.partition(".")[0] in MAY_IMPORT
@@ -170,7 +172,7 @@ def node_closure(modules: dict[str, Module]) -> set[str]:
             waiting.append(name.rpartition(".")[0])
             for found in modules[name].imports:
                 target = inside(found.name)
-                if target is not None:
+                if target is not None and (name or found.at_start):
                     waiting += [target, target.rpartition(".")[0]]
     return seen
 

@@ -12,6 +12,39 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Particle-filter vehicle tracking through occlusions, for ROS 2 and for recordings."""
+"""Particle-filter vehicle tracking through occlusions, for ROS 2 and for recordings.
+
+The names below are the public interface for Python programs; see the README's example. They are
+imported when they are first used, so that nothing else waits for OpenCV.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.core.box import Box
+    from vehicle_pf_tracker.core.errors import InputError
+    from vehicle_pf_tracker.recordings.source import open_source
+    from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+    from vehicle_pf_tracker.trackers.registry import make_tracker
 
 __version__ = "0.1.0"
+__all__ = ["Box", "Estimate", "InputError", "Mode", "make_tracker", "open_source"]
+
+_HOMES = {
+    "Box": "core.box",
+    "Estimate": "trackers.estimate",
+    "InputError": "core.errors",
+    "Mode": "trackers.estimate",
+    "make_tracker": "trackers.registry",
+    "open_source": "recordings.source",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

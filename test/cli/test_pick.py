@@ -143,8 +143,8 @@ def test_a_grid_has_lines_where_its_labels_say(tmp_path):
     assert main(["pick", str(folder), "--grid", str(path), "--frame", "2"]) == 0
     picture = cv2.imread(str(path))[:, :, ::-1]
     assert picture.shape == (64, 96, 3)
-    assert (picture[-3, 80] == (255, 220, 0)).all()
-    assert (picture[-3, 82] != (255, 220, 0)).any()
+    assert (picture[-3, 80] == (255, 240, 80)).all()
+    assert (picture[-3, 82] != (255, 240, 80)).any()
 
 
 def test_a_frame_that_is_not_there_is_named(tmp_path, capsys):

@@ -27,14 +27,9 @@ from vehicle_pf_tracker.cli.picking import FrameStore, PickingServer, frame_of
 from vehicle_pf_tracker.cli.shared_options import positive
 from vehicle_pf_tracker.cli.targets import TargetOption, write_targets
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.annotation import line_width, write
 from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, replacing
+from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid
 from vehicle_pf_tracker.recordings.source import open_source
-
-_LINES = 10
-"""Lines of the grid along the longer side: few enough to read, and a step is a vehicle's size."""
-_STEPS = (5, 10, 20, 25, 50, 100, 200, 250, 500, 1000)
-"""Distances of the grid's lines, px: those that people count in."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -90,17 +85,7 @@ def _words(target: TargetOption) -> str:
 
 
 def _write_grid(path: Path, frame: Frame) -> None:
-    picture = frame.copy()
-    height, width = picture.shape[:2]
-    step = next((s for s in _STEPS if max(width, height) / s <= _LINES * 2), _STEPS[-1])
-    thickness, yellow = line_width(picture), (255, 220, 0)
-    for x in range(0, width, step):
-        cv2.line(picture, (x, 0), (x, height - 1), yellow, 1)
-        write(picture, str(x), (x + 2, 12 * thickness), yellow)
-    for y in range(step, height, step):
-        cv2.line(picture, (0, y), (width - 1, y), yellow, 1)
-        write(picture, str(y), (2, y - 2), yellow)
-    _, coded = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+    _, coded = cv2.imencode(".png", cv2.cvtColor(draw_pixel_grid(frame), cv2.COLOR_RGB2BGR))
     make_folder(path.parent)
     with replacing(path) as partial:
         partial.write_bytes(coded.tobytes())

@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
@@ -172,5 +173,32 @@ def find_variant(name: str) -> Variant:
         If there is none of this name.
     """
     if name not in VARIANTS:
-        raise InputError(f"there is no variant {name!r}; choose one of {', '.join(VARIANTS)}")
+        near = get_close_matches(name.removesuffix("_tracker"), VARIANTS, n=1)
+        hint = f"did you mean {near[0]}? " if near else ""
+        raise InputError(f"there is no variant {name!r}; {hint}choose one of {', '.join(VARIANTS)}")
     return VARIANTS[name]
+
+
+def make_tracker(variant: str = "fusion", **parameters: Any) -> BaseTracker[Any]:
+    """Make a tracker for a Python program.
+
+    Call `start(frame, box)` with the first image and `step(frame)` with each that follows; both
+    return an `Estimate`. Images are (H, W, 3) arrays of RGB bytes.
+
+    Parameters
+    ----------
+    variant : str
+        Name in the registry.
+    **parameters : Any
+        Parameters that differ from the defaults, by the names that ``params`` lists; those with a
+        dot as ``**{"motion.camera": False}``.
+
+    Raises
+    ------
+    InputError
+        If there is no such variant or parameter, or a value does not fit.
+    """
+    from vehicle_pf_tracker.parameters.table import from_mapping  # noqa: PLC0415 - needs libraries
+
+    found = find_variant(variant)
+    return found.tracker(from_mapping(found.parameters, parameters))
