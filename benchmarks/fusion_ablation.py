@@ -31,6 +31,7 @@ from pathlib import Path
 from benchmarks.fusion_fit import listed_cases, report_progress
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.output_files import write_text
+from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
 from vehicle_pf_tracker.evaluation.stress import Case, Result, difference, run_battery
 from vehicle_pf_tracker.evaluation.stress.systems import variant_system
 from vehicle_pf_tracker.evaluation.tables import markdown
@@ -80,8 +81,14 @@ def row(name: str, results: Sequence[Result]) -> list[str]:
     ]  # fmt: skip
     for measure in MEASURES:
         found = difference(results, name, DEFAULT, measure) if name != DEFAULT else None
-        cells.append(f"{found.mean:+.3f} ({found.low:+.3f} {found.high:+.3f})" if found else "–")
+        cells.append(_interval(found) if found else "–")
     return cells
+
+
+def _interval(found: Summary) -> str:
+    if found.low is None:
+        return f"{found.mean:+.3f}"
+    return f"{found.mean:+.3f} ({found.low:+.3f} {found.high:+.3f})"
 
 
 def table(results: Sequence[Result]) -> str:
