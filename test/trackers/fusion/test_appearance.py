@@ -122,6 +122,13 @@ def test_a_wrong_size_answers_less():
     assert answers == sorted(answers[:3]) + sorted(answers[3:], reverse=True)
 
 
+def test_a_first_view_without_the_target_is_not_usual():
+    appearance = learnt()
+    hidden = view_at(appearance, ROAD, PLACE)
+    assert hidden.response.max() < 0.8
+    assert view_at(appearance, frame(), PLACE).response.max() > 1
+
+
 def test_the_response_at_a_box_is_that_of_the_whole_view_there():
     appearance = learnt()
     view = view_at(appearance, frame(), PLACE)
