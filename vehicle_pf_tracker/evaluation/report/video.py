@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import cv2
@@ -26,15 +26,15 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.output_files import make_folder, replacing
+from vehicle_pf_tracker.evaluation.output_files import make_folder
 from vehicle_pf_tracker.evaluation.report.filmstrip import numbered_frames
 from vehicle_pf_tracker.evaluation.report.overlay import Crop, Mark, colour_of, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun, typical
+from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder, video_writer
 
 FOLDER = "videos"
 WIDTH = 640
 """Width of a video in px; its height is even, as codecs want it."""
-_CODEC = "mp4v"
 _LINE = 22
 _DEFAULT_RATE = 25.0
 
@@ -53,6 +53,8 @@ def write_videos(
     notify : callable
         Called with a sentence for each video that could not be made.
     """
+    if not has_encoder():
+        notify(NO_ENCODER)
     written = []
     for entry in evaluation.recordings:
         path = evaluation.folder.path / FOLDER / f"{entry.name}.mp4"
@@ -75,19 +77,12 @@ def _write(
 ) -> None:
     height = round(WIDTH * entry.height / entry.width / 2) * 2
     size = (WIDTH, height + 2 * _LINE)
-    with replacing(path) as partial:
-        codec = cv2.VideoWriter.fourcc(*_CODEC)
-        writer = cv2.VideoWriter(str(partial), codec, frame_rate(truths), size)
-        if not writer.isOpened():
-            raise InputError(f"this OpenCV cannot write {_CODEC} videos")
-        try:
-            for number, frame in numbered_frames(entry):
-                image = _draw(frame, number, truths.get(number), runs, slots)
-                resized = cv2.resize(image, (WIDTH, height))
-                shown = np.vstack([resized, _legend(number, runs, slots)])
-                writer.write(cv2.cvtColor(shown, cv2.COLOR_RGB2BGR))
-        finally:
-            writer.release()
+    with video_writer(path, size, frame_rate(truths)) as writer:
+        for number, frame in numbered_frames(entry):
+            image = _draw(frame, number, truths.get(number), runs, slots)
+            resized = cv2.resize(image, (WIDTH, height))
+            shown: Frame = np.vstack([resized, _legend(number, runs, slots)])
+            writer.write(shown)
 
 
 def frame_rate(truths: Mapping[int, Truth]) -> float:
@@ -114,15 +109,16 @@ def _draw(
     return draw_overlay(frame, Crop.whole(frame, WIDTH), truth.box if truth else None, marks)
 
 
-def _legend(number: int, labels: Iterable[str], slots: Mapping[str, int]) -> Frame:
-    """Draw the number of the frame and the systems' names, in two lines."""
+def _legend(number: int, runs: Mapping[str, ScoredRun], slots: Mapping[str, int]) -> Frame:
+    """Draw the number of the frame, and the systems' names with their modes, in two lines."""
     image: Frame = np.full((2 * _LINE, WIDTH, 3), 24, np.uint8)
     font, white = cv2.FONT_HERSHEY_SIMPLEX, (255, 255, 255)
     cv2.putText(image, f"frame {number}", (6, 16), font, 0.5, white, 1, cv2.LINE_AA)
     step = (WIDTH - 120) // 3
-    for index, label in enumerate(labels):
+    for index, (label, run) in enumerate(runs.items()):
         x, y = 120 + index % 3 * step, 16 + index // 3 * _LINE
         cv2.rectangle(image, (x, y - 10), (x + 12, y + 2), colour_of(slots[label]), -1)
-        text = f"{slots[label] + 1} {label}"
+        mode = run.modes[number - 1] if number <= len(run.modes) else ""
+        text = f"{slots[label] + 1} {label} {mode.lower()}"
         cv2.putText(image, text, (x + 18, y), font, 0.5, white, 1, cv2.LINE_AA)
     return image
