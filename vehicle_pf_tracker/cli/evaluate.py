@@ -158,12 +158,16 @@ def _judge(summaries: Sequence[SystemSummary], limit: float | None) -> int:
     if not any(summary.runs for summary in summaries):
         tell_error("no system could run; the report says why")
         return 1
+    status = 0
+    if failed := [summary.label for summary in summaries if summary.reasons]:
+        tell_error(f"not every run succeeded: {', '.join(failed)}; the report says why")
+        status = 1
     if limit is None:
-        return 0
+        return status
     means = {summary.label: summary.mean("rmse_px") for summary in summaries}
     beyond = {name: mean for name, mean in means.items() if mean is not None and mean > limit}
     if not beyond:
-        return 0
+        return status
     told = ", ".join(f"{name} {mean:.1f} px" for name, mean in beyond.items())
     tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {told}")
     return 1

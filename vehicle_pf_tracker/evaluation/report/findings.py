@@ -73,8 +73,8 @@ def _leader(aggregates: Aggregates) -> list[str]:
     summary = aggregates.overall[leader.system].get(column.key)
     within = interval_text(summary, column)
     text = (
-        f"{leader.system} has the best mean rank by {column.label}: "
-        f"{mean_text(summary, column)} on average"
+        f"{leader.system} has the best mean rank by {column.label}, "
+        f"whose mean is {mean_text(summary, column)}"
     )
     sentences = [f"{text} (95 % interval {within})." if within else f"{text}."]
     if ranking.critical_difference is None and len(ranking.ranks) > 1:

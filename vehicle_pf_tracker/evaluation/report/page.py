@@ -93,7 +93,7 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
     maker = SvgMaker()
     plan = evaluation.folder.plan
     return environment.get_template("report.html").render(
-        title=f"Evaluation {evaluation.folder.path.resolve().name}",
+        title=f"Trackers compared: {evaluation.folder.path.resolve().name}",
         facts=_facts(evaluation),
         findings=findings(evaluation, aggregates),
         slots=slots,
