@@ -86,7 +86,7 @@ class RoadParameters:
         unit="m",
     )
     acceleration: float = parameter(
-        1.0,
+        0.5,
         "Larger: the speed follows braking faster, and is less steady.",
         minimum=0.01,
         maximum=100.0,

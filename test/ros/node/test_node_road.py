@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -26,13 +28,17 @@ from geometry_msgs.msg import (
     PointStamped,
     PolygonStamped,
     PoseWithCovarianceStamped,
+    TransformStamped,
     Vector3Stamped,
 )
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import CameraInfo, Image
 from tracker_rig import HEIGHT, PERIOD_NS, SPEED, TARGET, WIDTH, Rig, on_target, road, values_of
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.ros.node import located_outputs
+from vehicle_pf_tracker.ros.road_messages import lens_of_info
 
 pytestmark = pytest.mark.ros
 
@@ -215,3 +221,67 @@ def test_frames_of_pixel_outputs_can_be_marked(bench):
     boxes[0].header.frame_id = "map"
     publisher.publish(boxes[0])
     bench.wait_for(lambda: health.refused_targets == 1)
+
+
+def transform(parent, child, position, quaternion=(0.0, 0.0, 0.0, 1.0)):
+    message = TransformStamped(child_frame_id=child)
+    message.header.frame_id = parent
+    at, turn = message.transform.translation, message.transform.rotation
+    at.x, at.y, at.z = position
+    turn.x, turn.y, turn.z, turn.w = quaternion
+    return message
+
+
+def test_pose_from_tf(bench):
+    # tf2_msgs is no wheel: handed over here, sent in test_node_optional_messages.py.
+    rig = Rig(
+        bench,
+        on_target(road__from_tf=True, road__intrinsics="100,100,79.5,59.5", road__frame_id="map"),
+    )
+    said = values_of(rig.show_frame(road(1)[0], 0))["road"]
+    assert said == "no transform from map to the camera yet"
+    transforms = [
+        transform("map", "mast", (8.0, 6.0, 0.0)),
+        transform("mast", "camera", (0.0, 0.0, 10.0), (1.0, 0.0, 0.0, 0.0)),
+        transform("mast", "broken", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)),
+    ]
+    rig.node._cameras._on_transforms(SimpleNamespace(transforms=transforms))
+    for index, frame in enumerate(road(3), 1):
+        answer = rig.show_frame(frame, index)
+    values, point = values_of(answer), rig.position_at(answer).point
+    assert values["road"] == "ok"
+    assert float(values["road_x"]) == pytest.approx(8 + (point.x - 80) / 10)
+
+
+def test_camera_info_of_a_binned_part_of_the_image():
+    message = CameraInfo(width=1280, height=960, binning_x=2, binning_y=2)
+    message.k = [1000.0, 0.0, 639.5, 0.0, 1000.0, 479.5, 0.0, 0.0, 1.0]
+    message.p = [900.0, 0.0, 630.5, 0.0, 0.0, 910.0, 470.5, 0.0, 0.0, 0.0, 1.0, 0.0]
+    message.d, message.distortion_model = [-0.3, 0.1, 0.0, 0.0, 0.0], "plumb_bob"
+    found = lens_of_info(message, rectified=False)
+    # The middle of the sensor, at 640, 480 px from its corner, is at 320, 240 px of half as many.
+    assert found.lens == Lens((500.0, 500.0), (319.5, 239.5), "plumb_bob", tuple(message.d))
+    assert found.size == (640, 480)
+    rectified = lens_of_info(message, rectified=True).lens
+    assert rectified == Lens((450.0, 455.0), (315.0, 235.0))
+    message.roi.x_offset, message.roi.y_offset = 100, 200
+    message.roi.width, message.roi.height = 400, 300
+    part = lens_of_info(message, rectified=False)
+    assert part.lens.centre == (269.5, 139.5)
+    assert part.size == (200, 150)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"k": [0.0] * 9}, "no calibration"),
+        ({"distortion_model": "thin_prism", "d": [0.1]}, "not known"),
+        ({"distortion_model": "rational_polynomial", "d": [0.1] * 12}, "must be 0"),
+    ],
+)
+def test_camera_info_that_is_no_lens(changes, words):
+    message = camera_info()
+    for name, value in changes.items():
+        setattr(message, name, value)
+    with pytest.raises(InputError, match=words):
+        lens_of_info(message, rectified=False)

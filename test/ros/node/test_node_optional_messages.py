@@ -1,0 +1,99 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""vision_msgs and tf2_msgs over the wire: installed, or built once with the wheels' generators."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from importlib.util import find_spec
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from built_messages import TF2, VISION, build, missing
+from geometry_msgs.msg import TransformStamped
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from tracker_rig import HEIGHT, TARGET, WIDTH, Rig, overrides, road, values_of
+
+from vehicle_pf_tracker.ros import detections
+from vehicle_pf_tracker.ros.node import camera_inputs
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+NODE = "/apf_tracker"
+
+
+@pytest.fixture(scope="module")
+def messages(tmp_path_factory):
+    """Return a function that imports one of the packages' modules of messages."""
+    folder = tmp_path_factory.mktemp("messages")
+    before = list(sys.path)
+    for package, definitions in (("vision_msgs", VISION), ("tf2_msgs", TF2)):
+        if find_spec(package) is None:
+            if reason := missing():
+                pytest.skip(f"{package} is not installed, and cannot be built: {reason}")
+            sys.path.append(str(build(package, definitions, folder)))
+    yield lambda package: import_module(f"{package}.msg")
+    sys.path[:] = before
+
+
+def test_a_detection_starts_a_node_and_comes_back(bench, messages, monkeypatch):
+    vision = messages("vision_msgs")
+    for name in ("Detection2D", "ObjectHypothesisWithPose"):
+        monkeypatch.setattr(detections, name, getattr(vision, name))
+    rig = Rig(bench, overrides())
+    found = bench.collect(vision.Detection2D, f"{NODE}/detection")
+    target = bench.publisher(vision.Detection2D, f"{NODE}/set_detection")
+    wanted = vision.Detection2D()
+    x, y, width, height = map(float, TARGET)
+    wanted.bbox.center.position.x, wanted.bbox.center.position.y = x + width / 2, y + height / 2
+    wanted.bbox.size_x, wanted.bbox.size_y = width, height
+    target.publish(wanted)
+    bench.wait_for(lambda: rig.node._stream._asked is not None)
+    answers = [rig.show_frame(frame, index) for index, frame in enumerate(road(3))]
+    bench.wait_for(lambda: len(found) == 3)
+    assert found[0].bbox == wanted.bbox
+    assert found[2].header == answers[2].header
+    assert found[2].id == "1"
+    assert found[2].bbox.center.position.x == float(values_of(answers[2])["x"])
+    (result,) = found[2].results
+    assert result.hypothesis.class_id == "vehicle"
+    assert result.hypothesis.score == float(values_of(answers[2])["confidence"])
+
+
+def test_the_camera_pose_comes_from_tf(bench, messages, monkeypatch):
+    kind = messages("tf2_msgs").TFMessage
+    monkeypatch.setattr(camera_inputs, "TFMessage", kind)
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    publisher = bench.node.create_publisher(kind, "/tf_static", latched)
+    transform = TransformStamped(child_frame_id="camera")
+    transform.header.frame_id = "map"
+    at, turn = transform.transform.translation, transform.transform.rotation
+    at.x, at.y, at.z, turn.x, turn.w = 8.0, 6.0, 10.0, 1.0, 0.0
+    publisher.publish(kind(transforms=[transform]))  # before the node is there: it is latched
+    x, y, width, height = map(float, TARGET)
+    parameters = overrides(
+        target__x=x, target__y=y, target__width=width, target__height=height,
+        road__from_tf=True, road__frame_id="map",
+        road__intrinsics=f"100,100,{WIDTH / 2 - 0.5},{HEIGHT / 2 - 0.5}",
+    )  # fmt: skip
+    rig = Rig(bench, parameters)
+    bench.wait_for(lambda: rig.node._stream.localisation._tree is not None)
+    values = values_of(rig.show_frame(road(1)[0], 0))
+    assert values["road"] == "ok"
+    assert float(values["road_x"]) == pytest.approx(8 + (x + width / 2 - WIDTH / 2) / 10)
+    assert float(values["road_y"]) == pytest.approx(6 - (y + height - HEIGHT / 2) / 10)
