@@ -251,3 +251,15 @@ def test_what_was_tracked_until_ctrl_c_is_kept(run, video, tmp_path, monkeypatch
     assert run(video, "--target", TARGET) == 130
     rows = estimates(tmp_path / "out")
     assert 6 <= len(rows) < COUNT
+
+
+def test_without_the_encoder_the_video_is_written_and_the_remedy_said(
+    run, video, tmp_path, monkeypatch, capsys
+):
+    for module in ("vehicle_pf_tracker.cli.run", "vehicle_pf_tracker.evaluation.video_writer"):
+        monkeypatch.setattr(sys.modules[module], "has_encoder", lambda: False)
+    made = tmp_path / "made.mp4"
+    assert run(video, "--target", TARGET, "--video", made) == 0
+    assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err
+    shown = cv2.VideoCapture(str(made))
+    assert int(shown.get(cv2.CAP_PROP_FRAME_COUNT)) == COUNT
