@@ -16,8 +16,8 @@
 
 Sources: Scharcanski et al. 2011, table I (vehicle, occlusion, resolution) and figure 5 (in its
 video 3 signs, then a bus hide the vehicle); Abdulla et al., section V (cases 1 to 6); Khong et al.,
-section VI (the phases before, partially, fully and after occluded). The papers say what happens;
-what hides the other videos' vehicles, and all speeds, are ours.
+section VI (the phases before, partially, fully and after occluded, and their timing). The papers
+say what happens; what hides the other videos' vehicles, and all speeds, are ours.
 """
 
 from __future__ import annotations
@@ -219,6 +219,29 @@ def _parked(drive: Drive, faces: list[Face], rear: float) -> tuple[Actor, Actor]
     return model.on(drive.course(rear + model.size[0] / 2, Pace.steady(0.0), LANE + 1))
 
 
+CLEAR, OVERLAPPED = 10, 4
+"""Frames until something covers the vehicle, and while all but a remnant is covered: figure 4 of
+Khong et al. has frames 1 to 10 and about 16 to 19."""
+_LORRY_HEIGHT = 1.19
+"""Height of what is parked, in vans: a seventh of the vehicle stays visible above it
+(`python -m reproduction resampling-frames` says between which shares)."""
+
+
+def _past_a_parked_lorry(drive: Drive) -> list[Actor]:
+    """Park a lorry of one colour that leaves only the edge of the target's roof visible."""
+    length, speed = drive.target.size[0], drive.parameters.speed
+    rear = drive.start + length / 2 + CLEAR * speed
+    stretch = (length + OVERLAPPED * speed) / Model(van((0, 0, 0)), drive.scale).size[0]
+    faces = [
+        replace(
+            face,
+            points=tuple((x * stretch, y, z * _LORRY_HEIGHT) for x, y, z in face.points),
+        )
+        for face in van((206, 206, 200))
+    ]
+    return list(_parked(drive, faces, rear))
+
+
 _CASE_TABLE = (
     FixedScene("case1", "partial", "trees hide parts of the vehicle",
                chosen("car", 4.0, "right", {}),
@@ -239,6 +262,12 @@ _CASE_TABLE = (
                chosen("car", 4.5, "right", {"surroundings": "town"}), _turn_behind_trees),
     FixedScene("phases", "total", "clear, half hidden by a parked van, hidden by a parked coach",
                chosen("car", 4.0, "right", {}), past(_past_parked_vehicles)),
+    FixedScene("overlap", "partial", "clear, then all but a remnant hidden by a parked lorry",
+               chosen("car", 8.0, "right", {}), past(_past_a_parked_lorry)),
+    FixedScene("disturbances", "partial and total", "a shadow, a tree, and a pillar that hides it",
+               chosen("car", 4.0, "left", {}),
+               past(lambda d: tree_shadows(d, (0.24,), SHADE_DEPTH),
+                    lambda d: trees_at(d, (0.5,), 0.42), lambda d: pillar_at(d, 0.78, 6))),
 )  # fmt: skip
 
 CASES: dict[str, FixedScene] = {case.name: case for case in _CASE_TABLE}

@@ -26,6 +26,9 @@ from vehicle_pf_tracker.core.array import Array
 
 RAYLEIGH_MEAN = float(np.sqrt(np.pi / 2))
 """Mean of a Rayleigh variable in units of its parameter."""
+DISC_SIGMA = 0.5
+"""Standard deviation along one axis of a point drawn evenly from a disc of radius 1: the mean of r²
+is 1/2, and each axis has half of it."""
 
 
 def sample_normal(rng: np.random.Generator, count: int, sigma: float) -> Array:

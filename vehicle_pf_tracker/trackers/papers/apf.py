@@ -18,6 +18,9 @@ In the regular regime particles are resampled and propagated with a Normal densi
 histogram at the estimate differs from the first or the last one, they drift with a Normal-Rayleigh
 density along the mean motion instead. Step numbers are those of Algorithm 1. Speeds and spreads
 are per nominal frame period, so that all of them scale with the elapsed time.
+
+`occlusion.rule: fixed` is the paper's step 4. `relative` is an extension of ours, with a level
+test, an alpha and a delay of its own; parameters that only it has name it as their source.
 """
 
 from __future__ import annotations
@@ -40,7 +43,11 @@ from vehicle_pf_tracker.image.similarity import Reference, hellinger_similarity
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
-from vehicle_pf_tracker.trackers.papers.clear_level import ClearLevel, ClearLevelParameters
+from vehicle_pf_tracker.trackers.papers.clear_level import (
+    RELATIVE,
+    ClearLevel,
+    ClearLevelParameters,
+)
 from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters, log_likelihood
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.papers.shared_parameters import (
@@ -97,13 +104,14 @@ class ApfReferenceParameters:
         "occlusion rule.",
         minimum=0.0,
         maximum=1.0,
-        source="P1 Algorithm 1 step 15",
+        source="P1 Algorithm 1 step 15 (no value printed)",
     )
     steady_alpha: float = parameter(
         0.01,
         "Higher: as alpha, with the relative occlusion rule, which is regular in more frames.",
         minimum=0.0,
         maximum=1.0,
+        source=RELATIVE,
     )
     steady_above: float = parameter(
         0.95,
@@ -111,6 +119,7 @@ class ApfReferenceParameters:
         minimum=0.0,
         maximum=2.0,
         unit="of Pi's clear level",
+        source=RELATIVE,
     )
     frozen_while_occluded: bool = parameter(
         True,
@@ -126,10 +135,10 @@ class ApfOcclusionParameters:
 
     rule: str = parameter(
         "relative",
-        "relative compares the similarities with their own clear level; fixed with tau, as "
-        "printed, which takes most of a real video for an occlusion.",
+        "fixed compares the similarities with tau, as the paper does, which takes most of a real "
+        "video for an occlusion; relative, our extension, with their own clear level.",
         choices=("fixed", "relative"),
-        source="P1 Algorithm 1 step 4",
+        source="P1 Algorithm 1 step 4, interpretation 27",
     )
     tau: float = parameter(
         0.8,
@@ -167,7 +176,7 @@ class ApfVelocityParameters:
         minimum=0,
         maximum=1000,
         unit="frames",
-        source="interpretation 5",
+        source=RELATIVE,
     )
     from_origin: bool = parameter(
         False,
@@ -185,7 +194,7 @@ class ApfVelocityParameters:
 class ApfParameters(ParticleParameters):
     """Parameters of `apf`."""
 
-    as_printed: bool = as_printed_switch("interpretations 1, 5, 6, 7, 11")
+    as_printed: bool = as_printed_switch("interpretations 1, 5, 6, 7, 11 and 27")
     histogram_bits: int = histogram_bits_parameter()
     resampling: str = resampling_parameter("P1 Algorithm 2")
     motion: ApfMotionParameters = group(ApfMotionParameters)
@@ -205,10 +214,12 @@ class ApfParameters(ParticleParameters):
             return self
         return replace(
             self,
+            histogram_bits=3,
+            resampling="multinomial",
             likelihood=LikelihoodParameters(sigma_v=1.5, squared_distance=False),
             motion=replace(self.motion, sigma_n=0.0, sigma_r=0.0, drift_from_velocity=False),
             reference=replace(self.reference, frozen_while_occluded=False),
-            occlusion=replace(self.occlusion, rule="fixed", raw_histogram=False),
+            occlusion=replace(self.occlusion, rule="fixed", tau=0.8, raw_histogram=False),
             velocity=ApfVelocityParameters(
                 window=0, delay=0, from_origin=True, frozen_while_occluded=False
             ),
@@ -234,7 +245,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         super().reconfigure(parameters)
 
     def _learn(self) -> None:
-        self._first = self.target.joint_histogram(self.window, self.parameters.histogram_bits)
+        bits = self.parameters.effective().histogram_bits
+        self._first = self.target.joint_histogram(self.window, bits)
         self._reference = Reference(self._first)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:

@@ -16,7 +16,8 @@
 
 Similarities of real vehicles vary with size, light and pose, those of synthetic ones hardly do. A
 drop is therefore compared with the running mean and mean deviation of clear frames, with
-hysteresis. A drop to a small share of the mean counts whatever the deviation.
+hysteresis. A drop to a small share of the mean counts whatever the deviation. The paper has a fixed
+threshold in its place; this test is an extension of it (interpretation 27).
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.core.running_level import RunningLevel
 from vehicle_pf_tracker.parameters.table import parameter
 
+RELATIVE = "extension: the relative rule (interpretation 27)"
+"""Source of the parameters that the extension has and the paper has not."""
 _LEAST_DEVIATION = 0.005
 """Deviation that is assumed at least, for images without noise: half of the smallest that was
 measured on 19 real sequences (0.011)."""
@@ -41,6 +44,7 @@ class ClearLevelParameters:
         minimum=0.0,
         maximum=100.0,
         unit="mean deviations below the level",
+        source=RELATIVE,
         tuned=True,
     )
     leave: float = parameter(
@@ -49,6 +53,7 @@ class ClearLevelParameters:
         minimum=0.0,
         maximum=100.0,
         unit="mean deviations below the level",
+        source=RELATIVE,
     )
     certain: float = parameter(
         0.65,
@@ -56,6 +61,7 @@ class ClearLevelParameters:
         minimum=0.0,
         maximum=1.0,
         unit="of the level",
+        source=RELATIVE,
         tuned=True,
     )
     rate: float = parameter(
@@ -64,6 +70,7 @@ class ClearLevelParameters:
         minimum=0.0,
         maximum=1.0,
         unit="per frame",
+        source=RELATIVE,
     )
 
 

@@ -29,7 +29,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import sample_normal
-from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.filtering.resampling import SCHEMES, Ancestors
 from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import group, parameter
@@ -89,8 +89,12 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
 
     def _resample(self, cloud: Cloud) -> Array:
         """Draw the positions that the next particles come from."""
+        return cloud.positions[self._draw(cloud)]
+
+    def _draw(self, cloud: Cloud) -> Ancestors:
+        """Draw the particles that the next ones come from, as indices."""
         scheme = SCHEMES[self.parameters.resampling]
-        return cloud.positions[scheme(cloud.weights, self.parameters.num_particles, self._rng)]
+        return scheme(cloud.weights, self.parameters.num_particles, self._rng)
 
     def _diffuse(self, frame: Frame, parents: Array, sigma: float) -> tuple[Array, bool]:
         """Propagate with a Normal density (P1 eq. 7); the result is that of `_move`."""

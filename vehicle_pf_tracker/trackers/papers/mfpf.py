@@ -17,8 +17,12 @@
 Each feature compares every particle's window with its own reference and finds its own position.
 The positions are averaged by how well each feature does against its first frame; a feature that
 does badly drops out. Where all have dropped out the vehicle is predicted and the particles are
-dispersed again around the prediction. Step numbers are those of the list in section IV. Speeds and
-radii are per nominal frame period, so that all of them scale with the elapsed time.
+dispersed again around the prediction.
+
+Steps 1 to 5 are those of the list in section IV, in its order: initialization, measurements,
+prediction, updating, resampling. Only the particles' own move of step 3 (eq. 5) opens the next
+frame instead, because how long it takes is not known before that frame arrives. Speeds and radii
+are per nominal frame period, so that all of them scale with the elapsed time.
 """
 
 from __future__ import annotations
@@ -32,7 +36,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.filtering.motion import sample_disc
+from vehicle_pf_tracker.filtering.motion import DISC_SIGMA, sample_disc, sample_normal
 from vehicle_pf_tracker.filtering.resampling import SCHEMES, Ancestors
 from vehicle_pf_tracker.filtering.weights import Weights, effective_sample_size, from_log
 from vehicle_pf_tracker.image.colour import RgbMarginals
@@ -70,12 +74,19 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         super().__init__(parameters)
         self._features: Mapping[str, WindowFeature] = {}
         self._first: list[Histograms] = []
+        """Histogram of each feature in the first frame, hist(0)."""
         self._references: list[Reference] = []
+        """Reference of each feature, hist_ref."""
         self._initial: Array | None = None
-        self._weights: Array | None = None
+        """Average similarity of each feature in the first measured frame, AS(1)."""
         self._velocity = MeanVelocity(1)
         self._position = (0.0, 0.0)
-        self._searching: float | None = None
+        self._searching = True
+        """True after the start and after predictions: particles are dispersed anew."""
+        self._predicted_for = 0.0
+        """Time in prediction mode since the last estimate, nominal frames."""
+        self._ancestors: Ancestors | None = None
+        """Particles that step 5 chose, as indices; None where it did not resample."""
 
     @abstractmethod
     def _make_features(self) -> Mapping[str, WindowFeature]:
@@ -93,11 +104,12 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     def reconfigure(self, parameters: FilterParametersT) -> None:
         """Take new parameters; see `Tracker.reconfigure`."""
         if parameters.num_particles != self.parameters.num_particles:
-            self._weights = None
+            self._ancestors = None  # the particles themselves are drawn again
         super().reconfigure(parameters)
         self._velocity = self._velocity.resized(self._settings.velocity_window)
 
     def _learn(self) -> None:
+        """Describe the selected window by every feature (step 1)."""
         self._features = self._make_features()
         centre = np.asarray([self.target.centre])
         self._first = [
@@ -107,34 +119,32 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         self._references = [Reference(first) for first in self._first]
         if self._initial is not None:
             # The frame after the start is no longer available; the start itself is closest to it.
-            radius, count = self._search_radius(1.0), self.parameters.num_particles
-            around = centre + sample_disc(self._rng, count, radius)
-            self._initial = self._averages(self._measure(self.target.patch, around))
+            around = centre + self._noise(self._search_radius(1.0))
+            self._initial = self._averages(self._compare(self.target.patch, around))
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         """Disperse the first particles (step 1)."""
-        settings = self._settings
-        self._velocity, self._position = MeanVelocity(settings.velocity_window), centre
-        self._searching, self._weights, self._initial = 0.0, None, None
-        return centre + sample_disc(self._rng, settings.num_particles, self._search_radius(1.0))
+        self._velocity, self._position = MeanVelocity(self._settings.velocity_window), centre
+        self._searching, self._predicted_for = True, 0.0
+        self._initial = self._ancestors = None
+        return centre + self._noise(self._search_radius(1.0))
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        settings = self._settings
-        resample = self._searching is None and self._is_degenerate()
-        particles, prior, left_image = self._predict(frame, elapsed, resample=resample)  # step 3
-        rho = self._measure(frame, particles)  # step 2
-        averages = self._averages(rho)
-        if self._initial is None:
-            self._initial = averages
-        weighting = weigh_features(averages, self._initial, settings.confidence.threshold)  # step 4
+        particles, prior, left_image = self._disperse(frame, elapsed)
+        rho, averages = self._measure(frame, particles)  # step 2
+        predicted = self._predict(frame, elapsed)  # step 3
+        weighting = self._weigh_features(averages)  # step 4
         if weighting.full_occlusion:
-            cloud, position = Cloud.uniform(particles), self._predict_position(frame, elapsed)
+            cloud, position, passes = Cloud.uniform(particles), predicted, 0
+            self._ancestors = None
         else:
-            cloud = self._weigh(particles, prior, rho, weighting)
-            position = self._locate(particles, weighting)
+            weights = self._weigh(prior, rho)
+            position = self._locate(particles, weights, weighting)
+            cloud = self._weigh_jointly(particles, prior, rho, weighting)
+            passes = self._resample(cloud, weights)  # step 5
         histograms = self._describe(frame, position)
         similarities = self._similarities(histograms)
-        self._follow(weighting, histograms, position, elapsed)
+        self._update(weighting, histograms, position, elapsed)  # the rest of step 4
         return Outcome(
             cloud,
             position,
@@ -143,64 +153,61 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             # The median: one feature that fails, or is misled, does not decide.
             statistics.median(similarities.tolist()),
             self._report(weighting),
-            resampling_passes=int(resample),
-            resampled_particles=len(particles) if resample else 0,
+            resampling_passes=passes,
+            resampled_particles=passes * len(particles),
             left_image=left_image,
         )
 
-    def _is_degenerate(self) -> bool:
-        limit = self._settings.resample_below * len(self._cloud.weights)
-        return effective_sample_size(self._cloud.weights) < limit
-
-    def _predict(
-        self, frame: Frame, elapsed: float, *, resample: bool
-    ) -> tuple[Array, Array, bool]:
-        """Move the particles by equation 5, or disperse them again around the prediction.
+    def _disperse(self, frame: Frame, elapsed: float) -> tuple[Array, Array, bool]:
+        """Move the particles by equation 5, or disperse them again around the last position.
 
         Returns
         -------
         particles (N, 2), their weights before this frame's measurement (N,), and as `_move` does
         """
-        settings = self._settings
-        count, weights = settings.num_particles, self._cloud.weights
-        parents, radius = self._cloud.positions, settings.dispersion.radius * elapsed
-        if self._searching is not None:
-            parents, radius = np.tile(self._position, (count, 1)), self._search_radius(elapsed)
-        elif resample:
-            parents = self._resample()
-        if self._searching is not None or resample:
-            weights = Cloud.uniform(parents).weights
-        moves = np.asarray(self._velocity.value) * elapsed + sample_disc(self._rng, count, radius)
-        particles, left_image = self._move(frame, parents, moves)
-        return particles, weights, left_image
+        settings, cloud = self._settings, self._cloud
+        radius = settings.dispersion.radius * elapsed
+        if self._searching:
+            cloud = Cloud.uniform(np.tile(self._position, (settings.num_particles, 1)))
+            radius = self._search_radius(elapsed)
+        elif self._ancestors is not None:
+            cloud = Cloud.uniform(cloud.positions[self._ancestors])
+        moves = np.asarray(self._velocity.value) * elapsed + self._noise(radius)
+        particles, left_image = self._move(frame, cloud.positions, moves)
+        return particles, cloud.weights, left_image
+
+    def _noise(self, radius: float) -> Array:
+        """Draw the noise of equation 5, which has one variance in both forms."""
+        count = self._settings.num_particles
+        if self._settings.dispersion.noise == "gaussian":
+            return sample_normal(self._rng, count, radius * DISC_SIGMA)
+        return sample_disc(self._rng, count, radius)
 
     def _search_radius(self, elapsed: float) -> float:
         dispersion = self._settings.dispersion
         nominal = dispersion.uncertain_factor * dispersion.radius * elapsed
-        grown = nominal + dispersion.growth * (self._searching or 0.0)
+        grown = nominal + dispersion.growth * self._predicted_for
         return min(grown, max(nominal, dispersion.largest))
 
-    def _resample(self) -> Array:
-        """Draw the positions that the next particles come from (step 5)."""
-        ancestors = self._draw(self._cloud.weights)
-        if self._weights is not None and not self._is_joint:
-            sets = [self._draw(weights) for weights in self._weights]
-            ancestors = common_survivors(sets, len(ancestors), otherwise=ancestors)
-        return self._cloud.positions[ancestors]
+    def _measure(self, frame: Frame, particles: Array) -> tuple[Array, Array]:
+        """Compare the particles with the references (step 2; eq. 8 and 16).
 
-    def _draw(self, weights: Weights) -> Ancestors:
-        settings = self._settings
-        return SCHEMES[settings.resampling](weights, settings.num_particles, self._rng)
+        Returns
+        -------
+        Bhattacharyya coefficients (F, N), and the average similarity of each feature (F,)
+        """
+        rho = self._compare(frame, particles)
+        averages = self._averages(rho)
+        if self._initial is None:
+            self._initial = averages
+        return rho, averages
 
-    def _measure(self, frame: Frame, particles: Array) -> Array:
-        """Bhattacharyya coefficient of every particle by every feature, shape (F, N)."""
-        window = self.window
+    def _compare(self, frame: Frame, particles: Array) -> Array:
+        window, references = self.window, self._references
         return np.stack(
             [
                 self.kernels.similarity(feature, frame, particles, window, reference)
-                for feature, reference in zip(
-                    self._features.values(), self._references, strict=True
-                )
+                for feature, reference in zip(self._features.values(), references, strict=True)
             ]
         )
 
@@ -208,29 +215,38 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         best_share = self._settings.confidence.best_share
         return average_similarities(hellinger_distance(rho), best_share)
 
-    def _weigh(
-        self, particles: Array, prior: Array, rho: Array, weighting: FeatureWeighting
-    ) -> Cloud:
-        """Weigh by each feature alone (eq. 10 and 11) and by all in use together."""
-        logs = log_likelihood(rho, self._settings.likelihood)
-        log_prior = np.log(np.maximum(prior, np.finfo(np.float64).tiny))
-        self._weights = np.stack([from_log(log_prior + row)[0] for row in logs])
-        return Cloud(particles, *from_log(log_prior + (weighting.factors > 0) @ logs))
-
-    def _locate(self, particles: Array, weighting: FeatureWeighting) -> tuple[float, float]:
-        """Position by equation 18, from each feature's own by equation 12 or 13."""
-        assert self._weights is not None
-        if self._settings.estimate == "best":
-            candidates = particles[self._weights.argmax(axis=1)]
-        else:
-            candidates = self._weights @ particles
-        x, y = weighting.combine(candidates)
-        return float(x), float(y)
-
-    def _predict_position(self, frame: Frame, elapsed: float) -> tuple[float, float]:
-        """Position by equation 5 with the last increments before the occlusion."""
+    def _predict(self, frame: Frame, elapsed: float) -> tuple[float, float]:
+        """Predict the object's position by equation 5 with the last increments (step 3)."""
         moved = np.asarray(self._position) + np.asarray(self._velocity.value) * elapsed
         x, y = keep_inside(frame, moved)
+        return float(x), float(y)
+
+    def _weigh_features(self, averages: Array) -> FeatureWeighting:
+        """Confidence and weight of every feature (step 4, eq. 17)."""
+        assert self._initial is not None
+        return weigh_features(averages, self._initial, self._settings.confidence.threshold)
+
+    def _weigh(self, prior: Array, rho: Array) -> Array:
+        """Weigh the particles by each feature alone (eq. 10 and 11), shape (F, N)."""
+        logs = log_likelihood(rho, self._settings.likelihood)
+        return np.stack([from_log(_log(prior) + row)[0] for row in logs])
+
+    def _weigh_jointly(
+        self, particles: Array, prior: Array, rho: Array, weighting: FeatureWeighting
+    ) -> Cloud:
+        """Weigh the particles by all features in use together (interpretation 18)."""
+        logs = log_likelihood(rho, self._settings.likelihood)
+        return Cloud(particles, *from_log(_log(prior) + (weighting.factors > 0) @ logs))
+
+    def _locate(
+        self, particles: Array, weights: Array, weighting: FeatureWeighting
+    ) -> tuple[float, float]:
+        """Position by equation 18, from each feature's own by equation 12 or 13 (step 4)."""
+        if self._settings.estimate == "best":
+            candidates = particles[weights.argmax(axis=1)]
+        else:
+            candidates = weights @ particles
+        x, y = weighting.combine(candidates)
         return float(x), float(y)
 
     def _describe(self, frame: Frame, position: tuple[float, float]) -> list[Histograms]:
@@ -248,25 +264,46 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         ]
         return np.asarray(1.0 - hellinger_distance(np.asarray(rho)))
 
-    def _follow(
+    def _update(
         self,
         weighting: FeatureWeighting,
         histograms: list[Histograms],
         position: tuple[float, float],
         elapsed: float,
     ) -> None:
-        """Update references (eq. 9) and increments, but for what is occluded."""
-        weight = self._settings.reference_weight
-        for number in np.flatnonzero(weighting.factors):
-            found = histograms[number]
-            blended = weight * self._first[number] + (1 - weight) * found
-            self._references[number] = Reference(blended)
+        """Update references (eq. 9) and increments; both stay in a full occlusion (step 4)."""
+        settings = self._settings
         if weighting.full_occlusion:
-            self._searching = (self._searching or 0.0) + elapsed
+            self._predicted_for += elapsed
         else:
-            self._searching = None
+            self._predicted_for = 0.0
             self._velocity.add(self._position, position, elapsed)
+            for number, (first, found) in enumerate(zip(self._first, histograms, strict=True)):
+                if weighting.factors[number] > 0 or settings.update_unused:
+                    weight = settings.reference_weight
+                    self._references[number] = Reference(weight * first + (1 - weight) * found)
+        self._searching = weighting.full_occlusion
         self._position = position
+
+    def _resample(self, cloud: Cloud, weights: Array) -> int:
+        """Choose the particles that go on where too few of them count (step 5).
+
+        `weights` are those by each feature alone. Returns the number of resamplings, 0 or 1.
+        """
+        settings, self._ancestors = self._settings, None
+        limit = settings.resample_below * len(cloud.weights)
+        if effective_sample_size(cloud.weights) >= limit:
+            return 0
+        self._ancestors = self._draw(cloud.weights)
+        if not self._is_joint:
+            sets = [self._draw(own) for own in weights]
+            count = len(self._ancestors)
+            self._ancestors = common_survivors(sets, count, otherwise=self._ancestors)
+        return 1
+
+    def _draw(self, weights: Weights) -> Ancestors:
+        settings = self._settings
+        return SCHEMES[settings.resampling](weights, settings.num_particles, self._rng)
 
     def _report(self, weighting: FeatureWeighting) -> dict[str, float]:
         """AS, LC and WF of every feature, and which are in use, for `~/mode`."""
@@ -281,6 +318,10 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             for column, values in columns.items()
             for name, value in zip(self._features, values, strict=True)
         }
+
+
+def _log(prior: Array) -> Array:
+    return np.asarray(np.log(np.maximum(prior, np.finfo(np.float64).tiny)))
 
 
 class MfpfTracker(FeatureFilter[MfpfParameters]):

@@ -62,6 +62,13 @@ class DispersionParameters:
         source="P2 section IV, DR",
         tuned=True,
     )
+    noise: str = parameter(
+        "disc",
+        "Draw the noise evenly from the disc, which bounds the search, or from a Gaussian of the "
+        "same variance, as printed.",
+        choices=("disc", "gaussian"),
+        source="P2 eq. 5, interpretation 25",
+    )
     uncertain_factor: float = parameter(
         2.0,
         "Larger: searches further around the start and around predictions.",
@@ -154,7 +161,7 @@ class EdgeParameters:
 class FeatureFilterParameters(ParticleParameters):
     """Common parameters of `mfpf` and its single-feature filters."""
 
-    as_printed: bool = as_printed_switch("interpretations 1, 12 to 19")
+    as_printed: bool = as_printed_switch("interpretations 1, 12 to 19, 25 and 26")
     reference_weight: float = parameter(
         0.7,
         "Higher: the reference keeps more of the first frame and follows the last one less.",
@@ -162,6 +169,12 @@ class FeatureFilterParameters(ParticleParameters):
         maximum=1.0,
         source="P2 eq. 9, interpretation 15 (no value printed)",
         tuned=True,
+    )
+    update_unused: bool = parameter(
+        False,
+        "On: also the references of features that have dropped out follow the last estimate, as "
+        "printed; off keeps them, so that they do not learn what has covered the vehicle.",
+        source="P2 section IV step 2, interpretation 26",
     )
     velocity_window: int = parameter(
         5,
@@ -209,7 +222,8 @@ class MfpfParameters(FeatureFilterParameters):
         """Return the effective parameters: as printed where `as_printed` is set."""
         if not self.as_printed:
             return self
-        return replace(common_print(self), edges=PRINTED_EDGES, joint_resampling=False)
+        printed = common_print(self)
+        return replace(printed, edges=PRINTED_EDGES, texture="glcm", joint_resampling=False)
 
 
 FilterParametersT = TypeVar("FilterParametersT", bound=FeatureFilterParameters)
@@ -222,9 +236,12 @@ def common_print(parameters: FilterParametersT) -> FilterParametersT:
     """Return `parameters` with everything as printed that all filters of P2 have."""
     return replace(
         parameters,
+        update_unused=True,
         velocity_window=1,
         estimate="best",
+        resampling="multinomial",
         resample_below=1.0,
         likelihood=LikelihoodParameters(sigma_v=1.5),
+        dispersion=replace(parameters.dispersion, noise="gaussian", uncertain_factor=2.0),
         confidence=ConfidenceParameters(best_share=1.0, threshold=0.8),
     )

@@ -118,8 +118,14 @@ class AnnealingParameters:
         minimum=0.01,
         maximum=1.0,
         unit="of the layer before",
-        source="Deutscher 2000 section 3 (alpha_M ... alpha_m scales the diffusion)",
+        source="in place of Deutscher's tie, see tied",
         tuned=True,
+    )
+    tied: bool = parameter(
+        False,
+        "On: each layer's covariance shrinks by the share of particles that survived, as "
+        "Deutscher ties them; off: its spread shrinks by decay.",
+        source="Deutscher 2000 section 3 (covariance scaled by the survival rates)",
     )
     largest_rate: float = parameter(
         1.0,
@@ -156,5 +162,8 @@ class SapfTracker(ColourTracker[SapfParameters]):
             log_weights = log_likelihood(rho, settings.likelihood)
             beta = annealing_rate(log_weights, annealing.survival, annealing.largest_rate)
             cloud = Cloud(particles, *from_log(beta * log_weights))
-            sigma *= annealing.decay
+            if annealing.tied:
+                sigma *= survival_rate(log_weights, beta) ** 0.5
+            else:
+                sigma *= annealing.decay
         return self._report(frame, cloud, elapsed, left_image=left_image, passes=annealing.layers)

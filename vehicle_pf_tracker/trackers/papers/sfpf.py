@@ -65,7 +65,7 @@ class SfpfTextureParameters(FeatureFilterParameters):
 
     def effective(self) -> SfpfTextureParameters:
         """Return the effective parameters: as printed where `as_printed` is set."""
-        return common_print(self) if self.as_printed else self
+        return replace(common_print(self), texture="glcm") if self.as_printed else self
 
 
 class SfpfColorTracker(FeatureFilter[SfpfColorParameters]):
