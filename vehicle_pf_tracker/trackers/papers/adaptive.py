@@ -34,6 +34,7 @@ from vehicle_pf_tracker.trackers.papers.repeated_resampling import (
     RepeatedResampling,
     RepeatedResamplingParameters,
     WeighedParticles,
+    common_print,
 )
 
 OCCLUSION_TESTS = ("n_eff", "similarity")
@@ -96,8 +97,7 @@ class AdaptiveParameters(RepeatedResamplingParameters):
         """Return the effective parameters: as printed where `as_printed` is set."""
         if not self.as_printed:
             return self
-        occlusion = replace(self.occlusion, test="n_eff")
-        return replace(self, criterion=1.0, weighted_mean=False, occlusion=occlusion)
+        return replace(common_print(self), occlusion=replace(self.occlusion, test="n_eff"))
 
 
 class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):

@@ -78,13 +78,18 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
         self._position = (0.0, 0.0)
 
+    @property
+    def _settings(self) -> ColourParametersT:
+        """Effective parameters."""
+        return self.parameters
+
     def _learn(self) -> None:
-        histogram = self.target.joint_histogram(self.window, self.parameters.histogram_bits)
+        histogram = self.target.joint_histogram(self.window, self._settings.histogram_bits)
         self._reference = Reference(histogram)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         self._velocity, self._position = MeanVelocity(VELOCITY_WINDOW), centre
-        settings = self.parameters
+        settings = self._settings
         return np.asarray(centre) + sample_normal(self._rng, settings.num_particles, settings.sigma)
 
     def _resample(self, cloud: Cloud) -> Array:
@@ -93,8 +98,8 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
 
     def _draw(self, cloud: Cloud) -> Ancestors:
         """Draw the particles that the next ones come from, as indices."""
-        scheme = SCHEMES[self.parameters.resampling]
-        return scheme(cloud.weights, self.parameters.num_particles, self._rng)
+        scheme = SCHEMES[self._settings.resampling]
+        return scheme(cloud.weights, self._settings.num_particles, self._rng)
 
     def _diffuse(self, frame: Frame, parents: Array, sigma: float) -> tuple[Array, bool]:
         """Propagate with a Normal density (P1 eq. 7); the result is that of `_move`."""
@@ -102,7 +107,7 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
 
     def _similarity(self, frame: Frame, positions: Array) -> Array:
         """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
-        feature = JointColour(self.parameters.histogram_bits)
+        feature = JointColour(self._settings.histogram_bits)
         return self.kernels.similarity(feature, frame, positions, self.window, self._reference)
 
     def _report(

@@ -20,13 +20,14 @@ from the weighted ones, and weighted again. Step numbers are those of Table I.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.trackers.papers.repeated_resampling import (
     RepeatedResampling,
     RepeatedResamplingParameters,
     WeighedParticles,
+    common_print,
 )
 
 
@@ -36,7 +37,7 @@ class ConventionalParameters(RepeatedResamplingParameters):
 
     def effective(self) -> ConventionalParameters:
         """Return the effective parameters: as printed where `as_printed` is set."""
-        return replace(self, criterion=1.0, weighted_mean=False) if self.as_printed else self
+        return common_print(self) if self.as_printed else self
 
 
 class ConventionalTracker(RepeatedResampling[ConventionalParameters]):

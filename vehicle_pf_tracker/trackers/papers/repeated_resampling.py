@@ -15,7 +15,9 @@
 """Repeated resampling within a frame: common part of `conventional` and `adaptive` (P3).
 
 Particles are weighted, and while their effective sample size is too small they are replaced and
-weighted again (Tables I and II). The two filters differ in which particles they replace.
+weighted again (Tables I and II). The two filters differ in which particles they replace. Equation 6
+has a particle's previous weight as a factor, the tables have not; as in the tables, the next frame
+starts without it also where no pass has run (interpretation 28).
 """
 
 from __future__ import annotations
@@ -41,7 +43,7 @@ from vehicle_pf_tracker.trackers.papers.shared_parameters import as_printed_swit
 class RepeatedResamplingParameters(ColourParameters):
     """Parameters of both filters of P3."""
 
-    as_printed: bool = as_printed_switch("interpretations 21 and 22")
+    as_printed: bool = as_printed_switch("interpretations 21, 22 and 29")
     sigma: float = parameter(
         14.0,
         "About 1.75 times the speed: less loses fast vehicles, more follows similar vehicles.",
@@ -81,12 +83,17 @@ class RepeatedResamplingParameters(ColourParameters):
     weighted_mean: bool = parameter(
         True,
         "Weigh particles in the estimate; off takes their plain mean, as printed.",
-        source="P3 section V",
+        source="P3 section V, interpretation 29",
     )
     likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.2)
 
 
 RepeatedParametersT = TypeVar("RepeatedParametersT", bound=RepeatedResamplingParameters)
+
+
+def common_print(parameters: RepeatedParametersT) -> RepeatedParametersT:
+    """Return `parameters` with everything as printed that both filters of P3 have."""
+    return replace(parameters, histogram_bits=3, criterion=1.0, most_passes=20, weighted_mean=False)
 
 
 @dataclass(frozen=True, slots=True)
