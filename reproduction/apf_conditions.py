@@ -24,7 +24,7 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 from typing import TypeAlias
 
-from reproduction.apf_systems import ALL_INTERPRETATIONS, APF, RIVALS
+from reproduction.apf_systems import INTERPRETATIONS, APF, RIVALS
 from reproduction.cells import SceneChoice
 from reproduction.experiment import Claim, DataTable, Entry, Finding, Holds
 from vehicle_pf_tracker.parameters.table import Value
@@ -56,7 +56,7 @@ Errors: TypeAlias = Mapping[str, Mapping[str, Sequence[float]]]
 
 def condition_table(conditions: Errors) -> DataTable:
     """Put the medians side by side, and how far APF is behind the best rival."""
-    interpretations = [system.label for system in ALL_INTERPRETATIONS.values()]
+    interpretations = [system.label for system in INTERPRETATIONS.values()]
     labels = [*(rival.label for rival in RIVALS), *interpretations]
     rows: list[tuple[Entry, ...]] = [
         (name, *(median(errors[label]) for label in labels), f"{_ratio(errors, APF.label):.2f}")
@@ -72,13 +72,13 @@ def condition_claims(conditions: Errors) -> tuple[Claim, ...]:
             f"(not the paper's, but what it takes for granted) without occlusion APF's median RMSE "
             f"is at most {FACTOR:g} times the best rival's, in each condition",
             "unoccluded conditions",
-            tuple(_finding(conditions, interpretation) for interpretation in ALL_INTERPRETATIONS),
+            tuple(_finding(conditions, interpretation) for interpretation in INTERPRETATIONS),
         ),
     )
 
 
 def _finding(conditions: Errors, interpretation: str) -> Finding:
-    label = ALL_INTERPRETATIONS[interpretation].label
+    label = INTERPRETATIONS[interpretation].label
     ratios = {name: _ratio(errors, label) for name, errors in conditions.items()}
     behind = {name: ratio for name, ratio in ratios.items() if ratio > FACTOR}
     parts = "; ".join(f"{name} {ratio:.2f}" for name, ratio in behind.items())

@@ -31,7 +31,7 @@ from reproduction.apf_conditions import (
     condition_table,
 )
 from reproduction.apf_systems import (
-    ALL_INTERPRETATIONS,
+    INTERPRETATIONS,
     APF,
     RIVALS,
     SIGMA_RULE,
@@ -67,7 +67,7 @@ _QUICK_CONDITIONS = "clear", "rough, turn"
 _AT_MOST = 0.5
 """Share of the best rival's error that the paper's table stays well below (17.32 of 73.69)."""
 _PAPER = {"PF": 74.57, "SAPF": 75.30, "HPFMS": 74.20, "PFCL": 78.81, "MS": 73.69, "APF": 17.32}
-_SYSTEMS = (*SIX, *(system for system in ALL_INTERPRETATIONS.values() if system != APF))
+_SYSTEMS = (*SIX, *(system for system in INTERPRETATIONS.values() if system != APF))
 
 Errors: TypeAlias = Mapping[str, Mapping[str, Sequence[float]]]
 """RMSE of each seed, by scene and by tracker."""
@@ -89,8 +89,7 @@ def report(results: Results, size: Size) -> Report:
     videos = {name: errors[name] for name in _videos(size)}
     conditions = {name: errors[name] for name in _conditions(size)}
     hits = {
-        name: _recoveries(results, videos, size, system)
-        for name, system in ALL_INTERPRETATIONS.items()
+        name: _recoveries(results, videos, size, system) for name, system in INTERPRETATIONS.items()
     }
     others = {rival.label: _recoveries(results, videos, size, rival) for rival in RIVALS}
     tables = {
@@ -211,7 +210,7 @@ def _claims(
         Claim(
             "over all videos APF has the smallest average RMSE",
             _PLACE,
-            tuple(_first(videos, groups["average"], name, 1.0) for name in ALL_INTERPRETATIONS),
+            tuple(_first(videos, groups["average"], name, 1.0) for name in INTERPRETATIONS),
         ),
         Claim(
             "on the videos with total occlusions it is far ahead: at most half of the best rival's "
@@ -219,13 +218,13 @@ def _claims(
             _PLACE,
             tuple(
                 _first(videos, groups["total occlusion"], name, _AT_MOST)
-                for name in ALL_INTERPRETATIONS
+                for name in INTERPRETATIONS
             ),
         ),
         Claim(
             "it is ahead on every video with a partial or total occlusion",
             _PLACE,
-            tuple(_everywhere(videos, name) for name in ALL_INTERPRETATIONS),
+            tuple(_everywhere(videos, name) for name in INTERPRETATIONS),
         ),
         Claim(
             "after the occlusion APF resumes tracking, the others do not",
@@ -252,7 +251,7 @@ def _best(videos: Errors, names: Sequence[str]) -> tuple[str, list[float]]:
 
 
 def _first(videos: Errors, names: Sequence[str], interpretation: str, at_most: float) -> Finding:
-    own = _averages(videos, names, ALL_INTERPRETATIONS[interpretation].label)
+    own = _averages(videos, names, INTERPRETATIONS[interpretation].label)
     label, best = _best(videos, names)
     ratio = fmean(own) / fmean(best)
     return Finding(
@@ -264,7 +263,7 @@ def _first(videos: Errors, names: Sequence[str], interpretation: str, at_most: f
 
 
 def _everywhere(videos: Errors, interpretation: str) -> Finding:
-    label = ALL_INTERPRETATIONS[interpretation].label
+    label = INTERPRETATIONS[interpretation].label
     occluded = [name for name in videos if VIDEOS[name].occlusion != "none"]
     ahead = {
         name: median(videos[name][label])

@@ -99,7 +99,7 @@ class ApfReferenceParameters:
     """Adaptation of the reference histogram to the vehicle."""
 
     alpha: float = parameter(
-        0.1,
+        0.01,
         "Higher: the reference follows changes of appearance faster. Counts with the fixed "
         "occlusion rule.",
         minimum=0.0,
