@@ -24,7 +24,13 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 from typing import TypeAlias
 
-from reproduction.apf_systems import INTERPRETATIONS, APF, RIVALS
+from reproduction.apf_systems import (
+    COMPARISONS,
+    INTERPRETATIONS,
+    OWN_LIKELIHOOD,
+    RIVALS,
+    Comparison,
+)
 from reproduction.cells import SceneChoice
 from reproduction.experiment import Claim, DataTable, Entry, Finding, Holds
 from vehicle_pf_tracker.parameters.table import Value
@@ -51,18 +57,23 @@ CONDITIONS: dict[str, SceneChoice] = {
 }
 """Conditions by name: each with a clean camera, and with one that shakes, flickers and is noisy."""
 
+_JUDGED = COMPARISONS[:4]
+"""The interpretations, and the rivals with their own likelihood."""
+
 Errors: TypeAlias = Mapping[str, Mapping[str, Sequence[float]]]
 
 
 def condition_table(conditions: Errors) -> DataTable:
     """Put the medians side by side, and how far APF is behind the best rival."""
-    interpretations = [system.label for system in INTERPRETATIONS.values()]
-    labels = [*(rival.label for rival in RIVALS), *interpretations]
+    apf = [system.label for system in INTERPRETATIONS.values()]
+    labels = [*(rival.label for rival in (*RIVALS, *OWN_LIKELIHOOD)), *apf]
     rows: list[tuple[Entry, ...]] = [
-        (name, *(median(errors[label]) for label in labels), f"{_ratio(errors, APF.label):.2f}")
+        (name, *(median(errors[label]) for label in labels),
+         *(f"{_ratio(errors, one):.2f}" for one in _JUDGED))
         for name, errors in conditions.items()
-    ]
-    return DataTable(("condition", *labels, "APF / best rival"), tuple(rows))
+    ]  # fmt: skip
+    heads = (f"APF / best rival, {one.name}" for one in _JUDGED)
+    return DataTable(("condition", *labels, *heads), tuple(rows))
 
 
 def condition_claims(conditions: Errors) -> tuple[Claim, ...]:
@@ -72,23 +83,23 @@ def condition_claims(conditions: Errors) -> tuple[Claim, ...]:
             f"(not the paper's, but what it takes for granted) without occlusion APF's median RMSE "
             f"is at most {FACTOR:g} times the best rival's, in each condition",
             "unoccluded conditions",
-            tuple(_finding(conditions, interpretation) for interpretation in INTERPRETATIONS),
+            tuple(_finding(conditions, one) for one in _JUDGED),
         ),
     )
 
 
-def _finding(conditions: Errors, interpretation: str) -> Finding:
-    label = INTERPRETATIONS[interpretation].label
-    ratios = {name: _ratio(errors, label) for name, errors in conditions.items()}
+def _finding(conditions: Errors, one: Comparison) -> Finding:
+    ratios = {name: _ratio(errors, one) for name, errors in conditions.items()}
     behind = {name: ratio for name, ratio in ratios.items() if ratio > FACTOR}
     parts = "; ".join(f"{name} {ratio:.2f}" for name, ratio in behind.items())
     return Finding(
-        interpretation,
+        one.name,
         Holds.share(1 - len(behind) / len(ratios), yes=1.0),
         f"within {FACTOR:g} times in {len(ratios) - len(behind)} of {len(ratios)} conditions"
         + (f"; beyond it: {parts} times" if behind else ""),
     )
 
 
-def _ratio(errors: Mapping[str, Sequence[float]], label: str) -> float:
-    return median(errors[label]) / min(median(errors[rival.label]) for rival in RIVALS)
+def _ratio(errors: Mapping[str, Sequence[float]], one: Comparison) -> float:
+    best = min(median(errors[label]) for label in one.rival_labels)
+    return median(errors[one.apf.label]) / best

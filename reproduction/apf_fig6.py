@@ -16,11 +16,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from statistics import median
+
+from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
 from reproduction.apf_systems import INTERPRETATIONS, RIVALS, SIX
+from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
 from reproduction.experiment import (
     Claim,
     DataTable,
@@ -34,7 +37,7 @@ from reproduction.experiment import (
 )
 from reproduction.numbers import median_and_range
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
-from vehicle_pf_tracker.evaluation.plots import error_figure
+from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _PLACE = "section IV, figure 6"
@@ -43,13 +46,27 @@ _PLACE = "section IV, figure 6"
 def report(results: Results, size: Size) -> Report:
     """Draw the first seed's errors, and judge all seeds."""
     runs = video3.all_scores(results, size)
-    drawn = {system.label: runs[system.label][0] for system in SIX}
     return Report(
         video3.data(runs, size),
-        error_figure(drawn),
+        _figure(runs),
         _verdict(runs, size),
         {"Median of the seeds' mean errors, px:": _table(runs)},
     )
+
+
+def _figure(runs: Mapping[str, Sequence[Scores]]) -> Figure:
+    figure = Figure(figsize=(10, 7), layout="constrained")
+    linear, logarithmic = figure.subplots(2, 1, sharex=True)
+    for axes in (linear, logarithmic):
+        shade_occlusions(axes, runs[SIX[0].label][0])
+        for system, style in zip(SIX, STYLES, strict=True):
+            draw_band(axes, runs[system.label], style, system.label)
+        axes.set(ylabel="error of the centre, px")
+    linear.set(ylim=(0, None), title="linear, as in the paper")
+    log_errors(logarithmic)
+    logarithmic.set(xlabel="frame", title="logarithmic")
+    legend_of(figure, (linear, logarithmic))
+    return figure
 
 
 def _mean_errors(of_seeds: Sequence[Scores]) -> tuple[list[float], list[float]]:
@@ -86,8 +103,8 @@ def _verdict(runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
                 findings,
             ),
         ),
-        f"{video3.SETTING} {len(size.seeds)} seeds; curves are those of the first, on a "
-        f'logarithmic scale. "After" begins {SETTLING_FRAMES} frames after the last hidden one.',
+        f"{video3.SETTING} {len(size.seeds)} seeds. {BANDS_NOTE} "
+        f'"After" begins {SETTLING_FRAMES} frames after the last hidden one.',
     )
 
 

@@ -16,8 +16,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from reproduction.cells import RunCell, SceneChoice, System
+from reproduction.experiment import OURS, PAPER, PRINTED
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.parameters.table import Value
 
 VEHICLE_WIDTH, VEHICLE_HEIGHT = 30.0, 22.0
 SPEED = 5.0
@@ -41,10 +45,14 @@ def covered(truths: list[Truth]) -> tuple[int, int] | None:
 
 
 SIGMA_V = 0.1
-"""One likelihood for all trackers: of 0.1 and 0.158 (Perez's lambda of 20) it gave every one of them
-the smaller mean RMSE, on `video01` to `video18` with seeds 100 to 104."""
-_LIKELIHOOD = {"likelihood.sigma_v": SIGMA_V}
-_FIXED = {"occlusion.rule": "fixed", "occlusion.tau": 0.8, "reference.alpha": 0.01}
+"""One likelihood for all trackers: of 0.1 and 0.158 (Perez's lambda of 20) it gave each of the five
+that have one the smaller mean RMSE, on `video01` to `video18` with seeds 100 to 104."""
+_LIKELIHOOD: dict[str, Value] = {"likelihood.sigma_v": SIGMA_V}
+_FIXED: dict[str, Value] = {
+    "occlusion.rule": "fixed",
+    "occlusion.tau": 0.8,
+    "reference.alpha": 0.01,
+}
 APF = System.of("APF", "apf", {**_FIXED, **_LIKELIHOOD})
 RIVALS = (
     System.of("PF", "pf", _LIKELIHOOD),
@@ -55,16 +63,17 @@ RIVALS = (
 )
 """Rivals in the order of the paper's tables."""
 RELATIVE = System.of("APF, relative", "apf", {"occlusion.rule": "relative", **_LIKELIHOOD})
-PRINTED = System.of("APF as printed", "apf", {"as_printed": True})
-INTERPRETATIONS = {"the paper's rule": APF, "our extension": RELATIVE, "as printed": PRINTED}
+AS_PRINTED = System.of("APF as printed", "apf", {"as_printed": True})
+INTERPRETATIONS = {PAPER: APF, OURS: RELATIVE, PRINTED: AS_PRINTED}
 INTERPRETATIONS_NOTE = (
-    "The paper's rule is step 4 of its algorithm with its tau of 0.8 and an alpha of 0.01, for "
-    "which the paper has no value (of 0.003, 0.01, 0.03 and 0.1 the first two gave the least error "
-    "on `video01` to `video18` with seeds 100 to 104: 23.4, 23.7, 26.5 and 27.9 px). Our extension "
-    "(`occlusion.rule: relative`, the default of the variant `apf`) holds the similarities against "
-    "their own running level instead. As printed follows the paper to the letter in everything."
+    "The paper's rule is step 4 of its algorithm with its tau of 0.8, and an alpha of 0.01, for "
+    "which the paper has no value (of 0.003, 0.01, 0.03 and 0.1 the first two gave the least "
+    "error on `video01` to `video18` with seeds 100 to 104: 23.4, 23.7, 26.5 and 27.9 px). Our "
+    "interpretation, the default of the variant `apf`, has our extension `occlusion.rule: "
+    "relative`, which holds the similarities against their own running level. As printed follows "
+    "the paper to the letter in everything."
 )
-_OWN = {"likelihood.sigma_v": 0.158}
+_OWN: dict[str, Value] = {"likelihood.sigma_v": 0.158}
 OWN_LIKELIHOOD = tuple(
     System.of(f"{rival.label}, sigma_v 0.158", rival.variant, _OWN)
     for rival in RIVALS
@@ -79,6 +88,43 @@ LIBERTIES = (
 """The rivals with options that their own papers have, or with APF's number of measurements: three
 steps of mean shift and one measurement for each of 50 particles are 200 windows."""
 SIX = (APF, *RIVALS)
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """One form of APF, and the rivals that it is held against.
+
+    Attributes
+    ----------
+    name : str
+        Name in the tables of findings.
+    apf : System
+        The paper's tracker.
+    rivals : tuple of System
+        The five others, in the order of the paper's tables.
+    """
+
+    name: str
+    apf: System
+    rivals: tuple[System, ...]
+
+    @property
+    def rival_labels(self) -> tuple[str, ...]:
+        """Labels of the rivals."""
+        return tuple(rival.label for rival in self.rivals)
+
+
+_MS = RIVALS[-1]
+OWN_SIGMA_V = "the paper's rule, rivals with their own sigma_v"
+COMPARISONS = (
+    *(Comparison(name, system, RIVALS) for name, system in INTERPRETATIONS.items()),
+    Comparison(OWN_SIGMA_V, APF, (*OWN_LIKELIHOOD, _MS)),
+    Comparison(
+        "the paper's rule, rivals with their papers' options", APF,
+        (LIBERTIES[2], LIBERTIES[1], LIBERTIES[0], RIVALS[3], _MS),
+    ),
+)  # fmt: skip
+"""APF under every interpretation against rivals of one likelihood, and in other company."""
 
 SPEEDS_PER_SIGMA = 1.5
 LEAST_SIGMA, LARGEST_SIGMA = 5.0, 10.0

@@ -21,10 +21,9 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 
 from reproduction.apf_systems import (
-    FIXED,
-    PRINTED,
+    INTERPRETATIONS,
+    RIVALS,
     SIGMA_RULE,
-    SIX,
     ruled,
 )
 from reproduction.cells import PATH, RunCell, SceneChoice, System, scores
@@ -33,7 +32,7 @@ from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 SCENE = SceneChoice.of("video03")
-SYSTEMS = (*SIX, FIXED, PRINTED)
+SYSTEMS = tuple(dict.fromkeys((*INTERPRETATIONS.values(), *RIVALS)))
 SETTING = (
     "The scene `video03` is our counterpart of the paper's Video3: a sport utility vehicle passes "
     "a lamp post, is hidden by a sign and then by a coach that overtakes; 15 frames per second. "

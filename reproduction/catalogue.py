@@ -27,9 +27,11 @@ from reproduction import (
     apf_fig5,
     apf_fig6,
     apf_fig7,
+    apf_table1,
     apf_table2,
     apf_timing,
     mfpf_errors,
+    mfpf_fig2,
     mfpf_frames,
     mfpf_histograms,
     mfpf_similarities,
@@ -45,11 +47,12 @@ from reproduction.experiment import Experiment
 from vehicle_pf_tracker.core.errors import InputError
 
 _APF = (
-    apf_fig1, apf_fig2, apf_fig3, apf_fig4, apf_fig5, apf_fig6, apf_fig7, apf_table2, apf_timing,
+    apf_fig1, apf_fig2, apf_fig3, apf_fig4, apf_fig5, apf_fig6, apf_fig7, apf_table1, apf_table2,
+    apf_timing,
 )  # fmt: skip
 _MFPF = (
     mfpf_table1, mfpf_table2, mfpf_table3, mfpf_similarities, mfpf_errors, mfpf_frames,
-    mfpf_histograms,
+    mfpf_histograms, mfpf_fig2,
 )  # fmt: skip
 _RESAMPLING = resampling_fig4, resampling_fig5, resampling_frames, resampling_cost
 

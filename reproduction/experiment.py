@@ -29,6 +29,13 @@ from reproduction.cells import Cell, Result
 
 Entry: TypeAlias = float | int | str | None
 
+PAPER = "the paper's rule"
+"""The paper's algorithm as it was meant: misprints and gaps filled by interpretations 1 to 24."""
+OURS = "our interpretation"
+"""The variant's defaults, or what we add to the paper's rule, named in the setting."""
+PRINTED = "as printed"
+"""The paper to the letter, misprints included."""
+
 
 @dataclass(frozen=True, slots=True)
 class DataTable:
@@ -60,7 +67,7 @@ def _shown(entry: Entry, decimals: int) -> str:
 
 
 class Holds(str, Enum):
-    """ExperimentVerdict on a claim."""
+    """Verdict on a claim."""
 
     YES = "yes"
     PARTLY = "partly"
@@ -94,7 +101,7 @@ class Finding:
     interpretation : str
         Name of the interpretation.
     holds : Holds
-        ExperimentVerdict under this interpretation.
+        Verdict under this interpretation.
     numbers : str
         The numbers that say so, with their spread.
     """
@@ -106,7 +113,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """One claim in our words, its place in the paper, and the findings, ours first."""
+    """One claim in our words, its place in the paper, and the findings: the first one decides."""
 
     claim: str
     place: str
@@ -133,16 +140,36 @@ class ExperimentVerdict:
 
     @property
     def holds(self) -> Holds:
-        """Joint verdict on all claims under our interpretation."""
+        """Joint verdict on all claims under the first interpretation, the paper's rule."""
         return Holds.all(claim.findings[0].holds for claim in self.claims)
+
+    def under(self, interpretation: str) -> Holds | None:
+        """Joint verdict under another interpretation; None if no claim was judged under it.
+
+        A claim that depends on no interpretation counts under each.
+        """
+        named = [
+            [f.holds for f in claim.findings if f.interpretation == interpretation]
+            for claim in self.claims
+        ]
+        if not any(named):
+            return None
+        judged = [
+            found[0] if found else claim.findings[0].holds
+            for claim, found in zip(self.claims, named, strict=True)
+            if found or len(claim.findings) == 1
+        ]
+        return Holds.all(judged)
 
     def to_json(self) -> dict[str, Any]:
         """Return plain values for JSON."""
-        return {"holds": self.holds.value, **asdict(self)}
+        others = {name: self.under(name) for name in (OURS, PRINTED)}
+        under = {name: None if found is None else found.value for name, found in others.items()}
+        return {"holds": self.holds.value, "under": under, **asdict(self)}
 
     def to_markdown(self) -> str:
         """Return the text, with a table per claim."""
-        parts = [f"**ExperimentVerdict: {self.holds.value}.**", self.setting]
+        parts = [f"**Verdict: {self.holds.value}.**", self.setting]
         for claim in self.claims:
             rows = ["| interpretation | holds | result |", "|---|---|---|"]
             rows += [

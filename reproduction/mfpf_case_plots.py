@@ -16,13 +16,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reproduction import mfpf_systems as mfpf
+from reproduction.bands import legend_of
 from reproduction.experiment import Size
 
 _COLUMNS = 2
@@ -65,16 +65,5 @@ def draw_by_case(
         ax.set(xlabel="frame")
     for ax in axes[:, 0] if one_scale else axes.flat:
         ax.set(ylabel=value)
-    _share_legend(figure, axes.flat)
+    legend_of(figure, axes.flat)
     return figure
-
-
-def _share_legend(figure: Figure, axes: Iterable[Axes]) -> None:
-    """Put one legend below all plots, each name once."""
-    handles: dict[str, Artist] = {}
-    for ax in axes:
-        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
-            handles.setdefault(label, handle)
-    figure.legend(
-        list(handles.values()), list(handles), loc="outside lower center", ncols=7, frameon=False
-    )

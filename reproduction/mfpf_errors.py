@@ -18,10 +18,10 @@ from __future__ import annotations
 
 from statistics import fmean, pstdev
 
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reproduction import mfpf_systems as mfpf
+from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
 from reproduction.experiment import (
     Claim,
     DataTable,
@@ -34,15 +34,14 @@ from reproduction.experiment import (
     Results,
     Size,
 )
-from reproduction.mfpf_case_plots import draw_by_case
 from reproduction.mfpf_systems import FOUR, INTERPRETATIONS, MFPF, SINGLES
-from vehicle_pf_tracker.evaluation.plots import draw_errors
+from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
 
 _PLACE = "section V, figures 5b to 15b"
 
 
 def report(results: Results, size: Size) -> Report:
-    """Draw the first seed's errors, and judge all seeds."""
+    """Draw the errors with their spread, and judge all seeds."""
     rows: list[tuple[Entry, ...]] = [
         (
             interpretation,
@@ -66,23 +65,33 @@ def report(results: Results, size: Size) -> Report:
         _figure(results, size),
         ExperimentVerdict(
             _claims(results, size),
-            f"{mfpf.setting(size)} Curves are those of the first seed under our interpretation, "
-            f"on a "
-            "logarithmic scale.",
+            f"{mfpf.setting(size)} {BANDS_NOTE} The paper's rule is shown, on the paper's linear "
+            "scale to the left and on a logarithmic one to the right.",
         ),
     )
 
 
 def _figure(results: Results, size: Size) -> Figure:
-    def draw(axes: Axes, case: str) -> None:
+    names = mfpf.cases(size)
+    figure = Figure(figsize=(11, 2.5 * len(names) + 0.5), layout="constrained")
+    grid = figure.subplots(len(names), 2, squeeze=False, sharex="row")
+    for case, row in zip(names, grid, strict=True):
         # MFPF first: its line is solid.
         runs = {
-            system.label: mfpf.run_scores(results, case, system, size.seeds[0])
+            system.label: [mfpf.run_scores(results, case, system, seed) for seed in size.seeds]
             for system in (MFPF, *SINGLES)
         }
-        draw_errors(axes, runs, case)
-
-    return draw_by_case(size, draw, "error, px", height=2.9)
+        for axes in row:
+            shade_occlusions(axes, runs[MFPF.label][0])
+            for (label, of_seeds), style in zip(runs.items(), STYLES, strict=False):
+                draw_band(axes, of_seeds, style, label)
+        row[0].set(ylim=(0, None), ylabel="error, px")
+        row[0].set_title(f"case {case[-1]}: {mfpf.occlusion_text(case)}", fontsize="medium")
+        log_errors(row[1])
+    for axes in grid[-1]:
+        axes.set(xlabel="frame")
+    legend_of(figure, grid.flat)
+    return figure
 
 
 def _claims(results: Results, size: Size) -> tuple[Claim, ...]:

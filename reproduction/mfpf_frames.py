@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 
 from reproduction import mfpf_systems as mfpf
 from reproduction.experiment import (
+    PAPER,
     Claim,
     DataTable,
     Experiment,
@@ -30,7 +31,7 @@ from reproduction.experiment import (
     Results,
     Size,
 )
-from reproduction.mfpf_systems import FOUR, MFPF, OURS, SINGLES
+from reproduction.mfpf_systems import FOUR, MFPF, SINGLES
 from reproduction.strips import strip_figure, telling_frames
 from vehicle_pf_tracker.core.truth import Occlusion
 
@@ -91,7 +92,7 @@ def _finding(results: Results, size: Size) -> Finding:
             f"{case} ({mfpf.occlusion_text(case)}) {min(partial)} to {max(partial)} partly and "
             f"{min(hidden)} to {max(hidden)} fully hidden frames"
         )
-    return Finding(OURS, Holds.of(all(fits), any(fits)), "; ".join(parts))
+    return Finding(PAPER, Holds.of(all(fits), any(fits)), "; ".join(parts))
 
 
 def _fits(case: str, hidden: list[int], partial: list[int]) -> bool:

@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from statistics import fmean
 from typing import Any
@@ -26,6 +27,8 @@ from matplotlib.figure import Figure
 
 from reproduction.cells import Probe, Result, SceneChoice
 from reproduction.experiment import (
+    PAPER,
+    PRINTED,
     Claim,
     DataTable,
     Entry,
@@ -41,13 +44,11 @@ from reproduction.mfpf_systems import (
     FEATURES,
     INTERPRETATIONS,
     MFPF,
-    OURS,
     read_as,
     read_label,
 )
 from reproduction.numbers import mean_and_spread
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.image.colour import RgbMarginals
 from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, hellinger_distance
 from vehicle_pf_tracker.image.window_feature import WindowFeature
@@ -58,13 +59,16 @@ from vehicle_pf_tracker.trackers.papers.mfpf_parameters import TEXTURES, MfpfPar
 from vehicle_pf_tracker.trackers.target import Target
 
 _PLACE = "section III-D, figure 1"
-_SCENES = {"shadow": "case3", "partial": "case2", "full": "case4"}
-"""Frames in which each disturbance is purest."""
+_SCENE = "disturbances"
+"""One sequence with all disturbances, as the paper's: a shadow, a tree's crown, a pillar."""
+_SITUATIONS = "shadow", "partial", "full"
 _TITLES = {
     "initial": "initial", "shadow": "in shadow", "partial": "partly hidden", "full": "fully hidden",
 }  # fmt: skip
 _HALF = 0.6
 """A vehicle of which less than this share is seen counts as partly hidden."""
+_CLEAR, _GONE = 0.95, 0.1
+"""Shares seen above which nothing hides it, and below which it is fully hidden."""
 _INFORMATIVE = 0.6
 """Hellinger distances from the first histogram below this still say something."""
 
@@ -144,10 +148,9 @@ def histograms(made: dict[str, WindowFeature], target: Target, shown: SceneFrame
 
 
 def cells(size: Size) -> list[HistogramCell]:
-    """Measure along the cases with a shadow, a partial and a full occlusion."""
+    """Measure along the sequence."""
     return [
-        HistogramCell(SceneChoice.of(case).seeded(seed), interpretation)
-        for case in _SCENES.values()
+        HistogramCell(SceneChoice.of(_SCENE).seeded(seed), interpretation)
         for seed in size.seeds
         for interpretation in INTERPRETATIONS
     ]
@@ -158,7 +161,7 @@ def report(results: Results, size: Size) -> Report:
     rows: list[tuple[Entry, ...]] = [
         (interpretation, situation, seed, FEATURES[name], distance)
         for interpretation in INTERPRETATIONS
-        for situation in _SCENES
+        for situation in _SITUATIONS
         for seed in size.seeds
         for name, distance in _distances(results, situation, seed, interpretation).items()
     ]
@@ -171,7 +174,7 @@ def report(results: Results, size: Size) -> Report:
                 ]
                 for name in FEATURES
             }
-            for situation in _SCENES
+            for situation in _SITUATIONS
         }
         for interpretation in INTERPRETATIONS
     }
@@ -181,7 +184,7 @@ def report(results: Results, size: Size) -> Report:
         tuple(
             (_TITLES[situation], *(mean_and_spread(found[interpretation][situation][name], 2)
                                    for interpretation in INTERPRETATIONS for name in FEATURES))
-            for situation in _SCENES
+            for situation in _SITUATIONS
         ),
     )  # fmt: skip
     return Report(
@@ -195,31 +198,55 @@ def report(results: Results, size: Size) -> Report:
 
 def _setting(size: Size) -> str:
     return (
-        f"Windows at the true position, seeds {size.seeds.start} to {size.seeds.stop - 1}; "
-        f"shadow: the frames of `{_SCENES['shadow']}` (the quarter that is furthest from the "
-        f"first in colour, to have those in shadow); partly hidden: those of "
-        f"`{_SCENES['partial']}` with less than {100 * _HALF:.0f} % of the vehicle visible; fully "
-        f"hidden: those of `{_SCENES['full']}`. The picture shows the first seed under our "
-        "interpretation: first frame, then the furthest of each kind."
+        f"One sequence, as the paper's frames 310 to 360: in scene `{_SCENE}` a car drives through "
+        "a tree's shadow, behind a tree's crown, and behind a pillar. Windows at the true "
+        f"position, seeds {size.seeds.start} to {size.seeds.stop - 1}; shadow: of the frames "
+        "before anything hides it, the quarter that is furthest from the first in colour; partly "
+        "hidden: "
+        f"those behind the crown with less than {100 * _HALF:.0f} % of it visible; fully hidden: "
+        f"those with less than {100 * _GONE:.0f} %. The picture shows the first seed: first frame, "
+        "then the one of each kind that is furthest in colour. The paper's rule and our "
+        "interpretation have the same features here; "
+        f"{_edges_text(PAPER)}, as printed {_edges_text(PRINTED)}."
     )
+
+
+def _edges_text(interpretation: str) -> str:
+    settings: MfpfParameters = read_as(MFPF, interpretation).parameters(0).effective()
+    edges = settings.edges
+    return f"edges above {100 * edges.threshold:.0f} % of the strongest and {edges.floor:g} levels"
 
 
 def _chosen(result: Result, situation: str) -> list[int]:
     """Give the indices of the frames of a situation."""
     visible = result["visible"]
-    if situation == "shadow":
-        order = sorted(range(len(visible)), key=lambda index: -result["distance"]["color"][index])
-        return sorted(order[: max(len(order) // 4, 1)])
-    limit = 0.1 if situation == "full" else _HALF
-    return [index for index, share in enumerate(visible) if share < limit]
+    if situation == "full":
+        return [index for index, share in enumerate(visible) if share < _GONE]
+    if situation == "partial":
+        return [
+            index
+            for stretch in _stretches(visible)
+            if min(visible[i] for i in stretch) >= _GONE
+            for index in stretch
+            if visible[index] < _HALF
+        ]
+    clear = range(_stretches(visible)[0][0])
+    order = sorted(clear, key=lambda index: -result["distance"]["color"][index])
+    return sorted(order[: max(len(order) // 4, 1)])
+
+
+def _stretches(visible: Sequence[float]) -> list[list[int]]:
+    """Return the indices of each stretch in which something hides the vehicle."""
+    grouped = itertools.groupby(range(len(visible)), lambda index: visible[index] < _CLEAR)
+    return [list(group) for is_hidden, group in grouped if is_hidden]
 
 
 def _distances(
     results: Results, situation: str, seed: int, interpretation: str
 ) -> dict[str, float]:
-    choice = SceneChoice.of(_SCENES[situation]).seeded(seed)
+    choice = SceneChoice.of(_SCENE).seeded(seed)
     # Frames are chosen alike for both interpretations.
-    chosen = _chosen(results[HistogramCell(choice, OURS)], situation)
+    chosen = _chosen(results[HistogramCell(choice, PAPER)], situation)
     result = results[HistogramCell(choice, interpretation)]
     return {name: fmean(result["distance"][name][index] for index in chosen) for name in FEATURES}
 
@@ -286,31 +313,20 @@ def _figure(size: Size) -> Figure:
 
 def _pictures(seed: int) -> dict[str, tuple[Frame, dict[str, Any]]]:
     """Cut out the true window, and describe it: the first frame's, and the worst of each kind."""
-    made = features(OURS)
-    pictures: dict[str, tuple[Frame, dict[str, Any]]] = {}
-    for situation, case in _SCENES.items():
-        target: Target | None = None
-        worst = -1.0
-        first: dict[str, Any] = {}
-        for shown in itertools.islice(SceneChoice.of(case).seeded(seed).make().frames(), None):
-            target = target or Target(shown.frame, shown.truth.box)
-            found = histograms(made, target, shown)
-            first = first or found
-            if situation == "shadow" and "initial" not in pictures:
-                pictures["initial"] = _cut(shown), found
-            rho = bhattacharyya_coefficient(found["color"], first["color"])
-            distance = float(hellinger_distance(np.asarray(rho)))
-            if _is(situation, shown) and distance > worst:
-                worst = distance
-                pictures[situation] = _cut(shown), found
-    return pictures
-
-
-def _is(situation: str, shown: SceneFrame) -> bool:
-    if situation == "shadow":
-        return True
-    kind = Occlusion.TOTAL if situation == "full" else Occlusion.PARTIAL
-    return shown.truth.occlusion is kind
+    made, target = features(PAPER), None
+    shown: list[tuple[Frame, dict[str, Any]]] = []
+    probe = _Histograms(PAPER)
+    for scene_frame in SceneChoice.of(_SCENE).seeded(seed).make().frames():
+        target = target or Target(scene_frame.frame, scene_frame.truth.box)
+        probe.feed(scene_frame)
+        shown.append((_cut(scene_frame), histograms(made, target, scene_frame)))
+    result = probe.result()
+    distance: Sequence[float] = result["distance"]["color"]
+    worst = {
+        situation: max(_chosen(result, situation), key=distance.__getitem__)
+        for situation in _SITUATIONS
+    }
+    return {"initial": shown[0], **{situation: shown[i] for situation, i in worst.items()}}
 
 
 def _cut(shown: SceneFrame) -> Frame:

@@ -28,8 +28,7 @@ from reproduction.case_figure import (
     Values,
     draw_cases,
 )
-from reproduction.experiment import Claim, DataTable, Entry, ExperimentVerdict, Report, Size
-from reproduction.mfpf_systems import OURS
+from reproduction.experiment import PAPER, Claim, DataTable, Entry, ExperimentVerdict, Report, Size
 from reproduction.numbers import mean_and_spread
 from reproduction.paper_scenes import CASES
 
@@ -61,7 +60,7 @@ def share_report(
     ]
     return Report(
         DataTable(("interpretation", "case", words.of, "seed", words.column), tuple(rows)),
-        _share_figure(shares[OURS], words.axis),
+        _share_figure(shares[PAPER], words.axis),
         ExperimentVerdict(tuple(claims), mfpf.setting(size)),
         {words.title: _share_table(shares, paper)},
     )

@@ -24,6 +24,7 @@ from matplotlib.figure import Figure
 
 from reproduction import mfpf_systems as mfpf
 from reproduction.experiment import (
+    PAPER,
     Claim,
     DataTable,
     Entry,
@@ -36,7 +37,7 @@ from reproduction.experiment import (
     Size,
 )
 from reproduction.mfpf_case_plots import draw_by_case
-from reproduction.mfpf_systems import FEATURES, INTERPRETATIONS, MFPF, OURS
+from reproduction.mfpf_systems import FEATURES, INTERPRETATIONS, MFPF
 from reproduction.numbers import mean_and_spread
 from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
 
@@ -58,10 +59,9 @@ def report(results: Results, size: Size) -> Report:
         _figure(results, size),
         ExperimentVerdict(
             _claims(results, size),
-            f"{mfpf.setting(size)} Curves are those of the first seed under our interpretation; "
-            f"thin "
-            "level lines in the style of a curve are its threshold. Marks at the foot of each plot "
-            "are frames in prediction mode.",
+            f"{mfpf.setting(size)} Curves are those of the first seed under the paper's "
+            "rule; thin level lines in the style of a curve are its threshold. Marks at the foot "
+            "of each plot are frames in prediction mode.",
         ),
     )
 
@@ -92,7 +92,7 @@ def _draw(axes: Axes, results: Results, case: str, seed: int) -> None:
         values = trace[f"as_{name}"][1:]
         frames = range(2, len(values) + 2)
         axes.plot(frames, values, color=style.colour, ls=style.line, lw=1.5, label=label)
-        limit = mfpf.threshold(OURS) * values[0]
+        limit = mfpf.threshold(PAPER) * values[0]
         axes.axhline(limit, color=style.colour, ls=style.line, lw=0.8)
     predicted = [n for n, r in enumerate(trace["regime"], start=1) if r == "prediction"]
     axes.plot(predicted, [0.03] * len(predicted), ls="", marker="|", color="black", ms=7,

@@ -21,8 +21,8 @@ from statistics import fmean
 
 from reproduction import mfpf_systems as mfpf
 from reproduction.cells import RunCell, System
-from reproduction.experiment import Claim, DataTable, Finding, Holds, Results, Size
-from reproduction.mfpf_systems import MFPF, OURS, TEXTURE
+from reproduction.experiment import PAPER, Claim, DataTable, Finding, Holds, Results, Size
+from reproduction.mfpf_systems import MFPF, TEXTURE
 from reproduction.numbers import mean_and_spread
 
 _KEPT = "glcm"
@@ -85,12 +85,12 @@ def claim(results: Results, size: Size) -> Claim:
     return Claim(
         "of the three textures the elements of the co-occurrence matrix are the most successful",
         "section III-D",
-        (Finding(OURS, Holds.of(all(first), any(first)), f"mean RMS over all cases: {parts}"),),
+        (Finding(PAPER, Holds.of(all(first), any(first)), f"mean RMS over all cases: {parts}"),),
     )
 
 
 def _rms(results: Results, size: Size, case: str, system: System) -> list[float]:
-    return mfpf.per_seed(results, size, case, system, OURS, "rmse_px")
+    return mfpf.per_seed(results, size, case, system, PAPER, "rmse_px")
 
 
 def _over_cases(results: Results, size: Size, system: System) -> list[float]:

@@ -38,7 +38,7 @@ from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import INTERPRETATIONS
 from reproduction.timing_cell import TimingCell
 
-_SYSTEMS = tuple(dict.fromkeys(system for pair in INTERPRETATIONS.values() for system in pair))
+_SYSTEMS = tuple(dict.fromkeys(system for view in INTERPRETATIONS.values() for system in view.pair))
 _SEEDS, _QUICK_SEEDS = 3, 1
 """Runs that are timed: each frame of each is a measurement."""
 
@@ -59,9 +59,9 @@ def report(results: Results, size: Size) -> Report:
     ratios = {
         interpretation: [
             own / other
-            for other, own in zip(*(means[system.label] for system in pair), strict=True)
+            for other, own in zip(*(means[system.label] for system in view.pair), strict=True)
         ]
-        for interpretation, pair in INTERPRETATIONS.items()
+        for interpretation, view in INTERPRETATIONS.items()
     }
     rows = tuple(
         (system.label, seed, frame, step)
@@ -72,9 +72,9 @@ def report(results: Results, size: Size) -> Report:
     table = DataTable(
         ("interpretation", "conventional, ms per frame", "adaptive, ms per frame", "ratio"),
         tuple(
-            (interpretation, *(median_and_range(means[system.label], 2) for system in pair),
+            (interpretation, *(median_and_range(means[system.label], 2) for system in view.pair),
              median_and_range(ratios[interpretation], 2))
-            for interpretation, pair in INTERPRETATIONS.items()
+            for interpretation, view in INTERPRETATIONS.items()
         ),
     )  # fmt: skip
     return Report(
@@ -101,7 +101,7 @@ def _figure(means: dict[str, list[float]]) -> Figure:
     for which, (name, (colour, hatch)) in enumerate(
         zip(("conventional", "adaptive"), looks, strict=True)
     ):
-        found = [means[pair[which].label] for pair in INTERPRETATIONS.values()]
+        found = [means[view.pair[which].label] for view in INTERPRETATIONS.values()]
         at = places + (which - 0.5) * 0.4
         axes.bar(
             at, [median(f) for f in found], 0.38, ec="black", label=name, color=colour, hatch=hatch

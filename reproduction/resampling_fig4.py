@@ -18,10 +18,13 @@ from __future__ import annotations
 
 from statistics import median
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reproduction import resampling_systems as resampling
+from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
 from reproduction.experiment import (
+    PAPER,
     Claim,
     DataTable,
     Experiment,
@@ -35,10 +38,11 @@ from reproduction.experiment import (
 from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import (
     ADAPTIVE,
-    BOTH,
     CONVENTIONAL,
-    INTERPRETATIONS,
+    HARD,
     PHASES,
+    VIEWS,
+    View,
 )
 from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
 
@@ -56,9 +60,7 @@ Errors = dict[str, dict[str, list[float]]]
 
 def report(results: Results, size: Size) -> Report:
     """Draw all seeds' errors, and judge."""
-    errors = {
-        interpretation: _errors(results, size, interpretation) for interpretation in INTERPRETATIONS
-    }
+    errors = {interpretation: _errors(results, size, interpretation) for interpretation in VIEWS}
     table = DataTable(
         ("filter", *PHASES, "all"),
         tuple(
@@ -75,8 +77,8 @@ def report(results: Results, size: Size) -> Report:
         _figure(results, size),
         ExperimentVerdict(
             _claims(errors),
-            f"{resampling.SETTING} {len(size.seeds)} seeds. Thick curves are the medians of the "
-            "seeds' errors, thin ones the seeds; shades are those of the first seed.",
+            f"{resampling.SETTING} {len(size.seeds)} seeds. {BANDS_NOTE} Left the paper's timing, "
+            "right the harder scene; above on the paper's linear scale, below on a log one.",
         ),
         {"RMSE in px by phase, median and range over the seeds:": table},
     )
@@ -84,10 +86,11 @@ def report(results: Results, size: Size) -> Report:
 
 def _errors(results: Results, size: Size, interpretation: str) -> Errors:
     found: Errors = {}
-    for system in INTERPRETATIONS[interpretation]:
+    view = VIEWS[interpretation]
+    for system in view.pair:
         of: dict[str, list[float]] = {name: [] for name in (*PHASES, "all")}
         for seed in size.seeds:
-            scored = resampling.run_scores(results, system, seed)
+            scored = resampling.run_scores(results, view, system, seed)
             for name, chosen in resampling.phases(scored).items():
                 of[name].append(resampling.rms(scored, chosen))
             of["all"].append(resampling.rms(scored, list(range(len(scored.frames)))))
@@ -96,24 +99,27 @@ def _errors(results: Results, size: Size, interpretation: str) -> Errors:
 
 
 def _figure(results: Results, size: Size) -> Figure:
-    figure = Figure(figsize=(9, 4.2), layout="constrained")
-    axes = figure.add_subplot()
-    shade_occlusions(axes, resampling.run_scores(results, CONVENTIONAL, size.seeds[0]))
-    for system, style in zip(reversed(BOTH), STYLES, strict=False):
-        runs = [
-            [max(frame.error or 0.0, 0.5) for frame in scored.frames]
-            for scored in (resampling.run_scores(results, system, s) for s in size.seeds)
-        ]
-        for run in runs:
-            axes.plot(range(1, len(run) + 1), run, color=style.colour, lw=0.5, alpha=0.4)
-        middle = [median(errors) for errors in zip(*runs, strict=False)]
-        axes.plot(range(1, len(middle) + 1), middle, color=style.colour, ls=style.line, lw=2.4,
-                  label=system.label)  # fmt: skip
-    axes.set(xlabel="frame", ylabel="error of the centre, px", yscale="log")
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.margins(x=0.01)
-    figure.legend(loc="outside lower center", ncols=4, frameon=False)
+    figure = Figure(figsize=(11, 6.4), layout="constrained")
+    axes = figure.subplots(2, 2, sharex="col")
+    titles = PAPER, f"{PAPER}{HARD}"
+    for column, title in zip(axes.T, titles, strict=True):
+        for ax, is_log in zip(column, (False, True), strict=True):
+            _draw(ax, results, size, VIEWS[title])
+            if is_log:
+                log_errors(ax)
+        column[0].set(title=title, ylim=(0, None))
+        column[1].set(xlabel="frame")
+    for ax in axes[:, 0]:
+        ax.set(ylabel="error of the centre, px")
+    legend_of(figure, axes.flat)
     return figure
+
+
+def _draw(axes: Axes, results: Results, size: Size, view: View) -> None:
+    shade_occlusions(axes, resampling.run_scores(results, view, view.conventional, size.seeds[0]))
+    for system, style in zip(reversed(view.pair), STYLES, strict=False):
+        runs = [resampling.run_scores(results, view, system, seed) for seed in size.seeds]
+        draw_band(axes, runs, style, system.variant)
 
 
 def _claims(errors: dict[str, Errors]) -> tuple[Claim, ...]:
@@ -161,8 +167,8 @@ def _numbers_text(found: Errors, phase: str) -> str:
 def _medians(found: Errors, phase: str) -> tuple[float, float]:
     """Conventional's, and adaptive's."""
     return (
-        median(found[CONVENTIONAL.variant][phase]),
-        median(found[ADAPTIVE.variant][phase]),
+        median(found[CONVENTIONAL][phase]),
+        median(found[ADAPTIVE][phase]),
     )
 
 
@@ -190,8 +196,8 @@ def _worse(interpretation: str, found: Errors, phase: str) -> Finding:
 
 def _lost(interpretation: str, found: Errors) -> Finding:
     back = {variant: [value < _LOW for value in of["after"]] for variant, of in found.items()}
-    ours, others = (sum(back[s.variant]) for s in (ADAPTIVE, CONVENTIONAL))
-    runs = len(back[ADAPTIVE.variant])
+    ours, others = (sum(back[s]) for s in (ADAPTIVE, CONVENTIONAL))
+    runs = len(back[ADAPTIVE])
     return Finding(
         interpretation,
         Holds.of(ours >= 0.8 * runs and others <= 0.2 * runs, ours > others),

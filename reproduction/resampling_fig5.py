@@ -16,14 +16,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from statistics import fmean
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reproduction import resampling_systems as resampling
-from reproduction.cells import System
 from reproduction.experiment import (
+    PAPER,
+    PRINTED,
     Claim,
     DataTable,
     Experiment,
@@ -38,9 +40,8 @@ from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import (
     ADAPTIVE,
     CONVENTIONAL,
-    INTERPRETATIONS,
-    OURS,
     PHASES,
+    VIEWS,
 )
 from vehicle_pf_tracker.evaluation.plots import STYLES, Style, shade_occlusions
 
@@ -56,8 +57,8 @@ Means = dict[str, dict[str, float]]
 
 def report(results: Results, size: Size) -> Report:
     """Draw the means over the seeds, and judge."""
-    passes = {r: _means(results, size, r, "resampling_passes") for r in INTERPRETATIONS}
-    drawn = {r: _means(results, size, r, "resampled_particles") for r in INTERPRETATIONS}
+    passes = {r: _means(results, size, r, "resampling_passes") for r in VIEWS}
+    drawn = {r: _means(results, size, r, "resampled_particles") for r in VIEWS}
     table = DataTable(
         ("filter", *PHASES),
         tuple(
@@ -65,7 +66,7 @@ def report(results: Results, size: Size) -> Report:
              *(f"{passes[interpretation][variant][name]:.1f} / "
                f"{drawn[interpretation][variant][name]:.0f}"
                for name in PHASES))
-            for interpretation in INTERPRETATIONS
+            for interpretation in VIEWS
             for variant in passes[interpretation]
         ),
     )  # fmt: skip
@@ -74,8 +75,8 @@ def report(results: Results, size: Size) -> Report:
         _figure(results, size),
         ExperimentVerdict(
             _claims(results, size, passes),
-            f"{resampling.SETTING} {len(size.seeds)} seeds; curves are their means. A resampled "
-            "particle is one that is drawn and weighed anew in a pass.",
+            f"{resampling.SETTING} {len(size.seeds)} seeds; curves are their means, bands "
+            "their ranges. A resampled particle is one that is drawn and weighed anew in a pass.",
         ),
         {"Passes a frame / resampled particles a frame by phase, mean over frames and seeds:":
          table},
@@ -84,11 +85,12 @@ def report(results: Results, size: Size) -> Report:
 
 def _means(results: Results, size: Size, interpretation: str, scalar: str) -> Means:
     found: Means = {}
-    for system in INTERPRETATIONS[interpretation]:
+    view = VIEWS[interpretation]
+    for system in view.pair:
         values: dict[str, list[float]] = {name: [] for name in PHASES}
         for seed in size.seeds:
-            column = resampling.trace(results, system, seed)[scalar]
-            scored = resampling.run_scores(results, system, seed)
+            column = resampling.trace(results, view, system, seed)[scalar]
+            scored = resampling.run_scores(results, view, system, seed)
             for name, chosen in resampling.phases(scored).items():
                 values[name] += [column[index] for index in chosen]
         found[system.variant] = {name: fmean(of) for name, of in values.items()}
@@ -97,14 +99,15 @@ def _means(results: Results, size: Size, interpretation: str, scalar: str) -> Me
 
 def _figure(results: Results, size: Size) -> Figure:
     figure = Figure(figsize=(10, 5.6), layout="constrained")
-    interpretations = {OURS: INTERPRETATIONS[OURS], "as printed": INTERPRETATIONS["as printed"]}
+    interpretations = {name: VIEWS[name] for name in (PAPER, PRINTED)}
     axes = figure.subplots(2, len(interpretations), sharex=True, sharey="row")
-    for column, (interpretation, pair) in enumerate(interpretations.items()):
+    for column, (interpretation, view) in enumerate(interpretations.items()):
         for row, scalar in enumerate(("resampling_passes", "resampled_particles")):
             ax = axes[row, column]
-            shade_occlusions(ax, resampling.run_scores(results, CONVENTIONAL, size.seeds[0]))
-            for system, style in zip(reversed(pair), (STYLES[0], STYLES[1]), strict=True):
-                _draw(ax, results, size, system, scalar, style)
+            shade_occlusions(ax, resampling.run_scores(results, view, view.pair[0], size.seeds[0]))
+            for system, style in zip(reversed(view.pair), (STYLES[0], STYLES[1]), strict=True):
+                runs = [resampling.trace(results, view, system, s)[scalar] for s in size.seeds]
+                _draw(ax, [run[1:] for run in runs], style, system.variant)
         axes[0, column].set(title=interpretation)
         axes[1, column].set(xlabel="frame")
     axes[0, 0].set(ylabel="passes")
@@ -114,14 +117,16 @@ def _figure(results: Results, size: Size) -> Figure:
     return figure
 
 
-def _draw(
-    axes: Axes, results: Results, size: Size, system: System, scalar: str, style: Style
-) -> None:
-    runs = [resampling.trace(results, system, seed)[scalar][1:] for seed in size.seeds]
-    middle = [fmean(of) for of in zip(*runs, strict=False)]
-    axes.plot(range(2, len(middle) + 2), middle, color=style.colour, ls=style.line,
-              lw=1.8,
-              label=system.variant)  # fmt: skip
+def _draw(axes: Axes, runs: Sequence[Sequence[float]], style: Style, label: str) -> None:
+    """Draw the mean and the range over the seeds of what was counted from frame 2 on."""
+    columns = list(zip(*runs, strict=False))
+    frames = range(2, len(columns) + 2)
+    axes.fill_between(
+        frames, [min(of) for of in columns], [max(of) for of in columns], color=style.colour,
+        alpha=0.15, lw=0,
+    )  # fmt: skip
+    axes.plot(frames, [fmean(of) for of in columns], color=style.colour, ls=style.line, lw=1.8,
+              label=label)  # fmt: skip
 
 
 def _claims(results: Results, size: Size, passes: dict[str, Means]) -> tuple[Claim, ...]:
@@ -130,7 +135,7 @@ def _claims(results: Results, size: Size, passes: dict[str, Means]) -> tuple[Cla
             "the adaptive filter takes fewer passes and resamples fewer particles than the "
             "conventional one, in every phase",
             _PLACE,
-            tuple(_fewer(results, size, interpretation) for interpretation in INTERPRETATIONS),
+            tuple(_fewer(results, size, interpretation) for interpretation in VIEWS),
         ),
         Claim(
             f"once the vehicle is hidden the conventional filter takes all {_MOST_PASSES} passes, "
@@ -147,7 +152,7 @@ def _claims(results: Results, size: Size, passes: dict[str, Means]) -> tuple[Cla
             "(not in the paper in numbers) it resamples at most a fifth of the particles that the "
             "conventional one does",
             _PLACE,
-            tuple(_saving(results, size, interpretation) for interpretation in INTERPRETATIONS),
+            tuple(_saving(results, size, interpretation) for interpretation in VIEWS),
         ),
     )
 
@@ -157,22 +162,18 @@ def _fewer(results: Results, size: Size, interpretation: str) -> Finding:
         _means(results, size, interpretation, s)
         for s in ("resampling_passes", "resampled_particles")
     ]
-    less = [
-        found[ADAPTIVE.variant][name] < found[CONVENTIONAL.variant][name]
-        for found in both
-        for name in PHASES
-    ]
+    less = [found[ADAPTIVE][name] < found[CONVENTIONAL][name] for found in both for name in PHASES]
     parts = "; ".join(
-        f"{name}: {both[0][ADAPTIVE.variant][name]:.1f} passes and "
-        f"{both[1][ADAPTIVE.variant][name]:.0f} particles against "
-        f"{both[0][CONVENTIONAL.variant][name]:.1f} and {both[1][CONVENTIONAL.variant][name]:.0f}"
+        f"{name}: {both[0][ADAPTIVE][name]:.1f} passes and "
+        f"{both[1][ADAPTIVE][name]:.0f} particles against "
+        f"{both[0][CONVENTIONAL][name]:.1f} and {both[1][CONVENTIONAL][name]:.0f}"
         for name in PHASES
     )
     return Finding(interpretation, Holds.of(all(less), any(less)), parts)
 
 
 def _endless(interpretation: str, found: Means) -> Finding:
-    own = found[CONVENTIONAL.variant]
+    own = found[CONVENTIONAL]
     full = [own[name] >= 0.95 * _MOST_PASSES for name in ("full", "after")]
     rises = own["full"] > own["before"]
     parts = ", ".join(f"{name} {own[name]:.1f}" for name in PHASES)
@@ -182,18 +183,18 @@ def _endless(interpretation: str, found: Means) -> Finding:
 
 
 def _few(interpretation: str, found: Means) -> Finding:
-    own = found[ADAPTIVE.variant]
+    own = found[ADAPTIVE]
     few = [own[name] <= _LOW for name in PHASES]
     parts = ", ".join(f"{name} {own[name]:.1f}" for name in PHASES)
     return Finding(interpretation, Holds.of(all(few), any(few)), f"passes a frame: {parts}")
 
 
 def _saving(results: Results, size: Size, interpretation: str) -> Finding:
-    conventional, adaptive = INTERPRETATIONS[interpretation]
+    view = VIEWS[interpretation]
     ratios, counts = [], []
     for seed in size.seeds:
-        own = resampling.resampled(results, adaptive, seed)
-        others = resampling.resampled(results, conventional, seed)
+        own = resampling.resampled(results, view, view.adaptive, seed)
+        others = resampling.resampled(results, view, view.conventional, seed)
         counts.append((own, others))
         ratios.append(own / max(others, 1))
     ours, theirs = (fmean(of) for of in zip(*counts, strict=True))

@@ -18,6 +18,9 @@ from __future__ import annotations
 
 from reproduction import resampling_systems as resampling
 from reproduction.experiment import (
+    OURS,
+    PAPER,
+    PRINTED,
     Claim,
     Experiment,
     ExperimentVerdict,
@@ -30,29 +33,31 @@ from reproduction.experiment import (
 from reproduction.resampling_systems import (
     ADAPTIVE,
     CONVENTIONAL,
-    INTERPRETATIONS,
-    OURS,
+    HARD,
     PHASES,
-    PRINTED,
+    VIEWS,
 )
 from reproduction.strips import strip_figure
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _PLACE = "section VI, figures 2 and 3"
+_SHOWN = PAPER, f"{PAPER}{HARD}"
+_JUDGED = PAPER, OURS, PRINTED, f"{PAPER}{HARD}", f"{PRINTED}{HARD}"
 
 
 def report(results: Results, size: Size) -> Report:
     """Show the first seed in the middle of each phase, and judge all seeds there."""
     seed = size.seeds[0]
     rows = {}
-    for interpretation in (OURS, PRINTED):
+    for interpretation in _SHOWN:
+        view = VIEWS[interpretation]
         runs = {
-            system.variant: resampling.run_scores(results, system, seed)
-            for system in INTERPRETATIONS[interpretation]
+            system.variant: resampling.run_scores(results, view, system, seed)
+            for system in view.pair
         }
-        numbers = [index + 1 for index in _middles(runs[CONVENTIONAL.variant])]
-        rows[interpretation] = (resampling.SCENE.seeded(seed), runs, numbers)
+        numbers = [index + 1 for index in _middles(runs[CONVENTIONAL])]
+        rows[interpretation] = (view.scene.seeded(seed), runs, numbers)
     return Report(
         resampling.data(results, size),
         strip_figure(rows),
@@ -61,13 +66,13 @@ def report(results: Results, size: Size) -> Report:
                 Claim(
                     "the adaptive filter is on the vehicle in all four phases",
                     _PLACE,
-                    tuple(_on_it(results, size, r, ADAPTIVE.variant) for r in (OURS, PRINTED)),
+                    tuple(_on_it(results, size, r, ADAPTIVE) for r in _JUDGED),
                 ),
                 Claim(
                     "the conventional filter is on it before and while it is partly hidden, and "
                     "stays at the parked vehicle afterwards",
                     _PLACE,
-                    tuple(_stuck(results, size, r) for r in (OURS, PRINTED)),
+                    tuple(_stuck(results, size, r) for r in _JUDGED),
                 ),
             ),
             f"{resampling.SETTING} {len(size.seeds)} seeds, judged in the middle frame of each "
@@ -85,10 +90,11 @@ def _middles(scored: Scores) -> list[int]:
 
 def _hits(results: Results, size: Size, interpretation: str, variant: str) -> list[int]:
     """Count the seeds whose estimate is within the true box, by phase."""
-    (system,) = (s for s in INTERPRETATIONS[interpretation] if s.variant == variant)
+    view = VIEWS[interpretation]
+    (system,) = (s for s in view.pair if s.variant == variant)
     hits = [0] * len(PHASES)
     for seed in size.seeds:
-        scored = resampling.run_scores(results, system, seed)
+        scored = resampling.run_scores(results, view, system, seed)
         for place, index in enumerate(_middles(scored)):
             frame = scored.frames[index]
             assert frame.truth is not None
@@ -117,7 +123,7 @@ def _on_it(results: Results, size: Size, interpretation: str, variant: str) -> F
 
 
 def _stuck(results: Results, size: Size, interpretation: str) -> Finding:
-    hits = _hits(results, size, interpretation, CONVENTIONAL.variant)
+    hits = _hits(results, size, interpretation, CONVENTIONAL)
     runs = len(size.seeds)
     on_it = all(count >= 0.8 * runs for count in hits[:2])
     lost = hits[-1] <= 0.2 * runs

@@ -85,6 +85,8 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         """True after the start and after predictions: particles are dispersed anew."""
         self._predicted_for = 0.0
         """Time in prediction mode since the last estimate, nominal frames."""
+        self._age = 0.0
+        """Time since the start, nominal frames."""
         self._ancestors: Ancestors | None = None
         """Particles that step 5 chose, as indices; None where it did not resample."""
 
@@ -125,7 +127,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     def _scatter(self, centre: tuple[float, float]) -> Array:
         """Disperse the first particles (step 1)."""
         self._velocity, self._position = MeanVelocity(self._settings.velocity_window), centre
-        self._searching, self._predicted_for = True, 0.0
+        self._searching, self._predicted_for, self._age = True, 0.0, 0.0
         self._initial = self._ancestors = None
         return centre + self._noise(self._search_radius(1.0))
 
@@ -133,23 +135,20 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         particles, prior, left_image = self._disperse(frame, elapsed)
         rho, averages = self._measure(frame, particles)  # step 2
         predicted = self._predict(frame, elapsed)  # step 3
-        weighting = self._weigh_features(averages)  # step 4
-        if weighting.full_occlusion:
-            cloud, position, passes = Cloud.uniform(particles), predicted, 0
-            self._ancestors = None
-        else:
-            weights = self._weigh(prior, rho)
-            position = self._locate(particles, weights, weighting)
-            cloud = self._weigh_jointly(particles, prior, rho, weighting)
-            passes = self._resample(cloud, weights)  # step 5
+        weighting = self._weigh_features(averages)  # step 4, to its update
+        is_hidden, passes = weighting.full_occlusion, 0
+        weights, cloud = self._weigh(particles, prior, rho, weighting)
+        position = predicted if is_hidden else self._locate(particles, weights, weighting)
         histograms = self._describe(frame, position)
         similarities = self._similarities(histograms)
-        self._update(weighting, histograms, position, elapsed)  # the rest of step 4
+        self._update(weighting, histograms, position, elapsed)
+        if not is_hidden:
+            passes = self._resample(cloud, weights)  # step 5
         return Outcome(
             cloud,
             position,
             self._velocity.value,
-            "prediction" if weighting.full_occlusion else "estimation",
+            "prediction" if is_hidden else "estimation",
             # The median: one feature that fails, or is misled, does not decide.
             statistics.median(similarities.tolist()),
             self._report(weighting),
@@ -166,12 +165,18 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         particles (N, 2), their weights before this frame's measurement (N,), and as `_move` does
         """
         settings, cloud = self._settings, self._cloud
-        radius = settings.dispersion.radius * elapsed
+        dispersion = settings.dispersion
+        # The first step is a search anyway.
+        is_starting = 0 < self._age < dispersion.start
+        radius = dispersion.radius * elapsed
+        radius *= dispersion.uncertain_factor if is_starting else 1.0
+        self._age += elapsed
         if self._searching:
             cloud = Cloud.uniform(np.tile(self._position, (settings.num_particles, 1)))
             radius = self._search_radius(elapsed)
         elif self._ancestors is not None:
             cloud = Cloud.uniform(cloud.positions[self._ancestors])
+        self._ancestors = None
         moves = np.asarray(self._velocity.value) * elapsed + self._noise(radius)
         particles, left_image = self._move(frame, cloud.positions, moves)
         return particles, cloud.weights, left_image
@@ -226,17 +231,23 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         assert self._initial is not None
         return weigh_features(averages, self._initial, self._settings.confidence.threshold)
 
-    def _weigh(self, prior: Array, rho: Array) -> Array:
-        """Weigh the particles by each feature alone (eq. 10 and 11), shape (F, N)."""
-        logs = log_likelihood(rho, self._settings.likelihood)
-        return np.stack([from_log(_log(prior) + row)[0] for row in logs])
-
-    def _weigh_jointly(
+    def _weigh(
         self, particles: Array, prior: Array, rho: Array, weighting: FeatureWeighting
-    ) -> Cloud:
-        """Weigh the particles by all features in use together (interpretation 18)."""
+    ) -> tuple[Array, Cloud]:
+        """Weigh the particles by each feature alone, and by all in use together.
+
+        Returns
+        -------
+        weights by each feature (F, N; eq. 10 and 11), and the particles with their joint weights
+        (interpretation 18), which are equal where no feature is in use
+        """
         logs = log_likelihood(rho, self._settings.likelihood)
-        return Cloud(particles, *from_log(_log(prior) + (weighting.factors > 0) @ logs))
+        log_prior = np.log(np.maximum(prior, np.finfo(np.float64).tiny))
+        weights = np.stack([from_log(log_prior + row)[0] for row in logs])
+        if weighting.full_occlusion:
+            return weights, Cloud.uniform(particles)
+        joint = from_log(log_prior + (weighting.factors > 0) @ logs)
+        return weights, Cloud(particles, *joint)
 
     def _locate(
         self, particles: Array, weights: Array, weighting: FeatureWeighting
@@ -290,7 +301,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
         `weights` are those by each feature alone. Returns the number of resamplings, 0 or 1.
         """
-        settings, self._ancestors = self._settings, None
+        settings = self._settings
         limit = settings.resample_below * len(cloud.weights)
         if effective_sample_size(cloud.weights) >= limit:
             return 0
@@ -318,10 +329,6 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             for column, values in columns.items()
             for name, value in zip(self._features, values, strict=True)
         }
-
-
-def _log(prior: Array) -> Array:
-    return np.asarray(np.log(np.maximum(prior, np.finfo(np.float64).tiny)))
 
 
 class MfpfTracker(FeatureFilter[MfpfParameters]):

@@ -77,6 +77,15 @@ class DispersionParameters:
         unit="radii",
         source="P2 section IV",
     )
+    start: float = parameter(
+        1.0,
+        "Longer: the wider search around the start lasts until the speed is known, which a radius "
+        "of about the speed needs; 1 is the first step alone, as printed.",
+        minimum=1.0,
+        maximum=1000.0,
+        unit="frames",
+        source="P2 section IV, DR0, interpretation 30",
+    )
     growth: float = parameter(
         1.0,
         "Larger: the search around predictions widens faster during an occlusion.",
@@ -161,7 +170,7 @@ class EdgeParameters:
 class FeatureFilterParameters(ParticleParameters):
     """Common parameters of `mfpf` and its single-feature filters."""
 
-    as_printed: bool = as_printed_switch("interpretations 1, 12 to 19, 25 and 26")
+    as_printed: bool = as_printed_switch("interpretations 1, 12 to 19, 25, 26 and 30")
     reference_weight: float = parameter(
         0.7,
         "Higher: the reference keeps more of the first frame and follows the last one less.",
@@ -242,6 +251,8 @@ def common_print(parameters: FilterParametersT) -> FilterParametersT:
         resampling="multinomial",
         resample_below=1.0,
         likelihood=LikelihoodParameters(sigma_v=1.5),
-        dispersion=replace(parameters.dispersion, noise="gaussian", uncertain_factor=2.0),
+        dispersion=replace(
+            parameters.dispersion, noise="gaussian", uncertain_factor=2.0, start=1.0
+        ),
         confidence=ConfidenceParameters(best_share=1.0, threshold=0.8),
     )
