@@ -30,7 +30,7 @@ from reproduction.cells import Cell, Result
 Entry: TypeAlias = float | int | str | None
 
 PAPER = "the paper's rule"
-"""The paper's algorithm as it was meant: misprints and gaps filled by interpretations 1 to 24."""
+"""The paper's algorithm as it was meant: misprints and gaps filled by docs/interpretations.md."""
 OURS = "our interpretation"
 """The variant's defaults, or what we add to the paper's rule, named in the setting."""
 PRINTED = "as printed"

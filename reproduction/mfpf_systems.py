@@ -50,10 +50,9 @@ _STEADY: Mapping[str, Value] = MappingProxyType(
     }
 )
 """Settings for a still camera and vehicles at constant speed, as in all six cases."""
-_RULE: Mapping[str, Value] = MappingProxyType(
-    {"dispersion.noise": "gaussian", "update_unused": True}
-)
-"""What the paper prints and our interpretation has otherwise."""
+_RULE: Mapping[str, Value] = MappingProxyType({"dispersion.noise": "gaussian"})
+_RULE_OF_ALL: Mapping[str, Value] = MappingProxyType({"update_unused": True})
+"""What the paper prints and our interpretation has otherwise, the latter in MFPF alone."""
 _EDGES: Mapping[str, Value] = MappingProxyType({"edges.threshold": 0.2, "edges.floor": 60.0})
 INTERPRETATIONS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
     {
@@ -85,6 +84,8 @@ def read_as(system: System, interpretation: str) -> System:
     settings = dict(INTERPRETATIONS[interpretation])
     if interpretation in (PAPER, OURS) and system.variant in ("mfpf", "sfpf_edge"):
         settings |= _EDGES
+    if interpretation == PAPER and system.variant == "mfpf":
+        settings |= _RULE_OF_ALL
     return replace(system.but(settings), label=read_label(system.label, interpretation))
 
 

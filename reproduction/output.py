@@ -51,8 +51,8 @@ Beside each figure, `results/reproduce/<name>/` has all cells as `data.csv`.
 
 Every claim is judged three times and more. *The paper's rule*, which gives the verdict, is the
 paper's algorithm as it was meant: its misprints and gaps are filled as
-[interpretations.md](interpretations.md) says under 1 to 24, and values that it does not print were
-chosen on seeds from 100 on, which are not reported. *Our interpretation* has the extensions that
+[interpretations.md](interpretations.md) says, and values that it does not print were chosen on
+seeds from 100 on, which are not reported. *Our interpretation* has the extensions that
 the setting names, or the variant's defaults. *As printed* follows the paper to the letter. "No" is
 as good an answer as "yes".
 

@@ -73,6 +73,6 @@ def test_the_interpretations_that_code_refers_to_are_listed():
 
 def test_the_switches_of_interpretations_are_parameters():
     known = {name for variant in VARIANTS.values() for name in specs(variant.parameters)}
-    named = set(re.findall(r"`([\w.]+)`", " ".join(interpretations().values())))
+    named = set(re.findall(r"`([\w.]+): [^`]+`", " ".join(interpretations().values())))
     assert named
     assert named <= known

@@ -99,6 +99,10 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         return True
 
     @property
+    def _updates_unused(self) -> bool:
+        return False
+
+    @property
     @abstractmethod
     def _settings(self) -> FilterParametersT:
         """Effective parameters."""
@@ -290,7 +294,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             self._predicted_for = 0.0
             self._velocity.add(self._position, position, elapsed)
             for number, (first, found) in enumerate(zip(self._first, histograms, strict=True)):
-                if weighting.factors[number] > 0 or settings.update_unused:
+                if weighting.factors[number] > 0 or self._updates_unused:
                     weight = settings.reference_weight
                     self._references[number] = Reference(weight * first + (1 - weight) * found)
         self._searching = weighting.full_occlusion
@@ -341,6 +345,10 @@ class MfpfTracker(FeatureFilter[MfpfParameters]):
     @property
     def _is_joint(self) -> bool:
         return self._settings.joint_resampling
+
+    @property
+    def _updates_unused(self) -> bool:
+        return self._settings.update_unused
 
     def _make_features(self) -> Mapping[str, WindowFeature]:
         settings = self._settings

@@ -179,12 +179,6 @@ class FeatureFilterParameters(ParticleParameters):
         source="P2 eq. 9, interpretation 15 (no value printed)",
         tuned=True,
     )
-    update_unused: bool = parameter(
-        False,
-        "On: also the references of features that have dropped out follow the last estimate, as "
-        "printed; off keeps them, so that they do not learn what has covered the vehicle.",
-        source="P2 section IV step 2, interpretation 26",
-    )
     velocity_window: int = parameter(
         5,
         "Longer: a steadier speed that follows turns later; 1 takes the last move, as printed.",
@@ -220,6 +214,12 @@ class MfpfParameters(FeatureFilterParameters):
 
     edges: EdgeParameters = group(EdgeParameters)
     texture: str = texture_parameter()
+    update_unused: bool = parameter(
+        False,
+        "On: also the references of features that have dropped out follow the last estimate, as "
+        "printed; off keeps them, so that they do not learn what has covered the vehicle.",
+        source="P2 section IV step 2, interpretation 26",
+    )
     joint_resampling: bool = parameter(
         True,
         "Resample once, on the product of the features' weights; off keeps the particles that "
@@ -232,7 +232,13 @@ class MfpfParameters(FeatureFilterParameters):
         if not self.as_printed:
             return self
         printed = common_print(self)
-        return replace(printed, edges=PRINTED_EDGES, texture="glcm", joint_resampling=False)
+        return replace(
+            printed,
+            edges=PRINTED_EDGES,
+            texture="glcm",
+            update_unused=True,
+            joint_resampling=False,
+        )
 
 
 FilterParametersT = TypeVar("FilterParametersT", bound=FeatureFilterParameters)
@@ -245,7 +251,6 @@ def common_print(parameters: FilterParametersT) -> FilterParametersT:
     """Return `parameters` with everything as printed that all filters of P2 have."""
     return replace(
         parameters,
-        update_unused=True,
         velocity_window=1,
         estimate="best",
         resampling="multinomial",

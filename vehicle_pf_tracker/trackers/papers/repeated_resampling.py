@@ -93,7 +93,14 @@ RepeatedParametersT = TypeVar("RepeatedParametersT", bound=RepeatedResamplingPar
 
 def common_print(parameters: RepeatedParametersT) -> RepeatedParametersT:
     """Return `parameters` with everything as printed that both filters of P3 have."""
-    return replace(parameters, histogram_bits=3, criterion=1.0, most_passes=20, weighted_mean=False)
+    return replace(
+        parameters,
+        histogram_bits=3,
+        criterion=1.0,
+        most_passes=20,
+        weighted_mean=False,
+        likelihood=replace(parameters.likelihood, squared_distance=True),
+    )
 
 
 @dataclass(frozen=True, slots=True)
