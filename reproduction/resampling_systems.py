@@ -34,7 +34,7 @@ HARD_SCENE = SceneChoice.of("phases")
 """Half hidden for 30 frames, then hidden wholly for 20."""
 REMNANT_BELOW = 0.3
 """Share of the vehicle below which it counts as almost fully hidden where some of it always shows:
-the four frames of `overlap` that the paper's figure 4 has have less."""
+the frames of `overlap` that stand for the paper's from 16 to 19 have less."""
 STRICTER = "as printed, low weight below half the mean"
 BY_SIMILARITY = "the paper's rule, occlusion told by similarity"
 HARD = ", hidden wholly"
@@ -102,8 +102,8 @@ VIEWS: Mapping[str, View] = MappingProxyType(
 """The same, and three of them on the harder scene."""
 SETTING = (
     "The scene `overlap` has the timing of the paper's figure 4: a car passes a parked lorry, "
-    "clear in frames 1 to 10 and almost fully hidden in four frames from about frame 16 on, while "
-    "a remnant of its roof stays visible; 15 frames per second. `phases`, called hidden wholly, is "
+    "clear in frames 1 to 10 and almost fully hidden in three or four frames from frame 16 on, "
+    "while a remnant of its roof stays visible; 15 frames per second. `phases`, called hidden wholly, is "
     "harder: a parked van hides half of the car, then a parked coach all of it for 20 frames. Each "
     "seed renders a new scene and seeds the filters. The paper's rule is its tables I and II, with "
     "the plain mean of the particles as the position, and a criterion that can be reached "

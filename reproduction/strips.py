@@ -67,7 +67,7 @@ def strip_figure(
 ) -> Figure:
     """Draw a row of frames for each entry, cut to what is around the true position.
 
-    A box that lies outside is parts by an arrow of its colour that points to it.
+    A box that lies outside is told by an arrow of its colour that points to it.
 
     Parameters
     ----------

@@ -49,7 +49,8 @@ def test_one_experiment_writes_its_folder_and_the_page(tmp_path, capsys):
     sizes = [(out / "apf-fig4" / f"figure.{kind}").stat().st_size for kind in ("svg", "png")]
     assert picture.stat().st_size == min(sizes)
     word = json.loads((out / "apf-fig4" / "verdict.json").read_text())["holds"]
-    assert f"and 30 px | {word} |" in page
+    assert f"and 30 px | **{word}** |" in page
+    assert "| 100 |" in page  # the seed
     assert f"apf-fig4: {word}  (" in capsys.readouterr().out
 
 

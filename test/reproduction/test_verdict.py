@@ -16,7 +16,16 @@ import json
 
 import pytest
 
-from reproduction.experiment import Claim, DataTable, ExperimentVerdict, Finding, Holds
+from reproduction.experiment import (
+    OURS,
+    PAPER,
+    PRINTED,
+    Claim,
+    DataTable,
+    ExperimentVerdict,
+    Finding,
+    Holds,
+)
 from reproduction.numbers import (
     counted,
     mean_and_spread,
@@ -49,8 +58,20 @@ def verdict():
     )
 
 
-def test_our_reading_decides():
+def test_the_first_finding_decides():
     assert verdict().holds is YES
+
+
+def test_claims_are_joined_under_each_interpretation():
+    claims = (
+        Claim("one", "figure 1", (Finding(PAPER, YES, ""), Finding(PRINTED, NO, ""))),
+        Claim("two", "figure 1", (Finding("their defaults", NO, ""),)),
+    )
+    found = ExperimentVerdict(claims, "")
+    assert found.holds is PARTLY
+    assert found.under(PRINTED) is NO
+    assert found.under(OURS) is None
+    assert found.to_json()["under"] == {OURS: None, PRINTED: "no"}
 
 
 def test_a_verdict_is_plain_json():
@@ -63,7 +84,7 @@ def test_a_verdict_is_plain_json():
 
 def test_a_verdict_is_a_text_with_a_table_for_each_claim():
     assert verdict().to_markdown() == (
-        "**ExperimentVerdict: yes.**\n\nA bar.\n\nClaim (figure 1): it follows\n\n"
+        "**Verdict: yes.**\n\nA bar.\n\nClaim (figure 1): it follows\n\n"
         "| interpretation | holds | result |\n|---|---|---|\n"
         "| our interpretation | **yes** | 3 px |\n| as printed | **no** | 300 px |\n\nMind the "
         "gap.\n"
