@@ -103,7 +103,8 @@ VIEWS: Mapping[str, View] = MappingProxyType(
 SETTING = (
     "The scene `overlap` has the timing of the paper's figure 4: a car passes a parked lorry, "
     "clear in frames 1 to 10 and almost fully hidden in three or four frames from frame 16 on, "
-    "while a remnant of its roof stays visible; 15 frames per second. `phases`, called hidden wholly, is "
+    "while a remnant of its roof stays visible; 15 frames per second. `phases`, called hidden "
+    "wholly, is "
     "harder: a parked van hides half of the car, then a parked coach all of it for 20 frames. Each "
     "seed renders a new scene and seeds the filters. The paper's rule is its tables I and II, with "
     "the plain mean of the particles as the position, and a criterion that can be reached "
