@@ -54,8 +54,11 @@ from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, helli
 from vehicle_pf_tracker.image.window_feature import WindowFeature
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.contract import WindowParameters
-from vehicle_pf_tracker.trackers.papers.mfpf import edge_feature
-from vehicle_pf_tracker.trackers.papers.mfpf_parameters import TEXTURES, MfpfParameters
+from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
+    TEXTURES,
+    MfpfParameters,
+    edge_feature,
+)
 from vehicle_pf_tracker.trackers.target import Target
 
 _PLACE = "section III-D, figure 1"

@@ -40,7 +40,6 @@ from vehicle_pf_tracker.filtering.motion import DISC_SIGMA, sample_disc, sample_
 from vehicle_pf_tracker.filtering.resampling import SCHEMES, Ancestors
 from vehicle_pf_tracker.filtering.weights import Weights, effective_sample_size, from_log
 from vehicle_pf_tracker.image.colour import RgbMarginals
-from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.similarity import (
     Reference,
     bhattacharyya_coefficient,
@@ -59,9 +58,9 @@ from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     TEXTURES,
-    EdgeParameters,
     FeatureFilterParameters,
     MfpfParameters,
+    edge_feature,
 )
 
 FilterParametersT = TypeVar("FilterParametersT", bound=FeatureFilterParameters)
@@ -357,10 +356,3 @@ class MfpfTracker(FeatureFilter[MfpfParameters]):
             "edge": edge_feature(settings.edges),
             "texture": TEXTURES[settings.texture](),
         }
-
-
-def edge_feature(parameters: EdgeParameters) -> GradientDirections:
-    """Make the edge feature of these parameters."""
-    return GradientDirections(
-        parameters.threshold, parameters.in_frame, parameters.signed, parameters.floor
-    )

@@ -20,6 +20,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
+from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
 from vehicle_pf_tracker.image.window_feature import WindowFeature
 from vehicle_pf_tracker.parameters.table import group, parameter
@@ -163,6 +164,13 @@ class EdgeParameters:
         "Distinguish light-to-dark from dark-to-light; off folds them by the printed arctangent.",
         source="P2 eq. 7, interpretation 13",
         effect="relearns",
+    )
+
+
+def edge_feature(parameters: EdgeParameters) -> GradientDirections:
+    """Make the edge feature of these parameters."""
+    return GradientDirections(
+        parameters.threshold, parameters.in_frame, parameters.signed, parameters.floor
     )
 
 

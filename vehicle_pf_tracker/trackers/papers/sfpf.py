@@ -26,13 +26,14 @@ from dataclasses import dataclass, replace
 from vehicle_pf_tracker.image.colour import RgbMarginals
 from vehicle_pf_tracker.image.window_feature import WindowFeature
 from vehicle_pf_tracker.parameters.table import group
-from vehicle_pf_tracker.trackers.papers.mfpf import FeatureFilter, edge_feature
+from vehicle_pf_tracker.trackers.papers.mfpf import FeatureFilter
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     PRINTED_EDGES,
     TEXTURES,
     EdgeParameters,
     FeatureFilterParameters,
     common_print,
+    edge_feature,
     texture_parameter,
 )
 
