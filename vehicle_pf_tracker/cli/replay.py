@@ -165,7 +165,7 @@ def write_answers(folder: Path, nodes: Sequence[NodeReport]) -> list[Path]:
     for node in nodes:
         place = folder if len(nodes) == 1 else folder / node.name.strip("/").replace("/", "_")
         paths.append(make_folder(place) / "estimates.csv")
-        write_estimates(paths[-1], node.rows)
+        write_estimates(paths[-1], node.rows, node.road)
     return paths
 
 

@@ -33,12 +33,29 @@ from geometry_msgs.msg import (
 )
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import CameraInfo, Image
-from tracker_rig import HEIGHT, PERIOD_NS, SPEED, TARGET, WIDTH, Rig, on_target, road, values_of
+from tracker_rig import (
+    FIRST_NS,
+    HEIGHT,
+    PERIOD_NS,
+    SPEED,
+    TARGET,
+    WIDTH,
+    Rig,
+    on_target,
+    road,
+    values_of,
+)
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
+from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.ros.node import located_outputs
+from vehicle_pf_tracker.ros.replay.answers import Answers
 from vehicle_pf_tracker.ros.road_messages import lens_of_info
+from vehicle_pf_tracker.trackers.registry import find_variant
 
 pytestmark = pytest.mark.ros
 
@@ -285,3 +302,28 @@ def test_camera_info_that_is_no_lens(changes, words):
         setattr(message, name, value)
     with pytest.raises(InputError, match=words):
         lens_of_info(message, rectified=False)
+
+
+def test_numbers_are_those_of_an_offline_run_and_of_a_replay(bench, rig):
+    frames = road(12)
+    answers, replayed = [], Answers()
+    for index, frame in enumerate(frames):
+        replayed.expect(index, FIRST_NS + index * PERIOD_NS)
+        answers.append(rig.show_frame(frame, index))
+        replayed.receive(answers[-1])
+    settings = with_target(SessionParameters(road=RoadParameters(pairs=PAIRS)), Box(*TARGET))
+    variant = find_variant("apf")
+    tracker = OfflineTracker(variant, variant.parameters(), settings)
+    list(tracker.rows((FIRST_NS + i * PERIOD_NS, frame) for i, frame in enumerate(frames)))
+    columns = tracker.road_columns
+    assert columns == replayed.road_columns()
+    for name, numbers in columns.items():
+        assert [float(values_of(answer)[name]) for answer in answers] == numbers
+
+
+def test_a_replay_without_a_road_has_no_columns_of_it(bench):
+    rig, replayed = Rig(bench, on_target()), Answers()
+    replayed.expect(0, FIRST_NS)
+    replayed.receive(rig.show_frame(road(1)[0], 0))
+    assert replayed.count == 1
+    assert replayed.road_columns() == {}

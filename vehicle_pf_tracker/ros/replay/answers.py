@@ -17,9 +17,11 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping
 from typing import Any
 
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
+from vehicle_pf_tracker.trackers.road_follower import ROAD_COLUMNS
 
 DROPPED = "DROPPED"
 """Mode of a frame that a node never answered; all numbers are empty."""
@@ -41,12 +43,14 @@ class Answers:
         self._stamps: dict[int, int] = {}
         self._waiting: dict[int, deque[int]] = {}
         self._rows: dict[int, EstimateRow] = {}
+        self._on_road: dict[int, Mapping[str, str]] = {}
 
     def begin_pass(self) -> None:
         """Discard earlier frames; a loop begins again with their stamps."""
         self._stamps.clear()
         self._waiting.clear()
         self._rows.clear()
+        self._on_road.clear()
 
     def expect(self, frame: int, stamp_ns: int) -> None:
         """Note that the image number `frame` was published."""
@@ -66,11 +70,23 @@ class Answers:
         status = message.status[0]
         scalars = {"mode": status.message, **{pair.key: pair.value for pair in status.values}}
         self._rows[frame] = EstimateRow.from_scalars(frame, stamp_ns, scalars)
+        if "road" in scalars:
+            self._on_road[frame] = scalars
         self.count += 1
 
     def has(self, frame: int) -> bool:
         """Return whether image number `frame` of this pass was answered."""
         return frame in self._rows
+
+    def road_columns(self) -> dict[str, list[float | None]]:
+        """Return places and speeds on the road, a value for each of `rows`; none without a road."""
+        if not self._on_road:
+            return {}
+        answers = [self._on_road.get(frame, {}) for frame in self._stamps]
+        return {
+            name: [float(one[name]) if name in one else None for one in answers]
+            for name in ROAD_COLUMNS
+        }
 
     def rows(self) -> tuple[EstimateRow, ...]:
         """One row for each image of this pass, in order."""

@@ -100,11 +100,14 @@ class NodeReport:
         How many images it answered, in all passes of a loop.
     rows : tuple of EstimateRow
         One for each image of the last pass, in order; mode `DROPPED` where no answer came.
+    road : mapping of str to list of float or None
+        Columns beside the rows, where the node has a road.
     """
 
     name: str
     answered: int
     rows: tuple[EstimateRow, ...]
+    road: Mapping[str, list[float | None]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

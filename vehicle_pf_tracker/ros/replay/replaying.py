@@ -178,7 +178,12 @@ class _Replay:
             messages=self._player.messages,
             seconds=time.monotonic() - began,
             nodes=tuple(
-                NodeReport(link.name, link.answers.count, link.answers.rows())
+                NodeReport(
+                    link.name,
+                    link.answers.count,
+                    link.answers.rows(),
+                    link.answers.road_columns(),
+                )
                 for link in self._links
             ),
             notices=self._player.notices,
