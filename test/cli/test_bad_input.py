@@ -269,3 +269,24 @@ def test_import_of_what_is_no_video(fails, tmp_path):
     (tmp_path / "notes.mp4").write_text("no video")
     assert "notes.mp4" in fails("import", tmp_path / "notes.mp4", tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "told", "status"),
+    [
+        (("runn", "x"), "there is no verb 'runn' (did you mean 'run'?); the verbs are demo", 2),
+        (("dance",), "there is no verb 'dance'; the verbs are demo", 2),
+        (("synth", "bars2", "out"), "no scene 'bars2' (did you mean 'bars'?)", 1),
+        (("params", "mfps"), "no variant 'mfps' (did you mean 'mfpf'?)", 1),
+    ],
+)
+def test_a_mistyped_name_is_answered_with_the_one_meant(fails, words, told, status):
+    assert told in fails(*words, status=status)
+
+
+def test_a_file_for_another_variant_is_named_as_such(run_fails, bag, tmp_path):
+    path = tmp_path / "theirs.yaml"
+    path.write_text("/**:\n  ros__parameters:\n    sigma: 0.2\n    num_particles: 50\n")
+    line = run_fails(bag, "--params", path)
+    assert "there is no parameter 'sigma'" in line
+    assert "it is a file for pf" in line

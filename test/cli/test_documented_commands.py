@@ -78,8 +78,8 @@ def test_public_names_are_those_listed():
 @pytest.mark.parametrize(
     ("variant", "parameters", "words"),
     [
-        ("fussion", {}, "did you mean fusion?"),
-        ("apf_tracker", {}, "did you mean apf?"),
+        ("fussion", {}, "(did you mean 'fusion'?)"),
+        ("apf_tracker", {}, "(did you mean 'apf'?)"),
         ("csrt", {}, "choose one of apf, pf"),
         ("pf", {"num_particle": 3}, "num_particle"),
         ("pf", {"num_particles": 0}, "num_particles must be"),

@@ -36,7 +36,7 @@ from vehicle_pf_tracker.cli.console import (
     tell_error,
 )
 from vehicle_pf_tracker.core.address_space import check_address_space
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
@@ -127,6 +127,11 @@ def _parser(words: list[str]) -> argparse.ArgumentParser:
     asked = next((word for word in words if not word.startswith("-")), None)
     if asked == "reproduce":
         raise UsageError(_REPRODUCE)
+    if asked is not None and asked not in VERBS:
+        raise UsageError(
+            f"there is no verb {asked!r}{suggestion(asked, VERBS)}; the verbs are "
+            f"{', '.join(VERBS)}"
+        )
     parser = argparse.ArgumentParser(prog=PROGRAM, description=_summary)
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {__version__}")
     verbs = parser.add_subparsers(metavar="VERB", required=True)

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,7 +26,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs, unknown_name
-from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
@@ -87,11 +88,10 @@ def with_file(configuration: Configuration, variant: Variant, path: Path) -> Con
     """
     values = read_yaml(path, f"{variant.name}_tracker")
     known = configuration.specs()
-    problems = [
-        unknown_name(name, known)
-        for name in values
-        if name not in known and name not in _OF_ROS and not name.startswith(_OF_ROS_PREFIX)
-    ]
+    own = [name for name in values if name not in _OF_ROS and not name.startswith(_OF_ROS_PREFIX)]
+    problems = [unknown_name(name, known) for name in own if name not in known]
+    if problems and (others := _variants_with(own, type(configuration))):
+        problems.append(f"it is a file for {', '.join(others)}")
     try:
         configuration = configuration.updated(values)
     except InputError as error:
@@ -99,3 +99,8 @@ def with_file(configuration: Configuration, variant: Variant, path: Path) -> Con
     if problems:
         raise InputError(f"the parameter file {path}: {'; '.join(problems)}")
     return configuration
+
+
+def _variants_with(names: Iterable[str], kind: type[Configuration]) -> list[str]:
+    """Return the variants that have all these parameters."""
+    return [one.name for one in VARIANTS.values() if set(names) <= set(kind.of(one).specs())]

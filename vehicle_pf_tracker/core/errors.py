@@ -16,6 +16,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from difflib import get_close_matches
+
 
 class InputError(ValueError):
     """User's mistake, described in one sentence that names the thing and the remedy.
@@ -23,3 +26,9 @@ class InputError(ValueError):
     Raised by every room for bad files, targets, parameters and names. The command line prints the
     sentence on one line and ends with status 1; the node logs it and lives on.
     """
+
+
+def suggestion(name: str, known: Iterable[str]) -> str:
+    """Return the known name that a mistyped one is like, in brackets; empty if there is none."""
+    close = get_close_matches(name, list(known), n=1)
+    return f" (did you mean {close[0]!r}?)" if close else ""

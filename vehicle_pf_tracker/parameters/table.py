@@ -24,7 +24,6 @@ marked as tuned.
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import functools
 import math
 import reprlib
@@ -33,7 +32,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal, TypeAlias, TypeVar, cast, get_type_hints
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 Value: TypeAlias = bool | int | float | str
 Effect: TypeAlias = Literal["keeps", "relearns", "restarts", "starts"]
@@ -268,8 +267,7 @@ def _build(cls: type[Any], values: Mapping[str, Value], prefix: str) -> Any:
 
 def unknown_name(name: str, known: Iterable[str]) -> str:
     """Write that there is no parameter `name`, and which one may be meant."""
-    close = difflib.get_close_matches(name, list(known), n=1)
-    return f"there is no parameter {name!r}" + (f" (did you mean {close[0]!r}?)" if close else "")
+    return f"there is no parameter {name!r}{suggestion(name, known)}"
 
 
 def parse_assignments(

@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.scenes.bar import BarParameters, bar
 from vehicle_pf_tracker.scenes.drive import DriveParameters
@@ -129,7 +129,10 @@ def make_scene(
         If the scene or a setting is unknown (naming the known ones), or a value does not fit.
     """
     if name not in scenes:
-        raise InputError(f"there is no scene {name!r}; choose one of {', '.join(scenes)}")
+        raise InputError(
+            f"there is no scene {name!r}{suggestion(name, scenes)}; choose one of "
+            f"{', '.join(scenes)}"
+        )
     kind = scenes[name]
     if isinstance(settings, Mapping):
         _check_names(name, kind, settings)

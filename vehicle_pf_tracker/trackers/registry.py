@@ -24,12 +24,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.base import BaseTracker
@@ -173,9 +172,8 @@ def find_variant(name: str) -> Variant:
         If there is none of this name.
     """
     if name not in VARIANTS:
-        near = get_close_matches(name.removesuffix("_tracker"), VARIANTS, n=1)
-        hint = f"did you mean {near[0]}? " if near else ""
-        raise InputError(f"there is no variant {name!r}; {hint}choose one of {', '.join(VARIANTS)}")
+        hint = suggestion(name.removesuffix("_tracker"), VARIANTS)
+        raise InputError(f"there is no variant {name!r}{hint}; choose one of {', '.join(VARIANTS)}")
     return VARIANTS[name]
 
 
