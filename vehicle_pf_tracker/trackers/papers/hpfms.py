@@ -30,6 +30,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
+from vehicle_pf_tracker.image.reduction import Reduction
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
@@ -88,10 +89,16 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
     def __init__(self, parameters: HpfmsParameters) -> None:
         super().__init__(parameters)
         self._evidence = 0.0
+        self._reduction = Reduction()
 
     def _learn(self) -> None:
+        self._reduction = reduction = Reduction.of_window(self.window)
+        x, y = reduction.positions(np.array(self.target.centre))
         histogram = kernel_histogram(
-            self.target.patch, self.target.centre, self.window, self.parameters.histogram_bits
+            reduction.frame(self.target.patch),
+            (float(x), float(y)),
+            reduction.window(self.window),
+            self.parameters.histogram_bits,
         )
         self._reference = Reference(histogram)
 
@@ -117,9 +124,22 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         return widening * max(settings.sigma, transition.speed_share * speed)
 
     def _similarity(self, frame: Frame, positions: Array) -> Array:
-        feature, window = JointColour(self.parameters.histogram_bits), self.window
-        return self.kernels.kernel_similarity(feature, frame, positions, window, self._reference)
+        feature, reduction = JointColour(self.parameters.histogram_bits), self._reduction
+        return self.kernels.kernel_similarity(
+            feature,
+            reduction.frame(frame),
+            reduction.positions(positions),
+            reduction.window(self.window),
+            self._reference,
+        )
 
     def _shift(self, frame: Frame, positions: Array) -> Array:
-        feature, window = JointColour(self.parameters.histogram_bits), self.window
-        return self.kernels.mean_shift(feature, frame, positions, window, self._reference)
+        feature, reduction = JointColour(self.parameters.histogram_bits), self._reduction
+        shifted = self.kernels.mean_shift(
+            feature,
+            reduction.frame(frame),
+            reduction.positions(positions),
+            reduction.window(self.window),
+            self._reference,
+        )
+        return reduction.back(shifted)
