@@ -75,6 +75,34 @@ def test_mono16_keeps_the_high_byte_in_both_byte_orders(order, big):
     assert frame[0, :, 2].tolist() == [0x00, 0x12, 0xFF]
 
 
+def test_opencvs_names_are_grey_and_bgr():
+    grey = np.array([[0, 128, 255]], np.uint8)
+    assert np.array_equal(convert("8UC1", grey, 3), convert("mono8", grey, 3))
+    assert np.array_equal(convert("8UC3", COLOURS[..., ::-1], 3), COLOURS)
+
+
+@pytest.mark.parametrize(("order", "big"), [("<u2", False), (">u2", True)])
+@pytest.mark.parametrize("offset", [0, 30_000])
+def test_16uc1_is_scaled_by_its_own_range(order, big, offset):
+    """14 bits of a thermal camera would lie in the lowest quarter, or in one grey value."""
+    values = (np.arange(200, dtype=np.uint16) * 5 + offset).reshape(10, 20).astype(order)
+    frame = convert("16UC1", values, 20, big=big)
+    assert (frame.min(), frame.max()) == (0, 255)
+    assert np.array_equal(frame[..., 0], frame[..., 2])
+    # By hand: the percentiles of 0 to 995 are at 0.995 * 5 and 198.005 * 5.
+    low, high = 4.975, 990.025
+    expected = np.clip((values.astype(float) - offset - low) / (high - low), 0, 1) * 255
+    assert np.abs(frame[..., 0] - expected).max() <= 0.51
+
+
+def test_16uc1_passes_over_single_hot_pixels_and_takes_flat_images():
+    values = np.tile(np.arange(1000, 1100, dtype="<u2"), (100, 1))
+    plain = convert("16UC1", values, 100)
+    values[5, 5] = 65_535
+    assert np.abs(convert("16UC1", values, 100)[9:].astype(int) - plain[9:]).max() <= 1
+    assert convert("16UC1", np.full((4, 6), 777, "<u2"), 6).max() == 0
+
+
 def mosaic(pattern, colour, size=8):
     """Photograph one colour through a Bayer filter whose first pixels are `pattern` (rggb...)."""
     value = dict(zip("rgb", colour, strict=True))

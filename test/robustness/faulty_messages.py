@@ -141,7 +141,7 @@ class Faults:
             "x" * 1000,
             "\u00fc8",
             "bayer_rggb",
-            "8UC3",
+            "8UC2",
         )
         image.encoding = self._random.choice(junk)
 

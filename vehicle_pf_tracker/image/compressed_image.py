@@ -201,12 +201,22 @@ def _ends_early(jpeg: JpegStructure, data: bytes, image: Frame) -> bool:
     It says so on stderr alone. So, where the last block is grey, more data are put before the end:
     a whole image does not change by them.
     """
-    corners = image[:: max(image.shape[0] - 1, 1), :: max(image.shape[1] - 1, 1)]
-    is_grey = bool((corners == _GREY).all(axis=2).any())  # any corner may be the last: orientation
+    turned = (image, image[::-1], image[:, ::-1], image[::-1, ::-1])  # by the file's orientation
+    is_grey = any((_last_block(one) == _GREY).all() for one in turned)
     if jpeg.is_progressive or not (is_grey or len(jpeg.scans) > 1):
         return False
     longer = _decoded(data[:-2] + _EXTRA + data[-2:])
     return longer is None or not np.array_equal(image, longer)
+
+
+def _last_block(image: Frame) -> Frame:
+    """View of the last block of a JPEG, or of the last but one where that is one pixel wide.
+
+    Without its first row and column, which take colour from the blocks before.
+    """
+    ends = [size - (size % 8 == 1) for size in image.shape[:2]]
+    (bottom, rows), (right, columns) = ((end, min((end - 1) % 8, 4)) for end in ends)
+    return image[max(bottom - max(rows, 1), 0) : bottom, max(right - max(columns, 1), 0) : right]
 
 
 def _to_rgb(image: Frame) -> Frame:

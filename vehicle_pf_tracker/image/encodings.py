@@ -39,6 +39,12 @@ MAX_SIDE = 32767
 """Longest side in px: the limit of OpenCV's 16-bit coordinates."""
 
 
+_TAILS = (0.5, 99.5)
+"""Percentiles of 16UC1 that become black and white: single hot or dead pixels do not count."""
+_SAMPLED = 128
+"""Rows and columns that the percentiles are taken from: enough for half a percent, in 2 ms."""
+
+
 @dataclass(frozen=True, slots=True)
 class _Encoding:
     """Memory layout of an encoding, and its conversion to RGB.
@@ -59,7 +65,9 @@ def to_rgb(
     """Read the data of a `sensor_msgs/Image` as an RGB frame.
 
     `rgb8` is returned as a view of `data`, rows `step` bytes apart; everything else is converted
-    into a new array. 16-bit values keep their high byte.
+    into a new array. 16-bit values keep their high byte; those of `16UC1`, which thermal cameras
+    send with 10 to 16 bits in use, are scaled by the image's own range instead, so that two images
+    of a scene may differ in brightness.
 
     Parameters
     ----------
@@ -130,6 +138,16 @@ def _high_byte(pixels: Bytes, is_bigendian: bool) -> Bytes:
     return np.ascontiguousarray(pixels[..., 0 if is_bigendian else 1])
 
 
+def _stretched(pixels: Bytes, is_bigendian: bool) -> Bytes:
+    """Scale 16-bit values from the darkest to the brightest percentile to 0 to 255."""
+    values = np.ascontiguousarray(pixels).view(">u2" if is_bigendian else "<u2")[..., 0]
+    sample = values[:: max(values.shape[0] // _SAMPLED, 1), :: max(values.shape[1] // _SAMPLED, 1)]
+    low, high = np.percentile(sample, _TAILS)
+    every = np.arange(2**16, dtype=np.float64)
+    greys = np.rint(np.clip((every - low) * (255.0 / max(high - low, 1.0)), 0, 255))
+    return np.asarray(greys.astype(np.uint8)[values])
+
+
 def _by_opencv(code: int, pixel_bytes: int, **layout: Any) -> _Encoding:
     return _Encoding(pixel_bytes, lambda pixels, _: cv2.cvtColor(pixels, code), **layout)
 
@@ -154,6 +172,12 @@ ENCODINGS: dict[str, _Encoding] = {
     "bgra8": _by_opencv(cv2.COLOR_BGRA2RGB, 4),
     "mono8": _by_opencv(cv2.COLOR_GRAY2RGB, 1),
     "mono16": _by_opencv_16(cv2.COLOR_GRAY2RGB),
+    # OpenCV's names for its arrays, as nodes send them that fill in no colour space: BGR, as there.
+    "8UC1": _by_opencv(cv2.COLOR_GRAY2RGB, 1),
+    "8UC3": _by_opencv(cv2.COLOR_BGR2RGB, 3),
+    "16UC1": _Encoding(
+        2, lambda pixels, big: cv2.cvtColor(_stretched(pixels, big), cv2.COLOR_GRAY2RGB)
+    ),
     **{f"{name}8": _by_opencv(code, 1) for name, code in _BAYER.items()},
     **{f"{name}16": _by_opencv_16(code) for name, code in _BAYER.items()},
     "yuv422": _by_opencv(cv2.COLOR_YUV2RGB_UYVY, 2, even=True),

@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from typing import Any
 
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
@@ -134,7 +134,9 @@ class ImageInput:
         found = [
             name
             for name, types in topics.items()
-            if _TYPE_NAMES[self._kind] in types and self._is_foreign(name)
+            if _TYPE_NAMES[self._kind] in types
+            and self._is_foreign(name)
+            and not _is_overlay(name, topics)
         ]
         return f"; images are on {', '.join(found)}: remap image to one of them" if found else ""
 
@@ -146,6 +148,12 @@ class ImageInput:
         own = self._node.get_name(), self._node.get_namespace()
         publishers = self._node.get_publishers_info_by_topic(topic)
         return any((one.node_name, one.node_namespace) != own for one in publishers)
+
+
+def _is_overlay(topic: str, topics: Container[str]) -> bool:
+    """Return whether it is the overlay of a tracker node, whatever that is called."""
+    node, _, name = topic.rpartition("/")
+    return name == "overlay" and f"{node}/mode" in topics
 
 
 def _reading(callback: ImageCallback) -> ImageCallback:
