@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,7 +43,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--playback-duration", type=_seconds, metavar="S", help="play only this many seconds")
     add("-l", "--loop", action="store_true", help="restart at the end")
     add("-d", "--delay", type=_seconds, default=0.0, metavar="S", help="wait before playing")
+    add("--start-paused", action="store_true", help="begin paused, until ~/resume is called")
     add("--topics", nargs="+", default=[], metavar="TOPIC", help="play these topics only")
+    add("-e", "--regex", type=_pattern, default="", help="play topics that match this whole")
+    add(
+        "--exclude", "--exclude-topics", nargs="+", default=[], metavar="TOPIC",
+        help="play all but these topics",
+    )  # fmt: skip
+    add(
+        "-x", "--exclude-regex", type=_pattern, default="", metavar="REGEX",
+        help="play all but topics that match this whole",
+    )  # fmt: skip
+    add(
+        "--qos-profile-overrides-path", type=Path, metavar="FILE",
+        help="YAML of QoS by recorded topic; others are published as recorded, but reliably",
+    )  # fmt: skip
     add(
         "-m", "--remap", nargs="+", action="extend", default=[], type=_remapping,
         metavar="FROM:=TO", help="publish a recorded topic under another name",
@@ -126,15 +141,22 @@ def run(args: argparse.Namespace) -> int:
 
 def options_of(args: argparse.Namespace) -> ReplayOptions:
     """Collect the options of a parsed command line."""
+    from vehicle_pf_tracker.ros.replay.recorded_qos import read_qos_overrides
     from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
+    qos_file = args.qos_profile_overrides_path
     return ReplayOptions(
         rate=args.rate,
         start_offset=args.start_offset,
         playback_duration=args.playback_duration,
         loop=args.loop,
         delay=args.delay,
+        start_paused=args.start_paused,
         topics=tuple(map(_absolute, args.topics)),
+        regex=args.regex,
+        exclude=tuple(map(_absolute, args.exclude)),
+        exclude_regex=args.exclude_regex,
+        qos=read_qos_overrides(qos_file) if qos_file else {},
         remap=dict(args.remap),
         clock=args.clock,
         wait_for_subscribers=args.wait_for_subscribers,
@@ -206,6 +228,14 @@ def _number(text: str) -> float:
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"{text!r} is not a number")
     return value
+
+
+def _pattern(text: str) -> str:
+    try:
+        re.compile(text)
+    except re.error as error:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a pattern: {error}") from None
+    return text
 
 
 def _remapping(text: str) -> tuple[str, str]:

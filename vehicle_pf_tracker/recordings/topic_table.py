@@ -34,7 +34,7 @@ class TopicInfo:
     """A topic: its ROS type (empty where unknown), its encoding and its number of messages.
 
     `is_cdr` is true where the messages are serialized as in ROS 2, `has_header` where they begin
-    with a header.
+    with a header. `offered_qos` is the recorded QoS as YAML text, empty where unknown.
     """
 
     name: str
@@ -42,6 +42,7 @@ class TopicInfo:
     message_count: int
     is_cdr: bool
     has_header: bool
+    offered_qos: str = ""
 
     @property
     def is_image(self) -> bool:
@@ -105,11 +106,12 @@ def _named_topic(
 def _describe(index: McapIndex, channel: Channel) -> TopicInfo:
     schema = index.schemas.get(channel.schema_id)
     is_cdr = channel.message_encoding == MessageEncoding.CDR
+    qos = channel.metadata.get("offered_qos_profiles", "")
     if schema is None:
-        return TopicInfo(channel.topic, "", 0, is_cdr, has_header=False)
+        return TopicInfo(channel.topic, "", 0, is_cdr, has_header=False, offered_qos=qos)
     definition = schema.data.decode(errors="replace")
     has_header = is_cdr and starts_with_header(schema.name, definition)
-    return TopicInfo(channel.topic, schema.name, 0, is_cdr, has_header)
+    return TopicInfo(channel.topic, schema.name, 0, is_cdr, has_header, qos)
 
 
 def _listed(topics: Sequence[TopicInfo]) -> str:

@@ -37,8 +37,13 @@ class Pace:
         self._begin: tuple[int, float] | None = None
         self._latest_ns = 0
 
+    def set_rate(self, rate: float | None) -> None:
+        """Go on at another rate from the next log time."""
+        self._rate = rate
+        self.restart()
+
     def restart(self) -> None:
-        """Take the next log time as now; a loop does this at each restart."""
+        """Take the next log time as now; a loop does this at each restart, a pause at its end."""
         self._begin = None
 
     def due(self, log_time_ns: int) -> float:

@@ -37,6 +37,10 @@ class PlayableTopic(Protocol):
     def is_cdr(self) -> bool:
         """True where its messages are serialized as ROS 2 does it."""
 
+    @property
+    def offered_qos(self) -> str:
+        """Its recorded QoS profiles as YAML text, empty where they are not known."""
+
 
 class PlayableMessage(Protocol):
     """A message as it was recorded."""

@@ -22,6 +22,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from rclpy.node import Node
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.ros.replay.controls import Controls
 from vehicle_pf_tracker.ros.replay.pacing import Pace
 from vehicle_pf_tracker.ros.replay.playable import Playable, PlayableMessage
 from vehicle_pf_tracker.ros.replay.playback_clock import PlaybackClock
@@ -75,7 +76,10 @@ class Player:
         self._links = links
         self._frame = 0
         self._skipped: list[str] = []
-        self._pace = Pace(options.rate or (None if options.lockstep else 1.0))
+        rate = options.rate or (None if options.lockstep else 1.0)
+        self._pace = Pace(rate)
+        length = self._span()[1] * 1e-9
+        self._controls = Controls(node, rate or 0.0, length, is_paused=options.start_paused)
         self._clock = PlaybackClock(node, self._pace, options.clock) if options.clock else None
 
     @property
@@ -109,20 +113,52 @@ class Player:
         for link in self._links:
             link.answers.begin_pass()
         targets.begin_pass()
+        position: float | None = 0.0
+        while position is not None:
+            position = self._play_from(position, targets, on_progress)
+
+    def _play_from(
+        self, position: float, targets: Targets, on_progress: Callable[[Progress], None]
+    ) -> float | None:
+        """Play from `position` s to the end; return another position if the user asks for it."""
         begin_ns, length_ns = self._span()
-        for message in self._selected():
+        self._pace.restart()
+        for message in self._selected(position):
             if self._is_image(message):
                 targets.before(self._frame + 1)
-            self._spinner.until_time(self._pace.due(message.log_time_ns))
+            self._await_turn(message)
+            if (target := self._controls.take_target()) is not None:
+                return target
             if self._publish(message) and self._is_image(message):
                 self._follow(message)
-                position_ns = message.log_time_ns - begin_ns
-                on_progress(Progress(self.frames, position_ns * 1e-9, length_ns * 1e-9))
+            now = (message.log_time_ns - begin_ns) * 1e-9
+            self._controls.reach(now)
+            if self._is_image(message):
+                on_progress(Progress(self.frames, now, length_ns * 1e-9))
+        return None
 
-    def _selected(self) -> Iterator[PlayableMessage]:
-        options = self._options
+    def _await_turn(self, message: PlayableMessage) -> None:
+        """Wait until a message is due, or the user asks for another position."""
+        controls = self._controls
+        while controls.target is None:
+            has_changed = controls.watch()
+            if not controls.is_paused:
+                self._spinner.until_time(self._pace.due(message.log_time_ns), has_changed)
+            elif controls.steps:
+                controls.steps -= 1
+                return
+            else:
+                self._spinner.until(has_changed)
+            if not has_changed():
+                return
+            self._pace.set_rate(controls.rate or None)
+
+    def _selected(self, position: float) -> Iterator[PlayableMessage]:
+        options, duration = self._options, self._options.playback_duration
         return self._recording.messages(
-            set(self._publishers), options.start_offset, options.playback_duration
+            set(self._publishers),
+            options.start_offset + position,
+            None if duration is None else max(duration - position, 0.0),
         )
 
     def _span(self) -> tuple[int, int]:

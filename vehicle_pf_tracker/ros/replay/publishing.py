@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any
@@ -32,6 +33,7 @@ from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.replay.playable import Playable, PlayableTopic
+from vehicle_pf_tracker.ros.replay.recorded_qos import recorded_qos
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
 _SUFFIX = "/compressed"
@@ -40,7 +42,7 @@ _DEPTH = 100
 
 
 class TopicPublisher:
-    """Publishes the messages of one recorded topic, reliably.
+    """Publishes the messages of one recorded topic.
 
     Parameters
     ----------
@@ -50,6 +52,8 @@ class TopicPublisher:
         What to publish under.
     kind : type
         Class of the messages.
+    qos : QoSProfile
+        Quality of service to offer.
     convert : callable
         Makes of the recorded bytes what is published: a message, or its bytes.
 
@@ -60,9 +64,13 @@ class TopicPublisher:
     """
 
     def __init__(
-        self, node: Node, name: str, kind: type[Any], convert: Callable[[bytes], Any] = bytes
+        self,
+        node: Node,
+        name: str,
+        kind: type[Any],
+        qos: QoSProfile,
+        convert: Callable[[bytes], Any] = bytes,
     ) -> None:
-        qos = QoSProfile(depth=_IMAGE_DEPTH if kind is Image else _DEPTH)
         try:
             self._publisher = node.create_publisher(kind, name, qos)
         except NameValidationException as error:
@@ -107,7 +115,7 @@ def make_publishers(
     Raises
     ------
     InputError
-        If a topic that is chosen or renamed is not in the recording, or its new name is none.
+        If a topic that is named is not in the recording, or its new name is none.
     """
     _check_names(recording, options)
     publishers: dict[str, TopicPublisher] = {}
@@ -141,15 +149,19 @@ def _make_publisher(
     node: Node, topic: PlayableTopic, kind: type[Any], options: ReplayOptions
 ) -> TopicPublisher:
     name = _final_name(topic, options)
+    is_image = kind is Image or _is_decompressed(topic, options)
+    depth = _IMAGE_DEPTH if is_image else _DEPTH
+    qos = options.qos.get(topic.name) or recorded_qos(topic.offered_qos, depth)
     if _is_decompressed(topic, options):
-        return TopicPublisher(node, name, Image, decompressed)
-    return TopicPublisher(node, name, kind)
+        return TopicPublisher(node, name, Image, qos, decompressed)
+    return TopicPublisher(node, name, kind, qos)
 
 
 def _check_names(recording: Playable, options: ReplayOptions) -> None:
     known = {topic.name for topic in recording.topics}
     played = {_played_name(topic, options) for topic in recording.topics}
-    unknown = {*options.topics} - known | {*options.remap} - known - played
+    chosen = {*options.topics, *options.exclude, *options.qos}
+    unknown = chosen - known | {*options.remap} - known - played
     if unknown:
         raise InputError(
             f"the recording {recording.path} has no topic {', '.join(sorted(unknown))}; "
@@ -166,7 +178,13 @@ def _check_names(recording: Playable, options: ReplayOptions) -> None:
 
 
 def _is_chosen(topic: PlayableTopic, options: ReplayOptions) -> bool:
-    return not options.topics or topic.name in options.topics
+    name = topic.name
+    if options.topics and name not in options.topics:
+        return False
+    if options.regex and not re.fullmatch(options.regex, name):
+        return False
+    is_matched = options.exclude_regex and re.fullmatch(options.exclude_regex, name)
+    return name not in options.exclude and not is_matched
 
 
 def _is_decompressed(topic: PlayableTopic, options: ReplayOptions) -> bool:

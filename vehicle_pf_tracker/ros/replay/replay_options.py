@@ -19,6 +19,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from rclpy.qos import QoSProfile
+
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 
@@ -37,8 +39,18 @@ class ReplayOptions:
         Begin again at the end; stamps go back then.
     delay : float
         Wait so many seconds before the first message.
+    start_paused : bool
+        Begin paused, until ``~/resume`` or ``~/play_next`` is called.
     topics : tuple of str
         Play these topics only; empty for all. The image topic is among them only if named.
+    regex : str
+        Play only topics that this pattern matches whole; empty for all.
+    exclude : tuple of str
+        Play all but these.
+    exclude_regex : str
+        Play all but those that this pattern matches whole; empty for none.
+    qos : mapping of str to QoSProfile
+        Recorded topics that are published with another QoS than recorded.
     remap : mapping of str to str
         Recorded topic to the name it is published under.
     clock : float or None
@@ -66,7 +78,12 @@ class ReplayOptions:
     playback_duration: float | None = None
     loop: bool = False
     delay: float = 0.0
+    start_paused: bool = False
     topics: tuple[str, ...] = ()
+    regex: str = ""
+    exclude: tuple[str, ...] = ()
+    exclude_regex: str = ""
+    qos: Mapping[str, QoSProfile] = field(default_factory=dict)
     remap: Mapping[str, str] = field(default_factory=dict)
     clock: float | None = None
     wait_for_subscribers: bool = False

@@ -203,9 +203,7 @@ def _ros_node(
             tell(notice)
         _initialise(context, options)
         try:
-            node = Node(
-                NODE_NAME, context=context, enable_rosout=False, start_parameter_services=False
-            )
+            node = Node(NODE_NAME, context=context, enable_rosout=False)
             yield node
             node.destroy_node()
         finally:

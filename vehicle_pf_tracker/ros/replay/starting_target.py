@@ -136,7 +136,7 @@ class Targets:
             return
         self._is_first_pass = False
         for link in self._links:
-            link.set_target(self._target.box if self._target.frame == 1 else None)
+            link.set_target(self._target.box if self._target.frame == 1 else None, may_reset=True)
         for link in self._links:
             link.reset()
 

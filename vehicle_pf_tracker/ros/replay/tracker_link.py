@@ -86,8 +86,15 @@ class TrackerLink:
             )
         self._call(self._get, GetParameters.Request())
 
-    def set_target(self, box: Box | None) -> None:
+    def set_target(self, box: Box | None, *, may_reset: bool = False) -> None:
         """Set the node's configured target; None makes it wait for one after the next reset.
+
+        Parameters
+        ----------
+        box : Box or None
+            The target.
+        may_reset : bool
+            Whether to reset the node and try again if it refuses.
 
         Raises
         ------
@@ -100,6 +107,10 @@ class TrackerLink:
             parameters=_doubles(dict(zip(names, values, strict=True)))
         )
         result = self._call(self._set, request).result
+        if not result.successful and may_reset:
+            # It may be outside of the images that the node has seen before, of another size.
+            self._call(self._reset, Trigger.Request())
+            result = self._call(self._set, request).result
         if not result.successful:
             raise InputError(f"the node {self.name} refuses the target {box}: {result.reason}")
 

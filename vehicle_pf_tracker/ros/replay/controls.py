@@ -1,0 +1,146 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Control of a replay while it runs: services and parameters on the player's own node.
+
+They are named as those of the rosbag2 player, with the types of std_srvs: rosbag2's own are not
+installed where rosbag2 is not. Speed and position are parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from std_srvs.srv import Trigger
+
+RATE, POSITION = "rate", "position"
+_FASTEST = 1e6
+"""Highest rate: a million seconds a second paces nothing any more."""
+
+
+class Controls:
+    """What the user wants of the player at the moment.
+
+    Parameters
+    ----------
+    node : Node
+        The player's own node.
+    rate : float
+        Speed to begin with; 0 does not pace.
+    length : float
+        Length of the part that is played, in s.
+    is_paused : bool
+        Whether to begin paused.
+
+    Attributes
+    ----------
+    is_paused : bool
+        Whether messages wait.
+    steps : int
+        Messages to publish although it is paused.
+    rate : float
+        Speed; 0 does not pace.
+    target : float or None
+        Position to continue from, in s; None to go on.
+    changes : int
+        How often any of these was changed.
+    """
+
+    def __init__(self, node: Node, rate: float, length: float, *, is_paused: bool) -> None:
+        self.is_paused, self.steps, self.rate = is_paused, 0, rate
+        self.target: float | None = None
+        self.changes = 0
+        self._length = length
+        self._position = 0.0
+        answers: dict[str, Callable[[], tuple[bool, str]]] = {
+            "pause": self._pause,
+            "resume": self._resume,
+            "toggle_paused": lambda: self._resume() if self.is_paused else self._pause(),
+            "is_paused": lambda: (self.is_paused, self._words),
+            "play_next": self._play_next,
+        }
+        for name, answer in answers.items():
+            node.create_service(Trigger, f"~/{name}", _answering(answer))
+        node.declare_parameter(
+            RATE,
+            rate,
+            _described("Speed of the replay, 1.0 is as recorded, 0.0 not paced.", _FASTEST),
+        )
+        node.declare_parameter(
+            POSITION, 0.0, _described("Set it to continue from there, in s from the begin.", length)
+        )
+        node.add_on_set_parameters_callback(self._take)
+
+    def reach(self, position: float) -> None:
+        """Note the position of the last message, in s."""
+        self._position = position
+
+    def watch(self) -> Callable[[], bool]:
+        """Return a test whether anything has changed since now."""
+        before = self.changes
+        return lambda: self.changes != before
+
+    def take_target(self) -> float | None:
+        """Return the position to continue from, once."""
+        target, self.target = self.target, None
+        return target
+
+    @property
+    def _words(self) -> str:
+        state = "paused" if self.is_paused else "playing"
+        return f"{state} at {self._position:.3f} s of {self._length:.3f} s"
+
+    def _pause(self) -> tuple[bool, str]:
+        self.is_paused = True
+        self.changes += 1
+        return True, self._words
+
+    def _resume(self) -> tuple[bool, str]:
+        self.is_paused, self.steps = False, 0
+        self.changes += 1
+        return True, self._words
+
+    def _play_next(self) -> tuple[bool, str]:
+        if not self.is_paused:
+            return False, "the replay is not paused"
+        self.steps += 1
+        self.changes += 1
+        return True, self._words
+
+    def _take(self, parameters: list[Parameter]) -> SetParametersResult:
+        for one in parameters:  # rclpy has checked types and ranges
+            if one.name == RATE:
+                self.rate = one.value
+            elif one.name == POSITION:
+                self.target = one.value
+        self.changes += 1
+        return SetParametersResult(successful=True)
+
+
+def _described(words: str, most: float) -> ParameterDescriptor:
+    span = FloatingPointRange(from_value=0.0, to_value=most)
+    return ParameterDescriptor(description=words, floating_point_range=[span])
+
+
+def _answering(
+    answer: Callable[[], tuple[bool, str]],
+) -> Callable[[Trigger.Request, Trigger.Response], Trigger.Response]:
+    def respond(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.success, response.message = answer()
+        return response
+
+    return respond
