@@ -14,53 +14,91 @@
 
 """A recording played to one tracker node: `ros2 launch … replay.launch.py recording:=FOLDER`."""
 
-from launch import LaunchContext, LaunchDescription
-from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
+import sys
+from pathlib import Path
+
+from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
+from launch.actions import (
+    DeclareLaunchArgument,
+    IncludeLaunchDescription,
+    OpaqueFunction,
+    Shutdown,
+)
 from launch.launch_description_sources import PythonLaunchDescriptionSource
-from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch.substitutions import PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.substitutions import FindPackageShare
 
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.ros.replay.recorded_images import RecordedImages, recorded_images
+
+OWN = {
+    "topic": ("", "Image topic of the recording, if it has several"),
+    "target": ("", "Box to start on, x,y,w,h in px; empty takes the first true box"),
+    "rate": ("1.0", "Speed of the replay"),
+    "loop": ("false", "Begin again at the end"),
+}
+PASSED_ON = {
+    "variant": ("apf", "Tracker to run"),
+    "params_file": ("", "Parameter YAML; empty takes that of the variant"),
+    "namespace": ("", "Of the node"),
+    "name": ("", "Of the node; empty takes VARIANT_tracker"),
+    "use_sim_time": ("false", "Follow /clock, which the replay then publishes"),
+    "log_level": ("info", "Least severity to log: debug, info, warn, error or fatal"),
+}
+
 
 def generate_launch_description() -> LaunchDescription:
-    tracker = PathJoinSubstitution(
-        [FindPackageShare("vehicle_pf_tracker"), "launch", "tracker.launch.py"]
-    )
+    declared = [
+        DeclareLaunchArgument(name, default_value=default, description=words)
+        for name, (default, words) in {**OWN, **PASSED_ON}.items()
+    ]
     return LaunchDescription(
         [
             DeclareLaunchArgument("recording", description="rosbag2 folder, or bare .mcap file"),
-            DeclareLaunchArgument(
-                "target",
-                default_value="",
-                description="Box to start on, x,y,w,h in px; empty takes the first true box",
-            ),
-            DeclareLaunchArgument("rate", default_value="1.0", description="Speed of the replay"),
-            DeclareLaunchArgument("loop", default_value="false", description="Begin again"),
-            # The arguments of tracker.launch.py are declared there, and hold here too.
-            IncludeLaunchDescription(PythonLaunchDescriptionSource(tracker)),
-            OpaqueFunction(function=replay),
+            *declared,
+            OpaqueFunction(function=start),
         ]
     )
 
 
-def replay(context: LaunchContext) -> list[Node]:
-    def given(name: str) -> str:
-        return LaunchConfiguration(name).perform(context)
-
-    # Raw images, since that is what the tracker listens for unless its parameters say else.
-    arguments = [given("recording"), "--rate", given("rate"), "--wait-for-subscribers"]
-    # A node's first start compiles its kernels, for longer than the replay would wait.
-    arguments += ["--timeout", "60", "--decompress"]
-    if given("target"):
-        arguments += ["--target", given("target")]
-    if given("loop").lower() in {"true", "1"}:
-        arguments.append("--loop")
+def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
+    given = {name: context.launch_configurations[name] for name in ("recording", *OWN, *PASSED_ON)}
+    images = recorded_images(Recording(Path(given["recording"]), given["topic"] or None))
+    tracker = PathJoinSubstitution(
+        [FindPackageShare("vehicle_pf_tracker"), "launch", "tracker.launch.py"]
+    )
+    own = {
+        "image_topic": images.base, "image_transport": images.transport,
+        "respawn": "false", "large_images": "false",
+    }  # fmt: skip
+    passed_on = {name: given[name] for name in PASSED_ON}
     return [
+        IncludeLaunchDescription(
+            PythonLaunchDescriptionSource(tracker), launch_arguments={**passed_on, **own}.items()
+        ),
         Node(
             package="vehicle_pf_tracker",
             executable="bag_replay",
-            arguments=arguments,
+            arguments=words(given, images),
             output="screen",
-            emulate_tty=True,
-        )
+            emulate_tty=sys.stdout.isatty(),
+            on_exit=Shutdown(reason="the replay has ended"),
+        ),
     ]
+
+
+def words(given: dict[str, str], images: RecordedImages) -> list[str]:
+    """Command line of the replay; the search for the node lasts as long as a slow start."""
+    name = given["name"] or f"{given['variant']}_tracker"
+    chosen = [given["recording"], "--topic", images.topic, "--rate", given["rate"]]
+    chosen += ["--node", f"{given['namespace'].strip('/')}/{name}", "--timeout", "60"]
+    if images.published != images.topic:
+        chosen += ["--remap", f"{images.topic}:={images.published}"]
+    if given["target"]:
+        chosen += ["--target", given["target"]]
+    if given["loop"].lower() in {"true", "1"}:
+        chosen.append("--loop")
+    if given["use_sim_time"].lower() in {"true", "1"}:
+        chosen += ["--clock", "100"]
+    return chosen

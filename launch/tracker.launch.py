@@ -14,64 +14,80 @@
 
 """One tracker node on a camera: `ros2 launch vehicle_pf_tracker tracker.launch.py variant:=apf`."""
 
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
-from launch.substitutions import EnvironmentVariable, LaunchConfiguration
+import sys
+
+from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
+from launch.substitutions import EnvironmentVariable
 from launch_ros.actions import Node
-from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
-# Keeps the memory of received images instead of giving it back after each one, which halves the
-# cost of receiving them. What the user has set stays.
+from vehicle_pf_tracker.ros.launching import parameter_file, write_profile
+from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
+
 ALLOCATOR = {
     "MALLOC_MMAP_THRESHOLD_": "1073741824",
     "MALLOC_TRIM_THRESHOLD_": "1073741824",
     "MALLOC_TOP_PAD_": "67108864",
 }
 
+# Defaults are constants: a default made of another argument would stay for the next inclusion.
+ARGUMENTS = {
+    "variant": ("apf", "Tracker to run"),
+    "params_file": ("", "Parameter YAML; empty takes that of the variant"),
+    "image_topic": ("/camera/image_raw", "Images; compressed ones are below it, in /compressed"),
+    "image_transport": ("", "raw or compressed; empty leaves it to the parameter file"),
+    "namespace": ("", "Of the node"),
+    "name": ("", "Of the node; empty takes VARIANT_tracker"),
+    "use_sim_time": ("false", "Follow /clock"),
+    "log_level": ("info", "Least severity to log: debug, info, warn, error or fatal"),
+    "respawn": ("false", "Start the node again when it ends"),
+    "large_images": (
+        "false", "Give what starts from here on shared memory for large images, in Fast DDS",
+    ),
+}  # fmt: skip
+
 
 def generate_launch_description() -> LaunchDescription:
-    variant = LaunchConfiguration("variant")
-    image_topic = LaunchConfiguration("image_topic")
-    default_params = [FindPackageShare("vehicle_pf_tracker"), "/config/", variant, ".yaml"]
-    return LaunchDescription(
-        [
-            DeclareLaunchArgument("variant", default_value="apf", description="Tracker to run"),
-            DeclareLaunchArgument(
-                "params_file", default_value=default_params, description="Parameter YAML"
-            ),
-            DeclareLaunchArgument(
-                "image_topic",
-                default_value="/camera/image_raw",
-                description="Images to track in; compressed ones are below it, in /compressed",
-            ),
-            DeclareLaunchArgument("namespace", default_value="", description="Of the node"),
-            DeclareLaunchArgument(
-                "use_sim_time", default_value="false", description="Follow /clock"
-            ),
-            Node(
-                package="vehicle_pf_tracker",
-                executable=[variant, "_tracker"],
-                name=[variant, "_tracker"],
-                namespace=LaunchConfiguration("namespace"),
-                parameters=[
-                    LaunchConfiguration("params_file"),
-                    {
-                        "use_sim_time": ParameterValue(
-                            LaunchConfiguration("use_sim_time"), value_type=bool
-                        )
-                    },
-                ],
-                remappings=[
-                    ("image", image_topic),
-                    ("image/compressed", [image_topic, "/compressed"]),
-                ],
-                additional_env={
-                    name: EnvironmentVariable(name, default_value=value)
-                    for name, value in ALLOCATOR.items()
-                },
-                output="screen",
-                emulate_tty=True,
-            ),
-        ]
+    declared = [
+        DeclareLaunchArgument(name, default_value=default, description=words)
+        for name, (default, words) in ARGUMENTS.items()
+    ]
+    return LaunchDescription([*declared, OpaqueFunction(function=start)])
+
+
+def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
+    given = {name: context.launch_configurations[name] for name in ARGUMENTS}
+    share = FindPackageShare("vehicle_pf_tracker").perform(context)
+    executable = f"{given['variant']}_tracker"
+    own = {"use_sim_time": is_true(given["use_sim_time"])}
+    if given["image_transport"]:
+        own["image_transport"] = given["image_transport"]
+    node = Node(
+        package="vehicle_pf_tracker",
+        executable=executable,
+        name=given["name"] or executable,
+        namespace=given["namespace"],
+        parameters=[parameter_file(given["params_file"], given["variant"], share), own],
+        remappings=[
+            ("image", given["image_topic"]),
+            ("image/compressed", f"{given['image_topic']}/compressed"),
+        ],
+        ros_arguments=["--log-level", given["log_level"]],
+        additional_env={
+            name: EnvironmentVariable(name, default_value=value)
+            for name, value in ALLOCATOR.items()
+        },
+        respawn=is_true(given["respawn"]),
+        respawn_delay=2.0,
+        output="screen",
+        emulate_tty=sys.stdout.isatty(),
     )
+    if not is_true(given["large_images"]):
+        return [node]
+    path = write_profile()
+    return [*(SetEnvironmentVariable(name, path) for name in PROFILE_VARIABLES), node]
+
+
+def is_true(word: str) -> bool:
+    return word.lower() in {"true", "1"}

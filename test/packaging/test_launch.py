@@ -17,6 +17,8 @@
 import os
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 
 # Not importorskip("launch"): our folder of that name would pass for it.
@@ -28,6 +30,11 @@ from launch.actions import DeclareLaunchArgument, ExecuteProcess
 from launch.launch_description_sources import get_launch_description_from_python_launch_file
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch_ros.actions import Node
+from launch_ros.utilities import evaluate_parameters
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -41,10 +48,21 @@ def share(monkeypatch, tmp_path):
     (tmp_path / "share" / "vehicle_pf_tracker").symlink_to(ROOT)
     executables = tmp_path / "lib" / "vehicle_pf_tracker"
     executables.mkdir(parents=True)
-    for name in ("apf_tracker", "pf_tracker", "bag_replay"):
+    for name in ("apf_tracker", "pf_tracker", "fusion_tracker", "bag_replay"):
         (executables / name).touch(mode=0o755)
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
     return tmp_path / "share" / "vehicle_pf_tracker"
+
+
+def record(folder, *, compressed=False):
+    """Record two images."""
+    with RecordingWriter(folder) as writer:
+        frame = np.zeros((8, 8, 3), np.uint8)
+        for stamp in (1, 2):
+            if compressed:
+                writer.write_compressed(stamp, "png", cv2.imencode(".png", frame)[1].tobytes())
+            else:
+                writer.write_image(stamp, frame)
 
 
 def started(name, **arguments):
@@ -73,7 +91,8 @@ def text(context, value):
 
 def command(context, node):
     node._perform_substitutions(context)
-    return [text(context, part) for part in node.cmd]
+    words = [text(context, part) for part in node.cmd]
+    return words[: words.index("--ros-args")] if "--ros-args" in words else words
 
 
 def test_tracker_starts_the_node_of_the_variant(share):
@@ -89,7 +108,7 @@ def test_tracker_starts_the_node_of_the_variant(share):
 
 
 def test_every_argument_has_a_description():
-    for name in ("tracker", "replay"):
+    for name in ("tracker", "replay", "cameras"):
         path = ROOT / "launch" / f"{name}.launch.py"
         description = get_launch_description_from_python_launch_file(str(path))
         assert isinstance(description, LaunchDescription)
@@ -111,22 +130,97 @@ def test_the_users_allocator_settings_stay(monkeypatch, given, expected):
     assert os.environ.get(name) == given
 
 
-def test_replay_plays_the_recording_to_the_tracker():
-    context, nodes = started("replay", recording="/data/highway", rate="0.5", variant="pf")
+@pytest.fixture
+def bag(tmp_path):
+    record(tmp_path / "bag")
+    return str(tmp_path / "bag")
+
+
+def test_replay_plays_the_recording_to_the_tracker(bag):
+    context, nodes = started("replay", recording=bag, rate="0.5", variant="pf", namespace="car")
     assert [text(context, node.node_executable) for node in nodes] == ["pf_tracker", "bag_replay"]
     words = command(context, nodes[1])
-    assert words[1:4] == ["/data/highway", "--rate", "0.5"]
-    assert "--loop" not in words
+    assert words[1:] == [
+        bag, "--topic", "/camera/image_raw", "--rate", "0.5",
+        "--node", "car/pf_tracker", "--timeout", "60",
+    ]  # fmt: skip
 
 
-def test_replay_loops_when_asked():
-    context, nodes = started("replay", recording="/data/highway", loop="true")
-    assert "--loop" in command(context, nodes[1])
+@pytest.mark.parametrize(
+    ("argument", "told"),
+    [
+        ({"loop": "true"}, ["--loop"]),
+        ({"target": "1,2,30,40"}, ["--target", "1,2,30,40"]),
+        ({"use_sim_time": "true"}, ["--clock", "100"]),
+    ],
+)
+def test_replay_passes_arguments_on(bag, argument, told):
+    context, nodes = started("replay", recording=bag, **argument)
+    assert command(context, nodes[1])[-len(told) :] == told
+    without, nodes = started("replay", recording=bag)
+    assert told[0] not in command(without, nodes[1])
 
 
-@pytest.mark.parametrize(("target", "told"), [("", []), ("1,2,30,40", ["--target", "1,2,30,40"])])
-def test_replay_passes_a_target_on(target, told):
-    context, nodes = started("replay", recording="/data/highway", target=target)
-    words = command(context, nodes[1])
-    assert words[words.index("--decompress") + 1 :][: len(told)] == told
-    assert ("--target" in words) == bool(told)
+def test_the_node_hears_what_was_recorded(tmp_path):
+    record(tmp_path / "bag", compressed=True)
+    context, nodes = started("replay", recording=str(tmp_path / "bag"), topic="")
+    nodes[0]._perform_substitutions(context)
+    assert ("image", "/camera/image_raw") in nodes[0].expanded_remapping_rules
+    assert parameters_of(context, nodes[0])["image_transport"] == "compressed"
+
+
+def parameters_of(context, node):
+    merged = {}
+    for one in evaluate_parameters(context, node._Node__parameters):
+        merged |= one if isinstance(one, dict) else {}
+    return merged
+
+
+def parameter_files(context, node):
+    evaluated = evaluate_parameters(context, node._Node__parameters)
+    return [str(one) for one in evaluated if isinstance(one, Path)]
+
+
+def test_included_twice_each_has_its_own_file():
+    context = LaunchContext()
+    nodes = []
+    path = ROOT / "launch" / "tracker.launch.py"
+    for variant in ("apf", "pf"):
+        context.launch_configurations["variant"] = variant
+        visit(get_launch_description_from_python_launch_file(str(path)), context, nodes)
+    files = [parameter_files(context, node) for node in nodes]
+    assert [Path(one).name for (one,) in files] == ["apf.yaml", "pf.yaml"]
+
+
+def test_a_mistyped_parameter_file_is_an_error():
+    with pytest.raises(InputError, match=r"cannot read the parameter file /nowhere/apf\.yaml"):
+        started("tracker", params_file="/nowhere/apf.yaml")
+
+
+def test_cameras_start_a_node_each(tmp_path):
+    path = tmp_path / "cameras.yaml"
+    path.write_text(
+        "cameras:\n  front: {topic: /f/image, variant: pf, target: [1, 2, 30, 40]}\n"
+        "  rear: {topic: /r/image}\n"
+    )
+    context, nodes = started("cameras", cameras=str(path))
+    for node in nodes:
+        node._perform_substitutions(context)
+    assert [node.node_name for node in nodes] == ["/front/pf_tracker", "/rear/fusion_tracker"]
+    assert ("image", "/r/image") in nodes[1].expanded_remapping_rules
+
+
+@pytest.mark.parametrize("is_terminal", [False, True])
+def test_no_escape_codes_go_into_a_log(monkeypatch, bag, is_terminal):
+    monkeypatch.setattr("sys.stdout.isatty", lambda: is_terminal, raising=False)
+    _, nodes = started("replay", recording=bag)
+    assert [node._ExecuteLocal__emulate_tty for node in nodes] == [is_terminal] * 2
+
+
+def test_large_images_set_both_variables(monkeypatch):
+    for name in PROFILE_VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    context, _ = started("tracker", large_images="true")
+    found = {context.environment[name] for name in PROFILE_VARIABLES}
+    assert len(found) == 1
+    assert "segment_size" in Path(found.pop()).read_text(encoding="utf-8")

@@ -1,0 +1,121 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Decisions of the launch files: which images, which parameters, which cameras."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from replay_rig import record
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.ros.launching import (
+    parameter_file,
+    read_cameras,
+    write_profile,
+)
+from vehicle_pf_tracker.ros.replay.recorded_images import recorded_images
+
+FILE = """
+cameras:
+  front:
+    topic: /front/image_raw
+    target: [310, 202, 40, 30]
+    parameters: {num_particles: 300, motion: {sigma_w: 5}}
+    variant: apf
+  rear_2:
+    topic: /rear/camera
+    transport: compressed
+    params_file: tuned.yaml
+"""
+
+
+def test_images_are_where_the_recording_has_them(tmp_path):
+    raw = recorded_images(record(tmp_path / "raw"))
+    assert raw == ("/camera/image_raw", "/camera/image_raw", "raw", "/camera/image_raw")
+    name = "/camera/image_raw/compressed"
+    small = recorded_images(record(tmp_path / "small", compressed=True))
+    assert small == (name, name[:-11], "compressed", name)
+
+
+def test_compressed_images_of_any_name_are_published_where_a_node_listens():
+    found = SimpleNamespace(image_topic="/front/jpeg", image_type="sensor_msgs/msg/CompressedImage")
+    assert recorded_images(found) == (
+        "/front/jpeg", "/front/jpeg", "compressed", "/front/jpeg/compressed",
+    )  # fmt: skip
+
+
+def test_the_parameter_file_of_the_variant_is_the_default(tmp_path):
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config" / "pf.yaml").write_text("a: 1")
+    assert parameter_file("", "pf", str(tmp_path)) == str(tmp_path / "config" / "pf.yaml")
+    with pytest.raises(InputError, match=r"cannot read the parameter file /nowhere\.yaml"):
+        parameter_file("/nowhere.yaml", "pf", str(tmp_path))
+    with pytest.raises(InputError, match="there is no variant 'pff'"):
+        parameter_file("", "pff", str(tmp_path))
+
+
+def test_cameras_have_parameters_as_they_are_declared(tmp_path):
+    (tmp_path / "cameras.yaml").write_text(FILE)
+    (tmp_path / "tuned.yaml").write_text("/**:\n  ros__parameters:\n    seed: 7\n")
+    front, rear = read_cameras(str(tmp_path / "cameras.yaml"))
+    assert (front.name, front.topic, front.variant) == ("front", "/front/image_raw", "apf")
+    written = read_yaml(Path(front.write_parameters()), "apf_tracker")
+    assert written == {
+        "num_particles": 300, "motion.sigma_w": 5.0,
+        "target.x": 310.0, "target.y": 202.0, "target.width": 40.0, "target.height": 30.0,
+    }  # fmt: skip
+    assert all(type(value) is float for key, value in written.items() if key != "num_particles")
+    assert (rear.variant, dict(rear.values)) == (
+        "fusion", {"seed": 7, "image_transport": "compressed"},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("a: 1", "has no section `cameras`"),
+        ("cameras: []", "has no section `cameras`"),
+        ("cameras: {a: 5}", "the camera a in .*: it needs a topic"),
+        ("cameras: {a: {variant: apf}}", "it needs a topic"),
+        ("cameras: {a: {topic: /i, varriant: apf}}", "there is no parameter 'varriant'"),
+        ("cameras: {a: {topic: /i, variant: best}}", "there is no variant 'best'"),
+        ("cameras: {a-b: {topic: /i}}", "no name of a namespace"),
+        ("cameras: {a: {topic: /i, target: [1, 2]}}", r"not \[x, y, width, height\]"),
+        ("cameras: {a: {topic: /i, target: [-90, 2, 30, 30]}}", "outside every image"),
+        ("cameras: {a: {topic: /i, parameters: {lost_aftr: 2}}}", "lost_after"),
+        ("cameras: {a: {topic: /i, parameters: {lost_after: -2}}}", "lost_after must be"),
+        ("cameras: {a: {topic: /i, params_file: no.yaml}}", "cannot read the parameter file"),
+        ("cameras: {a: {topic: /i}, a: {topic: /j}}", "the key 'a' is there twice"),
+    ],
+)
+def test_a_file_of_cameras_that_does_not_fit_is_refused(tmp_path, text, said):
+    (tmp_path / "cameras.yaml").write_text(text)
+    with pytest.raises(InputError, match=said):
+        read_cameras(str(tmp_path / "cameras.yaml"))
+
+
+def test_the_written_files_are_those_that_nodes_read(tmp_path):
+    (tmp_path / "cameras.yaml").write_text("cameras: {a: {topic: /i, parameters: {lost_after: 2}}}")
+    (camera,) = read_cameras(str(tmp_path / "cameras.yaml"))
+    path = camera.write_parameters()
+    assert parameter_file(path, "fusion", "") == path
+    assert read_yaml(Path(path), "fusion_tracker") == {"lost_after": 2.0}
+    profile = Path(write_profile()).read_text(encoding="utf-8")
+    assert "<segment_size>67108864</segment_size>" in profile

@@ -1,0 +1,158 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Decisions of the launch files, apart from `launch` itself, which is not on PyPI."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.parameters.table import unknown_name
+from vehicle_pf_tracker.parameters.yaml_text import check_yaml_file, read_yaml_file
+from vehicle_pf_tracker.ros.transport import profile
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+_SEGMENT = 64 * 2**20
+"""Bytes of shared memory for `large_images`: ten raw images of 1080p, or two of 4K."""
+
+_KEYS = ("topic", "variant", "transport", "target", "params_file", "parameters")
+_TARGET = ("x", "y", "width", "height")
+
+
+def parameter_file(given: str, variant: str, share: str) -> str:
+    """Return the parameter file `given`, or that of the variant in the folder `share`.
+
+    Raises
+    ------
+    InputError
+        If there is no such file or variant, or a key is twice in the file.
+    """
+    path = Path(given) if given else Path(share, "config", f"{find_variant(variant).name}.yaml")
+    check_yaml_file(path, "parameter file")
+    return str(path)
+
+
+def write_profile() -> str:
+    """Write a profile of Fast DDS for large images; returns its path."""
+    path = Path(tempfile.mkdtemp(prefix="vehicle_pf_tracker_"), "large_images.xml")
+    path.write_text(profile(_SEGMENT), encoding="utf-8")
+    return str(path)
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A camera of a file of cameras.
+
+    Attributes
+    ----------
+    name : str
+        Also the namespace of its node.
+    topic : str
+        Its raw images; compressed ones are in ``/compressed`` below.
+    variant : str
+        Tracker to run.
+    values : mapping
+        Parameters of the node.
+    """
+
+    name: str
+    topic: str
+    variant: str
+    values: Mapping[str, object] = field(default_factory=dict)
+
+    def write_parameters(self) -> str:
+        """Write the parameters to a file of their own; returns its path."""
+        path = Path(tempfile.mkdtemp(prefix="vehicle_pf_tracker_"), f"{self.variant}.yaml")
+        document = {"/**": {"ros__parameters": dict(self.values)}}
+        path.write_text(yaml.safe_dump(document), encoding="utf-8")
+        return str(path)
+
+
+def read_cameras(path: str) -> list[Camera]:
+    """Read a file of cameras.
+
+    Raises
+    ------
+    InputError
+        Naming the camera and what does not fit.
+    """
+    document = read_yaml_file(Path(path), "file of cameras")
+    cameras = document.get("cameras") if isinstance(document, dict) else None
+    if not isinstance(cameras, dict) or not cameras:
+        raise InputError(f"the file of cameras {path} has no section `cameras` with one by name")
+    folder = Path(path).parent
+    return [_named_camera(path, str(name), entry, folder) for name, entry in cameras.items()]
+
+
+def _named_camera(path: str, name: str, entry: Any, folder: Path) -> Camera:
+    try:
+        _check_entry(name, entry)
+        return _camera(name, entry, folder)
+    except InputError as error:
+        raise InputError(f"the camera {name} in {path}: {error}") from None
+
+
+def _check_entry(name: str, entry: Any) -> None:
+    if not isinstance(entry, dict) or "topic" not in entry:
+        raise InputError(f"it needs a topic; it may have {', '.join(_KEYS)}")
+    for key in entry:
+        if key not in _KEYS:
+            raise InputError(unknown_name(str(key), _KEYS))
+    if not name.replace("_", "a").isalnum() or name[0].isdigit():
+        raise InputError("its name is no name of a namespace: letters, digits and _ are")
+
+
+def _camera(name: str, entry: dict[str, Any], folder: Path) -> Camera:
+    variant = str(entry.get("variant", "fusion"))
+    configuration = Configuration.of(find_variant(variant))
+    known = configuration.specs()
+    values: dict[str, object] = {}
+    if "params_file" in entry:
+        values |= read_yaml(folder / str(entry["params_file"]), f"{variant}_tracker")
+    values |= _flat(entry.get("parameters") or {})
+    if "transport" in entry:
+        values["image_transport"] = entry["transport"]
+    if "target" in entry:
+        values |= _target(entry["target"])
+    unknown = [unknown_name(key, known) for key in values if key not in known]
+    if unknown:
+        raise InputError("; ".join(unknown))
+    # As they are declared: an integer for a double would end the node.
+    checked = configuration.updated(values).to_mapping()
+    return Camera(name, str(entry["topic"]), variant, {key: checked[key] for key in values})
+
+
+def _target(numbers: Any) -> dict[str, object]:
+    if not isinstance(numbers, list) or len(numbers) != len(_TARGET):
+        raise InputError("target is not [x, y, width, height] in px")
+    return {f"target.{key}": number for key, number in zip(_TARGET, numbers, strict=True)}
+
+
+def _flat(values: Any, prefix: str = "") -> dict[str, object]:
+    if not isinstance(values, dict):
+        raise InputError("parameters are not names with values")
+    flat: dict[str, object] = {}
+    for key, value in values.items():
+        name = f"{prefix}{key}"
+        flat |= _flat(value, f"{name}.") if isinstance(value, dict) else {name: value}
+    return flat
