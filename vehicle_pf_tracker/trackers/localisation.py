@@ -42,6 +42,8 @@ class Localisation:
 
     Attributes
     ----------
+    has_road : bool
+        True where a mapping to the road is asked for.
     road : RoadEstimate or None
         Last place on the road; None where there is none, for the reason `objection`.
     objection : str
@@ -54,6 +56,7 @@ class Localisation:
         self._period = 1.0
         self._lens, self._pose = parameters.lens, parameters.pose
         self._parameters = parameters
+        self.has_road = parameters.is_set
         self._follower: RoadFollower | None = None
         self.road: RoadEstimate | None = None
         self.objection = ""
@@ -67,6 +70,7 @@ class Localisation:
     def reconfigure(self, parameters: RoadParameters) -> None:
         """Take another mapping to the road; lens and pose that came from outside are kept."""
         before, self._parameters = self._parameters, parameters
+        self.has_road = parameters.is_set
         if not (before.from_camera_info and parameters.from_camera_info):
             self._lens = parameters.lens
         if not (before.from_tf and parameters.from_tf):
@@ -106,7 +110,7 @@ class Localisation:
     def _take_plane(self) -> None:
         """Make the plane as soon as all that it needs is there."""
         parameters = self._parameters
-        if not parameters.is_set:
+        if not self.has_road:
             return
         if parameters.from_camera_info and self._lens is None:
             self.objection = "no camera_info yet"

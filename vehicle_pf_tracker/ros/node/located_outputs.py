@@ -78,7 +78,7 @@ class LocatedOutputs:
         self._track += estimate.regime == START
         if self._detection is not None and is_heard(self._detection):
             self._detection.publish(detection_message(header, estimate, str(self._track)))
-        if localisation.parameters.is_set:
+        if localisation.has_road:
             self._publish_road(header, localisation)
         elif is_heard(self._pose):
             position = np.asarray(estimate.position)

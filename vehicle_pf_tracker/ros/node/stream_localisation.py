@@ -63,7 +63,7 @@ class StreamLocalisation(Localisation):
         self.follow(estimate, stamp_ns(header), period)
         (width, height), expected = frame_size(frame), self._size
         is_other = expected is not None and expected != (width, height)
-        if expected and is_other and parameters.is_set and parameters.from_camera_info:
+        if expected and is_other and self.has_road and parameters.from_camera_info:
             self.road = None
             self.objection = (
                 f"camera_info is for {expected[0]}x{expected[1]} px, the image has {width}x{height}"
@@ -72,7 +72,7 @@ class StreamLocalisation(Localisation):
     @property
     def values(self) -> dict[str, object]:
         """What `~/mode` says of the road: scalars of the place, or why there is none."""
-        if not self.parameters.is_set:
+        if not self.has_road:
             return {}
         return {"road": self.objection or "ok", **(self.road.scalars() if self.road else {})}
 
