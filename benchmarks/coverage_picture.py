@@ -27,7 +27,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from benchmarks.coverage import INSIDE, Runs
+from benchmarks.covariance_coverage import INSIDE, Runs
 from vehicle_pf_tracker.evaluation.output_files import replacing
 from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 

@@ -35,7 +35,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from benchmarks.coverage import fitted_table, report, runs_of
+from benchmarks.covariance_coverage import fitted_table, report, runs_of
 from benchmarks.coverage_picture import draw
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.output_files import write_text

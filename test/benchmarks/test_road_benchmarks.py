@@ -21,7 +21,7 @@ import pytest
 
 pytest.importorskip("scipy", reason="the extra evaluation is not installed")
 
-from benchmarks.coverage import COLUMNS, INSIDE, Runs, fit, fitted_table, report, runs_of
+from benchmarks.covariance_coverage import COLUMNS, INSIDE, Runs, fit, fitted_table, report, runs_of
 from benchmarks.road_speed import quaternion, roads_of, settings_of
 from benchmarks.uncertainty import rows_of
 from vehicle_pf_tracker.core.errors import InputError
