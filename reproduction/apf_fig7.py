@@ -85,7 +85,7 @@ def _verdict(runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
             Claim(
                 "PF, SAPF, HPFMS, PFCL and MS do not",
                 _PLACE,
-                (Finding("their defaults", Holds.share(share(lost)), f"recovered from: {parts}"),),
+                (Finding("one likelihood", Holds.share(share(lost)), f"recovered from: {parts}"),),
             ),
         ),
         f"{video3.SETTING} {len(size.seeds)} seeds; curves are those of the first.",

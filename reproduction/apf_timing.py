@@ -112,19 +112,19 @@ def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
             Claim(
                 "APF takes no more time than the other particle filters",
                 _PLACE,
-                (Finding("their defaults", Holds.of(not cheaper, len(cheaper) < len(filters)),
+                (Finding("one likelihood", Holds.of(not cheaper, len(cheaper) < len(filters)),
                          f"times over APF's: {parts}"),),
             ),
             Claim(
                 "all particle filters take about the same time (within 5 % in the paper)",
                 _PLACE,
-                (Finding("their defaults", Holds.of(all(alike), any(alike)),
+                (Finding("one likelihood", Holds.of(all(alike), any(alike)),
                          f"times over APF's: {parts}"),),
             ),
             Claim(
                 "mean shift takes the least time",
                 _PLACE,
-                (Finding("their defaults", Holds.of(middle["MS"] <= min(middle.values())),
+                (Finding("one likelihood", Holds.of(middle["MS"] <= min(middle.values())),
                          mean_shift),),
             ),
         ),
