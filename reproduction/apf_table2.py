@@ -89,8 +89,9 @@ _ALIKE = 1.25
 seeds each, ratios of medians scatter by about a quarter."""
 _ON_CONDITIONS = (*SIX, *(s for s in BESIDE if s.variant == "apf"), *OWN_LIKELIHOOD)
 _REMARKS = (
-    "What one likelihood changes: with their own `sigma_v` of 0.158 the rivals are less exact where "
-    "nothing hides the vehicle, where APF is then ahead or close; about occlusions it changes "
+    "What one likelihood changes: with their own `sigma_v` of 0.158 the rivals are less exact "
+    "where nothing hides the vehicle, where APF is then ahead or close; about occlusions it "
+    "changes "
     "nothing.",
     "What the options of the rivals' own papers change: HPFMS with 50 particles makes as many "
     "measurements as the others (200 windows a frame; its default of 25 makes 100), SAPF can tie "

@@ -68,8 +68,6 @@ _SITUATIONS = "shadow", "partial", "full"
 _TITLES = {
     "initial": "initial", "shadow": "in shadow", "partial": "partly hidden", "full": "fully hidden",
 }  # fmt: skip
-_HALF = 0.6
-"""A vehicle of which less than this share is seen counts as partly hidden."""
 _CLEAR, _GONE = 0.95, 0.1
 """Shares seen above which nothing hides it, and below which it is fully hidden."""
 _INFORMATIVE = 0.6
@@ -206,7 +204,7 @@ def _setting(size: Size) -> str:
         f"position, seeds {size.seeds.start} to {size.seeds.stop - 1}; shadow: of the frames "
         "before anything hides it, the quarter that is furthest from the first in colour; partly "
         "hidden: "
-        f"those behind the crown with less than {100 * _HALF:.0f} % of it visible; fully hidden: "
+        "of those behind the crown, the quarter in which least of it is visible; fully hidden: "
         f"those with less than {100 * _GONE:.0f} %. The picture shows the first seed: first frame, "
         "then the one of each kind that is furthest in colour. The paper's rule and our "
         "interpretation have the same features here; "
@@ -226,13 +224,11 @@ def _chosen(result: Result, situation: str) -> list[int]:
     if situation == "full":
         return [index for index, share in enumerate(visible) if share < _GONE]
     if situation == "partial":
-        return [
-            index
-            for stretch in _stretches(visible)
-            if min(visible[i] for i in stretch) >= _GONE
-            for index in stretch
-            if visible[index] < _HALF
-        ]
+        (stretch,) = (
+            found for found in _stretches(visible) if min(visible[i] for i in found) >= _GONE
+        )
+        order = sorted(stretch, key=visible.__getitem__)
+        return sorted(order[: max(len(order) // 4, 1)])
     clear = range(_stretches(visible)[0][0])
     order = sorted(clear, key=lambda index: -result["distance"]["color"][index])
     return sorted(order[: max(len(order) // 4, 1)])
