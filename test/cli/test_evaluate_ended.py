@@ -59,7 +59,7 @@ def test_what_was_ended_goes_on_and_comes_out_the_same(tmp_path, number):
     _, told = process.communicate(timeout=20)
     assert "Traceback" not in told
     assert process.returncode == (130 if number == signal.SIGINT else -number)
-    assert ("interrupted; the same command goes on" in told) == (number == signal.SIGINT)
+    assert ("interrupted; run the same command to resume" in told) == (number == signal.SIGINT)
     before = {
         path: path.stat().st_mtime_ns for path in ended.glob("cells/*/*/seed-*/estimates.csv")
     }
