@@ -16,9 +16,11 @@
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.fusion.appearance import View
@@ -29,7 +31,6 @@ _LARGEST_LOG_RATIO = 6.0
 """Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
 _HIGHEST_RESPONSE = 1.2
 """Response above which more of it tells nothing more."""
-
 _PEAK_REACH = 6
 """Places of the response around the mean within which its peak is the estimate: a third of the
 target's side."""
@@ -58,6 +59,14 @@ gather at clutter. A measured first motion is kept to exactly: a standing part o
 answers better than the vehicle, and the filter cannot tell which of them it was shown."""
 
 
+@functools.cache
+def _moves(climb: Climb) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], Array]:
+    """All moves in reach along x and y, in places, and what they cost as log ratios."""
+    offsets = np.arange(-climb.reach, climb.reach + 1)
+    dy, dx = (grid.ravel() for grid in np.meshgrid(offsets, offsets, indexing="ij"))
+    return dx, dy, np.asarray(0.5 * (dx**2 + dy**2) / climb.sigma**2)
+
+
 def response_evidence(
     view: View, positions: Array, climb: Climb, parameters: VisibilityParameters
 ) -> tuple[Array, Array]:
@@ -77,15 +86,17 @@ def response_evidence(
     log_ratios : (N,) array
         Log-likelihood ratio there, less what the move costs.
     """
-    offsets = np.arange(-climb.reach, climb.reach + 1)
-    dy, dx = (grid.ravel() for grid in np.meshgrid(offsets, offsets, indexing="ij"))
+    dx, dy, costs = _moves(climb)
     places = view.places(positions)
     last = len(view.response) - 1
     rows = np.clip(places[:, 1, np.newaxis] + dy, 0, last)
     columns = np.clip(places[:, 0, np.newaxis] + dx, 0, last)
-    near = np.clip(view.response[rows, columns], 0, _HIGHEST_RESPONSE).astype(np.float64)
+    rows *= last + 1
+    rows += columns
+    near = view.response.ravel().take(rows)
+    near = np.minimum(np.maximum(near, 0), np.float32(_HIGHEST_RESPONSE)).astype(np.float64)
     ratios = parameters.response_slope * (near - parameters.response_middle)
-    ratios -= 0.5 * (dx**2 + dy**2) / climb.sigma**2
+    ratios -= costs
     best = ratios.argmax(axis=1)
     moves = np.column_stack([dx[best], dy[best]]) / view.steps
     log_ratios = ratios[np.arange(len(best)), best]
