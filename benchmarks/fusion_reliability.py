@@ -97,7 +97,7 @@ def reliability_figure(results: Sequence[Result]) -> Figure:
         above.plot(confidence, on_target, label=name, **looks)
         below.plot(confidence, frames, **looks)
     above.set(ylabel="share on target", ylim=(-0.02, 1.02))
-    above.legend(loc="upper left")
+    above.legend(loc="lower right")
     below.set(xlabel="reported confidence", ylabel="frames", yscale="log")
     return figure
 
