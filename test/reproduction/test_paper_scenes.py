@@ -48,7 +48,8 @@ def occluded_by_itself(runs):
     )
 
 
-@pytest.mark.parametrize("name", FIXED_SCENES)
+# In `disturbances` features are measured at the true position: nothing has to recover.
+@pytest.mark.parametrize("name", [name for name in FIXED_SCENES if name != "disturbances"])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_thirty_frames_to_recover_after_each_total_occlusion(name, seed):
     runs = phases(truths_of(name, seed))
