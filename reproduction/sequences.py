@@ -37,7 +37,7 @@ from vehicle_pf_tracker.evaluation.scores import score_frames
 
 INTRODUCTION = """# The variants on real sequences
 
-Nine sequences of traffic video with truth: default parameters, started on the first true box,
+Nineteen sequences of traffic video with truth: default parameters, started on the first true box,
 without re-starts; made by
 
 ```sh
@@ -46,9 +46,9 @@ without re-starts; made by
 
 `csrt`, `kcf` and `mil` are OpenCV's deterministic trackers, run once; where one gives a frame up,
 its last box is scored. Each cell is the mean over the seeds, with the least and the largest value
-where they differ. The values of `apf`'s occlusion rule and of `mfpf` were tuned on these
-sequences, and six of them served to develop `fusion` (all but car_e, red_car and
-cdnet_pole_partial), so those numbers are not held-out results.
+where they differ. The values of `apf`'s occlusion rule and of `mfpf` were tuned on nine of these
+sequences, and `fusion` was developed with all of them in sight, so these numbers are not held-out
+results: for `fusion` on cameras left out see [fusion.md](fusion.md).
 """
 ON_TARGET = "Share of visible frames with an error below half the true box's diagonal:"
 RMSE = "RMSE of the centre in visible frames, px:"
