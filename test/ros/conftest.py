@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -60,6 +61,14 @@ def ros_domain():
             yield domain
         return
     pytest.fail("all ROS domain ids are taken by other test runs")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def hangups():
+    """Let child processes take SIGHUP as ever, also where nohup started the tests."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
 
 
 class RosBench:

@@ -179,7 +179,8 @@ def test_an_executable_runs_the_variant_it_is_named_after(monkeypatch, capfd, na
 
 def test_an_unknown_variant_is_one_sentence(capfd):
     assert executables.main("apv") == 1
-    assert capfd.readouterr().err.startswith("apv_tracker: there is no variant 'apv'; choose one")
+    said = "apv_tracker: there is no variant 'apv' (did you mean 'apf'?); choose one"
+    assert capfd.readouterr().err.startswith(said)
 
 
 def test_a_malformed_request_does_not_end_the_node(bench, start_node):
