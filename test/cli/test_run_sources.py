@@ -16,7 +16,6 @@
 
 import os
 import signal
-import sys
 import threading
 
 import cv2
@@ -25,8 +24,10 @@ import pytest
 import yaml
 from small_recordings import COUNT, TARGET, box_of, frame_folder, frame_of, record
 
+import vehicle_pf_tracker.cli.run as run_verb
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.evaluation import video_writer
 from vehicle_pf_tracker.evaluation.estimates import read_estimates
 from vehicle_pf_tracker.evaluation.video_writer import has_encoder
 
@@ -211,6 +212,15 @@ def test_there_is_no_window_without_a_display(run, video, monkeypatch, capsys):
     assert "--show needs a display" in capsys.readouterr().err
 
 
+@pytest.fixture
+def interrupts():
+    """Take SIGINT as Python does, also where a shell in the background ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interrupts")
 def test_a_signal_ends_the_input_and_a_second_one_acts_as_ever():
     with stopping() as stop:
         seen = []
@@ -237,9 +247,9 @@ def test_other_threads_leave_the_signals_alone():
     assert found == [[0, 1, 2]]
 
 
+@pytest.mark.usefixtures("interrupts")
 def test_what_was_tracked_until_ctrl_c_is_kept(run, video, tmp_path, monkeypatch):
-    module = sys.modules["vehicle_pf_tracker.cli.run"]
-    doubting = module._doubting
+    doubting = run_verb._doubting
 
     def interrupted(frames, targets):
         for number, found in doubting(frames, targets):
@@ -247,7 +257,7 @@ def test_what_was_tracked_until_ctrl_c_is_kept(run, video, tmp_path, monkeypatch
                 os.kill(os.getpid(), signal.SIGINT)
             yield number, found
 
-    monkeypatch.setattr(module, "_doubting", interrupted)
+    monkeypatch.setattr(run_verb, "_doubting", interrupted)
     assert run(video, "--target", TARGET) == 130
     rows = estimates(tmp_path / "out")
     assert 6 <= len(rows) < COUNT
@@ -256,8 +266,8 @@ def test_what_was_tracked_until_ctrl_c_is_kept(run, video, tmp_path, monkeypatch
 def test_without_the_encoder_the_video_is_written_and_the_remedy_said(
     run, video, tmp_path, monkeypatch, capsys
 ):
-    for module in ("vehicle_pf_tracker.cli.run", "vehicle_pf_tracker.evaluation.video_writer"):
-        monkeypatch.setattr(sys.modules[module], "has_encoder", lambda: False)
+    for module in (run_verb, video_writer):
+        monkeypatch.setattr(module, "has_encoder", lambda: False)
     made = tmp_path / "made.mp4"
     assert run(video, "--target", TARGET, "--video", made) == 0
     assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err
