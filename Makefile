@@ -12,13 +12,15 @@ INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
 # What the versions of NumPy and OpenCV decide: numbers, pixels and messages.
 VERSIONED := $(addprefix test/,filtering image trackers recordings scenes/test_first_scenes_stay.py \
 	ros/test_conversions.py ros/node/test_node_images.py ros/node/test_node_encodings.py)
+# Folders of tests that a part of their own runs.
+FOOTAGE := scenes recordings reproduction
 # Share of the package's branches and lines that the tests must run through.
 COVERED := 92
 
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: demo test test-offline test-ros test-slow test-noble lint types format config colcon baselines peers bench reproduce clean
+.PHONY: demo test test-offline test-footage test-ros test-slow test-noble lint types format config colcon baselines peers bench reproduce clean
 
 demo: .venv/installed
 	$(BIN)/vehicle-pf-tracker demo -o results/demo
@@ -28,21 +30,22 @@ ifdef PYTEST_ARGS
 test: .venv/installed
 	$(BIN)/python -m pytest -m "not slow" $(PYTEST_ARGS)
 else
-# With branch coverage. The tests through ROS mostly wait and the others mostly compute, so the two run
-# side by side; in processes of their own, since rclpy and Dask in one have ended in a crash.
+# With branch coverage, in three parts of which two run side by side: the tests through ROS mostly wait,
+# and the others mostly compute. In processes of their own, since rclpy and Dask in one have crashed.
 test: .venv/installed
 	$(BIN)/coverage erase
-	$(MAKE) --no-print-directory --jobs=2 --keep-going test-offline test-ros
+	$(MAKE) --no-print-directory --jobs=2 --keep-going test-ros test-offline test-footage
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report --fail-under=$(COVERED)
 endif
 
 test-offline: .venv/installed
-	$(BIN)/coverage run -m pytest -m "not slow" --ignore test/ros
+	$(BIN)/coverage run -m pytest -m "not slow" $(addprefix --ignore test/,ros $(FOOTAGE))
 
-# Shown when it has ended, so that the two do not mix.
-test-ros: .venv/installed
-	@log=$$(mktemp); $(BIN)/coverage run -m pytest -m "not slow" test/ros > $$log 2>&1; \
+# Shown when they have ended, so that the parts do not mix.
+test-ros test-footage: .venv/installed
+	@log=$$(mktemp); $(BIN)/coverage run -m pytest -m "not slow" \
+		$(addprefix test/,$(if $(filter test-ros,$@),ros,$(FOOTAGE))) > $$log 2>&1; \
 	status=$$?; cat $$log; rm -f $$log; exit $$status
 
 # The slow tests try every way to install, colcon's too.
