@@ -97,7 +97,7 @@ def test_a_grid_to_read_points_off(bag, tmp_path, capsys):
         (words(PAIRS[:3]), 1, "at least 4 pairs"),
         (words(["0,0=0,0", "1,1=1,1", "2,2=2,2", "5,0=5,0"]), 1, "on a line"),
         (words(["0,0"]), 1, "not u,v=x,y"),
-        ([*words(PAIRS), "--frame", "99"], 1, "has 12 images"),
+        ([*words(PAIRS), "--frame", "99"], 1, "there is no frame 99; the source has 12"),
         ([*words(PAIRS), "--distortion", "0.1,0,0,0"], 1, "needs road.intrinsics"),
         ([*words(PAIRS), "--pairs", "nowhere.yaml"], 1, "cannot read the pairs"),
     ],
@@ -115,3 +115,8 @@ def test_distortion_is_removed(bag, tmp_path, capsys):
     exact = capsys.readouterr().out
     assert main(["road", "calibrate", bag, *words(straight), *lens]) == 0
     assert capsys.readouterr().out != exact
+
+
+def test_a_picture_of_an_unknown_kind_is_refused(bag, tmp_path, capsys):
+    assert main(["road", "calibrate", bag, "--grid", str(tmp_path / "grid.xyz")]) == 1
+    assert "grid.xyz must end in .png or .jpg" in capsys.readouterr().err

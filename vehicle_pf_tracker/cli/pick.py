@@ -20,16 +20,13 @@ import argparse
 import webbrowser
 from pathlib import Path
 
-import cv2
-
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.picking import FrameStore, PickingServer, frame_of
+from vehicle_pf_tracker.cli.picking import FrameStore, PickingServer
 from vehicle_pf_tracker.cli.shared_options import positive
 from vehicle_pf_tracker.cli.targets import TargetOption, write_targets
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, replacing
+from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, write_picture
 from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid
-from vehicle_pf_tracker.recordings.source import open_source
+from vehicle_pf_tracker.recordings.source import frame_at, open_source
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -56,9 +53,7 @@ def run(args: argparse.Namespace) -> int:
     """Serve the page until the user is done, and print or write the targets."""
     source = open_source(args.source, topic=args.topic, fps=args.fps)
     if args.grid is not None:
-        frame = frame_of(iter(source.frames()), args.frame).frame
-        assert frame is not None
-        _write_grid(args.grid, frame)
+        write_picture(args.grid, draw_pixel_grid(frame_at(source, args.frame)))
         print(f"frame {args.frame} with a grid is in {args.grid}")
         return 0
     if args.output is not None:
@@ -82,10 +77,3 @@ def _words(target: TargetOption) -> str:
     box = target.box
     place = f"{target.name}@{target.frame}:"
     return place + ",".join(f"{value:g}" for value in (box.x, box.y, box.width, box.height))
-
-
-def _write_grid(path: Path, frame: Frame) -> None:
-    _, coded = cv2.imencode(".png", cv2.cvtColor(draw_pixel_grid(frame), cv2.COLOR_RGB2BGR))
-    make_folder(path.parent)
-    with replacing(path) as partial:
-        partial.write_bytes(coded.tobytes())

@@ -27,7 +27,6 @@ from typing import Any
 
 from vehicle_pf_tracker.cli.targets import TargetOption
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source
@@ -163,20 +162,3 @@ def _target(entry: dict[str, Any]) -> TargetOption:
         c for c in str(entry.get("name", "")) if c.isascii() and (c.isalnum() or c in "_-")
     )
     return TargetOption(box, name, int(entry["frame"]))
-
-
-def frame_of(frames: Iterator[StampedFrame], number: int) -> StampedFrame:
-    """Return frame `number`, from 1.
-
-    Raises
-    ------
-    InputError
-        If there are fewer frames, or it cannot be read.
-    """
-    count = 0
-    for count, found in enumerate(frames, start=1):
-        if count == number:
-            if found.frame is None:
-                raise InputError(f"frame {number} cannot be read")
-            return found
-    raise InputError(f"there is no frame {number}; the source has {count}")

@@ -21,21 +21,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 import yaml
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.shared_options import positive
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.output_files import output_errors, replacing, write_text
+from vehicle_pf_tracker.evaluation.output_files import write_picture, write_text
 from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid, draw_road_grid
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
-from vehicle_pf_tracker.recordings.source import open_source
+from vehicle_pf_tracker.recordings.source import frame_at, open_source
 from vehicle_pf_tracker.road.calibration import format_pairs, parse_pairs
 from vehicle_pf_tracker.road.lens import MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
@@ -75,16 +73,16 @@ def run(args: argparse.Namespace) -> int:
     pairs = (*parse_pairs(";".join(args.pairs)), *(_read_pairs(args.file) if args.file else ()))
     if not pairs and args.grid is None:
         raise UsageError("give pairs of points with --pair or --pairs, or --grid to read them off")
-    frame = _frame(args.source, args.topic, args.frame)
+    frame = frame_at(open_source(args.source, topic=args.topic), args.frame)
     if not pairs:
-        _write_picture(args.grid, draw_pixel_grid(frame))
+        write_picture(args.grid, draw_pixel_grid(frame))
         print(f"{args.grid}: read off pixels of points whose place on the road you know")
         return 0
     road = _road(args, pairs)
     plane = road.plane(road.lens, None)
     print(_table(plane, pairs), end="")
     if args.grid is not None:
-        _write_picture(args.grid, draw_road_grid(frame, plane, pairs))
+        write_picture(args.grid, draw_road_grid(frame, plane, pairs))
     if args.output is not None:
         _write_parameters(args.output, road)
         print(f"{args.output}: use it with --params, or as params_file of a node")
@@ -114,15 +112,6 @@ def _read_pairs(path: Path) -> tuple[Pair, ...]:
     return parse_pairs(";".join(words))
 
 
-def _frame(source: str, topic: str | None, number: int) -> Frame:
-    count = 0
-    for stamped in open_source(source, topic=topic).frames():
-        count += stamped.frame is not None
-        if count == number and stamped.frame is not None:
-            return stamped.frame
-    raise InputError(f"{source} has {count} images that can be read; --frame {number} is none")
-
-
 def _road(args: argparse.Namespace, pairs: tuple[Pair, ...]) -> RoadParameters:
     values = {
         "road.pairs": format_pairs(pairs),
@@ -148,12 +137,6 @@ def _table(plane: RoadPlane, pairs: Sequence[Pair]) -> str:
     lengths = [np.linalg.norm(plane.jacobian(np.array(pair.pixel)), 2) for pair in pairs]
     lines.append(f"a pixel is {min(lengths):.2g} to {max(lengths):.2g} m of road there")
     return "\n".join([*lines, ""])
-
-
-def _write_picture(path: Path, picture: Frame) -> None:
-    with replacing(path) as partial, output_errors(path):
-        if not cv2.imwrite(str(partial), np.ascontiguousarray(picture[..., ::-1])):
-            raise InputError(f"cannot write {path}: name a .png or .jpg file")
 
 
 def _write_parameters(path: Path, road: RoadParameters) -> None:

@@ -23,9 +23,10 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.mode_spans import clock_words
+from vehicle_pf_tracker.image.lettering import line_width, write_words
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 Colour = tuple[int, int, int]
@@ -87,7 +88,7 @@ class Annotator:
             cv2.rectangle(picture, corners[0], corners[2], colour, width)
         if self._name:
             x, y = corners[0]
-            write(picture, self._name, (x, max(y - 3 * width, 14 * width)), colour)
+            write_words(picture, self._name, (x, max(y - 3 * width, 14 * width)), colour, width)
 
     def words(self, row: EstimateRow) -> str:
         """Return the target's name, mode and confidence in one line."""
@@ -110,24 +111,8 @@ def annotated(
     width = line_width(picture)
     head = (f"{clock_words(elapsed_ns)}  frame {number}", NEUTRAL)
     for index, (words, colour) in enumerate([head, *lines], start=1):
-        write(picture, words, (5 * width, 16 * width * index), colour)
+        write_words(picture, words, (5 * width, 16 * width * index), colour, width)
     return picture
-
-
-def line_width(picture: Frame) -> int:
-    """Return the width of lines that suits the picture's size, px."""
-    return max(1, round(min(frame_size(picture)) / 300))
-
-
-def write(picture: Frame, words: str, corner: tuple[int, int], colour: Colour) -> None:
-    """Write words with a dark edge; `corner` is their lower left one."""
-    width = line_width(picture)
-    font, scale, smooth = cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, cv2.LINE_AA
-    x, y = corner
-    # Not by a thicker stroke: in OpenCV 5 that makes the letters wider.
-    for across, down in ((-width, 0), (width, 0), (0, -width), (0, width)):
-        cv2.putText(picture, words, (x + across, y + down), font, scale, (0, 0, 0), width, smooth)
-    cv2.putText(picture, words, corner, font, scale, colour, width, smooth)
 
 
 def _draw_dashed(

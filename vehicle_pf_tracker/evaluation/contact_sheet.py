@@ -23,7 +23,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.output_files import output_errors, replacing
+from vehicle_pf_tracker.evaluation.output_files import write_picture
 
 THUMB_WIDTH = 400
 """Width of a key frame on the sheet, px: three of them fill a page's width."""
@@ -69,10 +69,7 @@ class ContactSheet:
         if not thumbs:
             return False
         chosen = np.unique(np.linspace(0, len(thumbs) - 1, min(len(thumbs), _MOST)).round())
-        sheet = _tiled([thumbs[int(index)] for index in chosen])
-        _, coded = cv2.imencode(".png", cv2.cvtColor(sheet, cv2.COLOR_RGB2BGR))
-        with replacing(path) as partial, output_errors(path):
-            partial.write_bytes(coded.tobytes())
+        write_picture(path, _tiled([thumbs[int(index)] for index in chosen]))
         return True
 
 

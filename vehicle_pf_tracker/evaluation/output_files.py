@@ -24,7 +24,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import cv2
+
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+
+PICTURES = (".png", ".jpg", ".jpeg")
+"""Endings of pictures that are written."""
 
 
 @contextmanager
@@ -78,6 +84,22 @@ def write_text(path: Path, text: str) -> None:
     """Write `text` in one go; see `replacing`."""
     with replacing(path) as partial:
         partial.write_text(text, encoding="utf-8", newline="\n")
+
+
+def write_picture(path: Path, picture: Frame) -> None:
+    """Write an RGB picture as the kind of file that its name says.
+
+    Raises
+    ------
+    InputError
+        If it is neither PNG nor JPEG by its name, or cannot be written.
+    """
+    if path.suffix.lower() not in PICTURES:
+        raise InputError(f"the picture {path} must end in {' or '.join(PICTURES)}")
+    make_folder(path.parent)
+    _, coded = cv2.imencode(path.suffix.lower(), cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+    with replacing(path) as partial:
+        partial.write_bytes(coded.tobytes())
 
 
 def write_json(path: Path, document: Any) -> None:

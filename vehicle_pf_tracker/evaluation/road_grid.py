@@ -23,6 +23,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.lettering import write_words
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 
 _LINE, _TEXT = (255, 240, 80), (255, 255, 255)
@@ -42,10 +43,10 @@ def draw_pixel_grid(frame: Frame) -> Frame:
     step = _step(max(width, height) / _LINES)
     for x in range(step, width, step):
         cv2.line(picture, (x, 0), (x, height - 1), _LINE, 1)
-        _write(picture, str(x), (x + 2, 11))
+        write_words(picture, str(x), (x + 2, 11), _TEXT)
     for y in range(step, height, step):
         cv2.line(picture, (0, y), (width - 1, y), _LINE, 1)
-        _write(picture, str(y), (2, y - 3))
+        write_words(picture, str(y), (2, y - 3), _TEXT)
     return picture
 
 
@@ -62,7 +63,8 @@ def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Fra
     for pair in pairs:
         u, v = np.floor(pair.pixel).astype(int).tolist()
         cv2.drawMarker(picture, (u, v), _POINT, cv2.MARKER_CROSS, 11, 1)
-        _write(picture, f"{pair.road[0]:g},{pair.road[1]:g}", (u + 6, v - 4))
+        words = f"{pair.road[0]:g},{pair.road[1]:g}"
+        write_words(picture, words, (u + 6, v - 4), _TEXT)
     return picture
 
 
@@ -77,15 +79,8 @@ def _draw_line(
     pixels = np.clip(np.floor(plane.to_image(line)), -(2**14), 2**14).astype(np.int32)
     cv2.polylines(picture, [pixels.reshape(-1, 1, 2)], False, _ROAD, 1, cv2.LINE_AA)
     u, v = pixels[0].tolist()
-    _write(picture, f"{'xy'[axis]}={number:g}", (u + 2, v + 12))
+    write_words(picture, f"{'xy'[axis]}={number:g}", (u + 2, v + 12), _TEXT)
 
 
 def _step(least: float) -> int:
     return next((step for step in _STEPS if step >= least), _STEPS[-1])
-
-
-def _write(picture: Frame, words: str, place: tuple[int, int]) -> None:
-    for colour, thickness in (((0, 0, 0), 3), (_TEXT, 1)):
-        cv2.putText(
-            picture, words, place, cv2.FONT_HERSHEY_SIMPLEX, 0.4, colour, thickness, cv2.LINE_AA
-        )

@@ -73,12 +73,12 @@ class JpegStructure:
 
     @property
     def is_progressive(self) -> bool:
-        """Whether the coefficients come in several passes."""
+        """True where the coefficients come in several passes."""
         return self.kind == 2
 
     @property
     def lacks_scans(self) -> bool:
-        """Whether coefficients of a component, or bits of them, are in no scan."""
+        """True where coefficients of a component, or bits of them, are in no scan."""
         lowest = {name: [1] * _COEFFICIENTS for name in self._sampling}
         for scan in self.scans:
             for name in scan.components:
@@ -90,7 +90,7 @@ class JpegStructure:
 
     @property
     def lacks_restarts(self) -> bool:
-        """Whether a JPEG of one scan has fewer restarts than its size asks for."""
+        """True where a JPEG of one scan has fewer restarts than its size asks for."""
         if not self._interval or len(self.scans) != 1:
             return False
         across = _BLOCK * max((one for one, _ in self._sampling.values()), default=1)

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Protocol
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings.footage import Footage
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
@@ -134,6 +135,23 @@ def open_source(
     if not path.is_file():
         raise InputError(f"{path} is not a regular file or a folder")
     return _footage(VideoFile(path, fps=fps), text, topic)
+
+
+def frame_at(source: Source, number: int) -> Frame:
+    """Return frame `number` of a source, from 1.
+
+    Raises
+    ------
+    InputError
+        If there are fewer frames, or it cannot be read.
+    """
+    count = 0
+    for count, found in enumerate(source.frames(), start=1):
+        if count == number:
+            if found.frame is None:
+                raise InputError(f"frame {number} cannot be read")
+            return found.frame
+    raise InputError(f"there is no frame {number}; the source has {count}")
 
 
 def is_recording(path: Path) -> bool:

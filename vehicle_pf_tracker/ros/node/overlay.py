@@ -22,7 +22,8 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.lettering import line_width, write_words
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 PATH_LENGTH = 300
@@ -54,7 +55,7 @@ class Overlay:
     def draw(self, frame: Frame, mode: str, estimate: Estimate | None, more: str = "") -> Frame:
         """Return a drawn-on copy of `frame`, contiguous; `more` is written after the mode."""
         picture = np.array(frame, order="C")
-        thickness = max(1, round(min(frame_size(frame)) / 300))
+        thickness = line_width(frame)
         colour = _COLOURS.get(mode, _NEUTRAL)
         if estimate is not None:
             for centre in _pixels(estimate.particles):
@@ -64,17 +65,11 @@ class Overlay:
             corners = _pixels(np.asarray(estimate.box.corners))
             cv2.rectangle(picture, corners[0], corners[2], colour, thickness)
         words = mode if estimate is None else f"{mode} {estimate.confidence:.2f}"
-        _write(picture, f"{words}  {more}" if more else words, colour, thickness)
+        words = f"{words}  {more}" if more else words
+        write_words(picture, words, (5 * thickness, 14 * thickness), colour, thickness)
         return picture
 
 
 def _pixels(points: Array) -> list[tuple[int, int]]:
     """Give the pixel that each continuous position (N, 2) lies in."""
     return [(int(x), int(y)) for x, y in np.floor(points)]
-
-
-def _write(picture: Frame, words: str, colour: tuple[int, int, int], thickness: int) -> None:
-    place, scale = (5 * thickness, 14 * thickness), 0.45 * thickness
-    font, smooth = cv2.FONT_HERSHEY_SIMPLEX, cv2.LINE_AA
-    cv2.putText(picture, words, place, font, scale, (0, 0, 0), 3 * thickness, smooth)
-    cv2.putText(picture, words, place, font, scale, colour, thickness, smooth)

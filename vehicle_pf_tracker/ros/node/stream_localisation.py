@@ -71,7 +71,7 @@ class StreamLocalisation(Localisation):
 
     @property
     def values(self) -> dict[str, object]:
-        """What `~/mode` says of the road: scalars of the place, or why there is none."""
+        """Road position and speed for `~/mode` by name, or the reason why there are none."""
         if not self.has_road:
             return {}
         return {"road": self.objection or "ok", **(self.road.scalars() if self.road else {})}

@@ -44,7 +44,7 @@ def box_of_polygon(message: PolygonStamped, image_frame: str | None, suffix: str
     image_frame : str or None
         The images' `frame_id`; None if none has come yet.
     suffix : str
-        Addition to it in the node's own outputs, which may come back.
+        Suffix of the `frame_id` in the node's own outputs, accepted too.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def box_of_point(
     like : Box or None
         The present box; None if there is none.
     suffix : str
-        Addition to `image_frame` in the node's own outputs, which may come back.
+        Suffix of the `frame_id` in the node's own outputs, accepted too.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def box_of_detection(message: Any, image_frame: str | None, suffix: str = "") ->
     image_frame : str or None
         The images' `frame_id`; None if none has come yet.
     suffix : str
-        Addition to it in the node's own outputs, which may come back.
+        Suffix of the `frame_id` in the node's own outputs, accepted too.
 
     Raises
     ------

@@ -33,7 +33,7 @@ _FASTEST = 1e6
 
 
 class Controls:
-    """What the user wants of the player at the moment.
+    """State of the replay that the user controls.
 
     Parameters
     ----------
@@ -44,12 +44,12 @@ class Controls:
     length : float
         Length of the part that is played, in s.
     is_paused : bool
-        Whether to begin paused.
+        True to begin paused.
 
     Attributes
     ----------
     is_paused : bool
-        Whether messages wait.
+        True while messages wait.
     steps : int
         Messages to publish although it is paused.
     rate : float
