@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.image.target_pixels import doubts
+from vehicle_pf_tracker.image.target_pixels import contrast, doubts
 
 
 @pytest.fixture
@@ -51,3 +51,11 @@ def test_what_speaks_against_a_target(frame, box, words):
 
 def test_a_box_beyond_the_image_has_no_pixels_to_doubt(frame):
     assert doubts(frame, Box(400, 400, 20, 20)) == []
+
+
+def test_a_patch_whose_contrast_is_known():
+    """Two halves of 100 and 120 have a standard deviation of 10, less what smoothing takes."""
+    frame = np.full((80, 80, 3), 100, np.uint8)
+    frame[:, 40:] = 120
+    assert contrast(frame, Box(20, 20, 40, 40)) == pytest.approx(10, abs=0.5)
+    assert contrast(np.full((80, 80, 3), 100, np.uint8), Box(20, 20, 40, 40)) == 0
