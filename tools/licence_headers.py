@@ -62,10 +62,15 @@ def without_header(root: Path = ROOT) -> Iterator[Path]:
                 yield path
 
 
+def with_header(text: str) -> str:
+    """Return `text` with the header at its top, once; one without the empty line gets that."""
+    return HEADER + text.removeprefix(HEADER.rstrip("\n")).lstrip("\n")
+
+
 def main() -> int:
     """Add the header where it is missing."""
     for path in list(without_header()):
-        path.write_text(HEADER + path.read_text(encoding="utf-8"), encoding="utf-8")
+        path.write_text(with_header(path.read_text(encoding="utf-8")), encoding="utf-8")
         print(f"added to {path.relative_to(ROOT)}")
     return 0
 

@@ -35,7 +35,8 @@ class _Loader(yaml.SafeLoader):
         if self.check_event(yaml.AliasEvent):
             event = self.peek_event()  # type: ignore[no-untyped-call]
             raise yaml.MarkedYAMLError(
-                problem="aliases are not supported, nor by ROS itself", problem_mark=event.start_mark
+                problem="aliases are not supported, nor by ROS itself",
+                problem_mark=event.start_mark,
             )
         return super().compose_node(parent, index)
 
