@@ -1,0 +1,75 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Estimate of one vehicle among many."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from vehicle_pf_tracker.core.box import Box
+
+SCENE = "scene"
+"""Occluder of a track that nothing followed hides: a sign, a bridge, the unknown."""
+
+
+class TrackMode(str, Enum):
+    """Claim about a vehicle.
+
+    `TENTATIVE` has too little evidence yet; `TRACKING` is seen; `OCCLUDED` is taken to be hidden
+    and is predicted; `LOST` has been hidden for too long to be predicted.
+    """
+
+    TENTATIVE = "TENTATIVE"
+    TRACKING = "TRACKING"
+    OCCLUDED = "OCCLUDED"
+    LOST = "LOST"
+
+
+@dataclass(frozen=True, slots=True)
+class TrackEstimate:
+    """Estimate of one vehicle in one frame.
+
+    Attributes
+    ----------
+    identity : int
+        Number of the vehicle, from 1; never used for another one.
+    box : Box
+        Its box in px, predicted while it is hidden; it may extend beyond the image.
+    velocity : (float, float)
+        Velocity of the box's centre in px per nominal frame period.
+    mode : TrackMode
+        Claim about it.
+    confidence : float
+        Probability that the vehicle is where the box says, 0 to 1.
+    label : str
+        Class as the detections say it; "" where they do not.
+    score : float
+        Score of the detection that it was matched with in this frame; NaN without one.
+    age : float
+        Time since it was first seen, in nominal frame periods.
+    hidden_by : int or "scene" or None
+        Identity of the vehicle that hides it, `SCENE`, or None where it is in sight.
+    """
+
+    identity: int
+    box: Box
+    velocity: tuple[float, float]
+    mode: TrackMode
+    confidence: float
+    label: str
+    score: float
+    age: float
+    hidden_by: int | str | None
