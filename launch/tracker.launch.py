@@ -20,6 +20,7 @@ from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
 from launch.substitutions import EnvironmentVariable
 from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import Parameter
 from launch_ros.substitutions import FindPackageShare
 
 from vehicle_pf_tracker.ros.launching import parameter_file, write_profile
@@ -60,15 +61,16 @@ def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     given = {name: context.launch_configurations[name] for name in ARGUMENTS}
     share = FindPackageShare("vehicle_pf_tracker").perform(context)
     executable = f"{given['variant']}_tracker"
-    own = {"use_sim_time": is_true(given["use_sim_time"])}
+    # Not a dictionary: launch_ros writes one to a file that it never removes.
+    own = [Parameter("use_sim_time", is_true(given["use_sim_time"]))]
     if given["image_transport"]:
-        own["image_transport"] = given["image_transport"]
+        own.append(Parameter("image_transport", given["image_transport"]))
     node = Node(
         package="vehicle_pf_tracker",
         executable=executable,
         name=given["name"] or executable,
         namespace=given["namespace"],
-        parameters=[parameter_file(given["params_file"], given["variant"], share), own],
+        parameters=[parameter_file(given["params_file"], given["variant"], share), *own],
         remappings=[
             ("image", given["image_topic"]),
             ("image/compressed", f"{given['image_topic']}/compressed"),

@@ -30,6 +30,7 @@ from launch.actions import DeclareLaunchArgument, ExecuteProcess
 from launch.launch_description_sources import get_launch_description_from_python_launch_file
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import Parameter
 from launch_ros.utilities import evaluate_parameters
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -170,10 +171,18 @@ def test_the_node_hears_what_was_recorded(tmp_path):
 
 
 def parameters_of(context, node):
-    merged = {}
-    for one in evaluate_parameters(context, node._Node__parameters):
-        merged |= one if isinstance(one, dict) else {}
-    return merged
+    evaluated = evaluate_parameters(context, node._Node__parameters)
+    return dict(one.evaluate(context) for one in evaluated if isinstance(one, Parameter))
+
+
+def test_nothing_is_written_for_arguments(monkeypatch, tmp_path):
+    written = tmp_path / "written"
+    written.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(written))
+    context, (node,) = started("tracker", use_sim_time="true", image_transport="compressed")
+    node._perform_substitutions(context)
+    assert parameters_of(context, node) == {"use_sim_time": True, "image_transport": "compressed"}
+    assert not list(written.iterdir())
 
 
 def parameter_files(context, node):

@@ -14,6 +14,8 @@
 
 """Decisions of the launch files: which images, which parameters, which cameras."""
 
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -119,3 +121,29 @@ def test_the_written_files_are_those_that_nodes_read(tmp_path):
     assert read_yaml(Path(path), "fusion_tracker") == {"lost_after": 2.0}
     profile = Path(write_profile()).read_text(encoding="utf-8")
     assert "<segment_size>67108864</segment_size>" in profile
+
+
+LAUNCH = """
+import sys, tempfile
+from vehicle_pf_tracker.ros.launching import read_cameras, write_profile
+written = [write_profile(), *(c.write_parameters() for c in read_cameras(sys.argv[1]) * 2)]
+assert len(set(written)) == 3
+print(*written, sep="\\n", flush=True)
+input()
+"""
+
+
+@pytest.mark.parametrize("ending", ["\n", ""])
+def test_nothing_is_left_when_a_launch_ends(tmp_path, ending):
+    (tmp_path / "cameras.yaml").write_text("cameras: {a: {topic: /i, parameters: {lost_after: 2}}}")
+    with subprocess.Popen(
+        [sys.executable, "-c", LAUNCH, str(tmp_path / "cameras.yaml")],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+    ) as launch:  # fmt: skip
+        written = [Path(launch.stdout.readline().strip()) for _ in range(3)]
+        assert all(path.is_file() for path in written)
+        folder = written[0].parent
+        launch.communicate(ending)
+    assert launch.returncode == (not ending)  # without a line it ends with an exception
+    assert folder.name.startswith("vehicle_pf_tracker_")
+    assert not folder.exists()

@@ -16,9 +16,12 @@
 
 from __future__ import annotations
 
+import atexit
+import shutil
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -54,9 +57,21 @@ def parameter_file(given: str, variant: str, share: str) -> str:
 
 def write_profile() -> str:
     """Write a profile of Fast DDS for large images; returns its path."""
-    path = Path(tempfile.mkdtemp(prefix="vehicle_pf_tracker_"), "large_images.xml")
+    path = _scratch_folder() / "large_images.xml"
     path.write_text(profile(_SEGMENT), encoding="utf-8")
     return str(path)
+
+
+@cache
+def _scratch_folder() -> Path:
+    """Return this process's folder for files that its nodes read.
+
+    It is removed when the process ends, and a launch ends after its nodes: one that respawns
+    reads its file again.
+    """
+    folder = tempfile.mkdtemp(prefix="vehicle_pf_tracker_")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +97,8 @@ class Camera:
 
     def write_parameters(self) -> str:
         """Write the parameters to a file of their own; returns its path."""
-        path = Path(tempfile.mkdtemp(prefix="vehicle_pf_tracker_"), f"{self.variant}.yaml")
+        # A folder each: two files of cameras in one launch may use the same names.
+        path = Path(tempfile.mkdtemp(dir=_scratch_folder()), f"{self.name}.yaml")
         document = {"/**": {"ros__parameters": dict(self.values)}}
         path.write_text(yaml.safe_dump(document), encoding="utf-8")
         return str(path)
