@@ -16,7 +16,9 @@
 
 import csv
 import json
+import re
 
+import cv2
 import pytest
 
 pytest.importorskip("rclpy")
@@ -31,9 +33,10 @@ pytestmark = pytest.mark.ros
 # A process of its own, as Fast DDS makes room for images only with the first participant of one.
 SHORT_DEMO = """
 import sys
-from vehicle_pf_tracker.cli import demo
+from vehicle_pf_tracker.cli import demo, demo_runs
 from vehicle_pf_tracker.cli.main import main
-demo.SCENE, demo.CONTESTANTS = "bar", {"apf": {"motion.sigma_w": 5.0}}
+demo.SCENE = "bar"
+demo.CONTESTANTS = demo_runs.CONTESTANTS = {"apf": {"motion.sigma_w": 5.0}, "pf": {"sigma": 2.0}}
 sys.exit(main(["demo", "-o", sys.argv[1], "--seeds", "1"]))
 """
 
@@ -42,19 +45,23 @@ def test_the_chain_ends_with_scores_pictures_and_a_recording(tmp_path, start_pro
     process = start_process("-c", SHORT_DEMO, str(tmp_path))
     assert process.wait(600) == 0, process.output
     frames = Recording(tmp_path / "recording").frame_count
-    with (tmp_path / "apf" / "estimates.csv").open() as file:
-        rows = list(csv.DictReader(file))
-    assert [int(row["frame"]) for row in rows] == list(range(1, frames + 1))
+    for name in ("apf", "pf"):
+        with (tmp_path / name / "estimates.csv").open() as file:
+            rows = list(csv.DictReader(file))
+        assert [int(row["frame"]) for row in rows] == list(range(1, frames + 1))
     metrics = json.loads((tmp_path / "apf" / "metrics.json").read_text())
     assert metrics["frames_scored"] == frames
     assert metrics["rmse_px"] < 15
     assert json.loads((tmp_path / "apf" / "run.json").read_text())["variant"] == "apf"
     assert (tmp_path / "demo.png").stat().st_size > 10_000
+    assert cv2.VideoCapture(str(tmp_path / "demo.mp4")).get(cv2.CAP_PROP_FRAME_COUNT) == frames
     topics = {info.name for info in Recording(tmp_path / "with_estimates").topics}
-    assert {"/camera/image_raw", "/ground_truth/position", "/apf_tracker/position"} <= topics
+    assert {"/camera/image_raw", "/ground_truth/position", "/pf_tracker/position"} <= topics
     told = process.output
     assert "error, RMSE" in told
-    assert f"{frames} frames out, {frames} estimates in" in told
+    assert f"/apf_tracker: {frames} frames out, {frames} estimates in" in told
+    assert f"/pf_tracker: {frames} frames out, {frames} estimates in" in told
+    assert re.search(r"same numbers offline +│ +yes │ +yes", told)
 
 
 def test_a_node_that_fails_is_told(tmp_path, capfd):

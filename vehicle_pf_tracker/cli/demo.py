@@ -12,48 +12,43 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`demo`: recording, node, lock-step replay through ROS, evaluation against truth."""
+"""`demo`: a synthetic scene, tracked through ROS and offline, scored against truth, and shown."""
 
 from __future__ import annotations
 
 import argparse
-import os
-from collections.abc import Mapping, Sequence
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from types import MappingProxyType
 
 from vehicle_pf_tracker.cli.console import show, tell_notices
-from vehicle_pf_tracker.cli.replay_progress import progress_view
+from vehicle_pf_tracker.cli.demo_runs import (
+    CONTESTANTS,
+    Run,
+    absence_of_ros,
+    offline_tracker,
+    track_offline,
+    track_through_ros,
+)
+from vehicle_pf_tracker.cli.shared_options import natural
 from vehicle_pf_tracker.cli.synth import record_scene
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.estimates_recording import write_with_estimates
+from vehicle_pf_tracker.evaluation.following import Pictures, follow
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
-from vehicle_pf_tracker.evaluation.offline import OfflineTracker
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_text
 from vehicle_pf_tracker.evaluation.plots import overview_figure, save
 from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
-from vehicle_pf_tracker.parameters.table import Value, from_mapping
+from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import make_scene
-from vehicle_pf_tracker.trackers.registry import find_variant
 
 SCENE, SCENE_SEED = "highway", 0
-ROS_SEED = 0
-_PATIENCE = 600.0
-"""Patience with a busy machine, s; a quiet one needs a few, and a node that ends is noticed at
-once."""
-
-# Particles and features are the same for both. Each has its own best sigma, found on other scenes
-# and seeds: `python -m reproduction.demo_sigma`.
-CONTESTANTS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
-    {
-        "apf": {"num_particles": 200, "histogram_bits": 3, "motion.sigma_w": 5.0},
-        "pf": {"num_particles": 200, "histogram_bits": 3, "sigma": 2.0},
-    }
-)
+IN_VIDEO = ("fusion", "pf")
+"""Contestants drawn in the video: a third box would hide the other two."""
+PICTURE, VIDEO, ESTIMATES = "demo.png", "demo.mp4", "with_estimates"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -61,94 +56,52 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "-o", "--output", type=Path, default=Path("results/demo"), metavar="DIR",
-        help="folder for recordings, results and pictures (default: results/demo)",
+        help="folder for recordings, results, picture and video (default: results/demo)",
     )  # fmt: skip
     add(
-        "--seeds", type=int, default=10, metavar="N",
+        "--seeds", type=natural, default=10, metavar="N",
         help="how many more seeds to run offline (default: 10)",
     )  # fmt: skip
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run the whole chain; return 1 if frames were lost or ROS and offline runs differ."""
-    folder = make_folder(args.output)
+    """Run the whole chain; return 1 if ROS and offline runs differ."""
+    absence = absence_of_ros()
+    if absence:
+        tell_notices([f"{absence}, so the nodes are left out and everything is tracked offline"])
+    folder, steps = make_folder(args.output), itertools.count(1)
+    _announce(steps, f"a recording of the scene {SCENE!r} with exact truth")
     recording = _record(folder / "recording")
-    answers = {name: _through_ros(recording, name) for name in CONTESTANTS}
-    truth = recording.truth()
-    scores = {name: score_frames(rows, truth) for name, rows in answers.items()}
-    metrics = {name: measure(scored) for name, scored in scores.items()}
-    same = {}
-    for name, rows in answers.items():
-        tracker = _offline(recording, name, ROS_SEED)
-        same[name] = _numbers(_track(recording, tracker)) == _numbers(rows)
-        _write(folder / name, rows, metrics[name], tracker, args.command)
-    others = {name: _other_seeds(recording, name, args.seeds) for name in CONTESTANTS}
-    table = _table(metrics, answers, same, others)
+    answers: Mapping[str, Sequence[EstimateRow]] | None = None
+    if not absence:
+        nodes = ", ".join(f"{name}_tracker" for name in CONTESTANTS)
+        _announce(steps, f"the nodes {nodes}, fed in lock-step through ROS")
+        answers = track_through_ros(recording)
+    _announce(steps, f"the same offline, and {args.seeds} more seeds of each")
+    runs = track_offline(recording, args.seeds)
+    rows = answers or {name: of_seed[0].rows for name, of_seed in runs.items()}
+    same = {name: _numbers(rows[name]) == _numbers(runs[name][0].rows) for name in rows}
+    _announce(steps, "the picture and the video")
+    scores = {name: score_frames(found, recording.truth()) for name, found in rows.items()}
+    _write_runs(folder, recording, runs, scores, args.command, bool(answers))
+    _draw(folder, recording, scores, bool(answers))
+    table = _table(scores, same if answers else {}, _recoveries(recording, runs))
     show(table)
     write_text(folder / "summary.md", table.to_markdown())
     write_text(folder / "summary.csv", table.to_csv())
-    _draw(recording, scores, folder / "demo.png")
-    runs = {f"{name}_tracker": rows for name, rows in answers.items()}
-    write_with_estimates(folder / "with_estimates", recording, runs, overwrite=True)
-    print(
-        f"results are in {folder}: demo.png shows them, {folder / 'with_estimates'} opens in "
-        "Foxglove and evo"
-    )
-    complete = all(len(rows) == recording.frame_count for rows in answers.values())
-    return 0 if complete and all(same.values()) else 1
+    print(f"the picture is {folder / PICTURE}")
+    print(f"the video is {folder / VIDEO}")
+    print(f"the recording {folder / ESTIMATES} opens in Foxglove and evo; all else is in {folder}")
+    return 0 if all(same.values()) else 1
+
+
+def _announce(steps: Iterator[int], what: str) -> None:
+    print(f"{next(steps)}. {what}", flush=True)
 
 
 def _record(path: Path) -> Recording:
-    print(f"1. a recording of the scene {SCENE!r} with exact truth: {path}", flush=True)
     record_scene(make_scene(SCENE, seed=SCENE_SEED), path, overwrite=True)
     return Recording(path)
-
-
-def _through_ros(recording: Recording, name: str) -> Sequence[EstimateRow]:
-    """Replay in lock-step to a node that runs as a process of its own."""
-    _stay_local()
-    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
-    from vehicle_pf_tracker.ros.replay.replaying import replay
-    from vehicle_pf_tracker.ros.replay.tracker_process import tracker_process
-
-    print(f"2. the node {name}_tracker, fed in lock-step through ROS", flush=True)
-    node = f"/{name}_tracker"
-    options = ReplayOptions(lockstep=True, nodes=(node,), timeout=_PATIENCE)
-    parameters = {**CONTESTANTS[name], "seed": ROS_SEED, "queue_depth": 10}
-    with (
-        tracker_process(name, parameters, recording.image_topic) as tracker,
-        progress_view() as on_progress,
-    ):
-        report = replay(
-            recording,
-            options,
-            on_progress,
-            lambda sentence: tell_notices([sentence]),
-            tracker.check,
-        )
-    if report.interrupted:
-        raise KeyboardInterrupt
-    answered = report.nodes[0]
-    print(f"   {report.frames} frames out, {answered.answered} estimates in", flush=True)
-    if answered.answered != report.frames:
-        raise InputError(f"{node} answered {answered.answered} of {report.frames} frames")
-    return answered.rows
-
-
-def _stay_local() -> None:
-    """Choose a ROS domain of its own, away from robots and other demos, unless the user has."""
-    os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 101))
-    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-
-
-def _offline(recording: Recording, name: str, seed: int) -> OfflineTracker:
-    variant = find_variant(name)
-    parameters = from_mapping(variant.parameters, {**CONTESTANTS[name], "seed": seed})
-    return OfflineTracker(variant, parameters, first_truth=recording.first_truth())
-
-
-def _track(recording: Recording, tracker: OfflineTracker) -> list[EstimateRow]:
-    return list(tracker.rows((image.stamp_ns, image.frame) for image in recording.frames()))
 
 
 def _numbers(rows: Sequence[EstimateRow]) -> list[tuple[object, ...]]:
@@ -156,51 +109,63 @@ def _numbers(rows: Sequence[EstimateRow]) -> list[tuple[object, ...]]:
     return [(r.frame, r.stamp_ns, r.x, r.y, r.mode, r.confidence, r.n_eff) for r in rows]
 
 
-def _other_seeds(recording: Recording, name: str, count: int) -> list[Metrics]:
-    print(f"3. {count} more seeds of {name}, offline", flush=True)
-    truth = recording.truth()
-    return [
-        measure(score_frames(_track(recording, _offline(recording, name, seed)), truth))
-        for seed in range(ROS_SEED + 1, ROS_SEED + 1 + count)
-    ]
-
-
-def _write(
-    path: Path,
-    rows: Sequence[EstimateRow],
-    metrics: Metrics,
-    tracker: OfflineTracker,
+def _write_runs(
+    folder: Path,
+    recording: Recording,
+    runs: Mapping[str, Sequence[Run]],
+    scores: Mapping[str, Scores],
     command: Sequence[str],
+    through_ros: bool,
 ) -> None:
-    recording = path.parent / "recording"
-    info = RunInfo(command, str(recording), "", tracker.start_frame, ["estimated through ROS"])
-    folder = RunFolder(path)
-    folder.write_run(rows, describe_run(info, tracker.session))
-    folder.write_metrics(metrics)
+    """Write a folder for each contestant, and the recording with the estimates of all."""
+    notices = ["estimated through ROS"] if through_ros else []
+    rows = {name: [frame.row for frame in scored.frames] for name, scored in scores.items()}
+    for name, scored in scores.items():
+        tracker = runs[name][0].tracker
+        info = RunInfo(command, str(recording.path), "", tracker.start_frame, notices)
+        results = RunFolder(folder / name)
+        results.write_run(rows[name], describe_run(info, tracker.session))
+        results.write_metrics(measure(scored))
+    by_node = {f"{name}_tracker": found for name, found in rows.items()}
+    write_with_estimates(folder / ESTIMATES, recording, by_node, overwrite=True)
 
 
-def _draw(recording: Recording, scores: Mapping[str, Scores], path: Path) -> None:
-    """Draw paths over a frame from the middle, and the errors below."""
-    frame = next(recording.frames(recording.duration_ns / 2e9)).frame
-    assert frame is not None, "we have just written it"
-    save(overview_figure(frame, scores, "through ROS, in lock-step"), path)
+def _draw(
+    folder: Path, recording: Recording, scores: Mapping[str, Scores], through_ros: bool
+) -> None:
+    """Draw the paths over a frame from the middle and the errors below; write the video."""
+    middle = next(recording.frames(recording.duration_ns / 2e9)).frame
+    assert middle is not None, "it was written by this command"
+    title = "through ROS, in lock-step" if through_ros else "offline"
+    save(overview_figure(middle, scores, title), folder / PICTURE)
+    trackers = {name: offline_tracker(recording, name) for name in scores if name in IN_VIDEO}
+    follow(trackers, iter(enumerate(recording.frames(), start=1)), Pictures(folder / VIDEO))
+    if not has_encoder():
+        tell_notices([NO_ENCODER])
+
+
+def _recoveries(
+    recording: Recording, runs: Mapping[str, Sequence[Run]]
+) -> dict[str, tuple[int, int]]:
+    """Count the other seeds that recovered every time, and all other seeds, by contestant."""
+    truth = recording.truth()
+    counts = {}
+    for name, (_, *others) in runs.items():
+        metrics = [measure(score_frames(run.rows, truth)) for run in others]
+        counts[name] = sum(all(one.recovered) for one in metrics), len(metrics)
+    return counts
 
 
 def _table(
-    metrics: Mapping[str, Metrics],
-    answers: Mapping[str, Sequence[EstimateRow]],
+    scores: Mapping[str, Scores],
     same: Mapping[str, bool],
-    others: Mapping[str, Sequence[Metrics]],
+    recoveries: Mapping[str, tuple[int, int]],
 ) -> Comparison:
-    """Compare the runs through ROS, and count over the other seeds."""
+    """Compare the runs shown, and count over the other seeds."""
+    metrics: dict[str, Metrics] = {name: measure(scored) for name, scored in scores.items()}
     table = comparison(metrics)
-    answered = tuple(sum(row.mode != "DROPPED" for row in rows) for rows in answers.values())
-    recovered = tuple(
-        f"{sum(all(m.recovered) for m in runs)} of {len(runs)}" for runs in others.values()
-    )
-    extra = (
-        MetricRow("estimates in", "", answered),
-        MetricRow("same numbers offline", "", tuple(same.values())),
-        MetricRow("other seeds that recovered every time", "", recovered),
-    )
+    recovered = tuple("{} of {}".format(*counts) for counts in recoveries.values())
+    extra = [MetricRow("other seeds that recovered every time", "", recovered)]
+    if same:
+        extra.insert(0, MetricRow("same numbers offline", "", tuple(same.values())))
     return Comparison(table.columns, (*table.lines, *extra))
