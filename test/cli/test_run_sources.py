@@ -30,6 +30,8 @@ from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.evaluation import video_writer
 from vehicle_pf_tracker.evaluation.estimates import read_estimates
 from vehicle_pf_tracker.evaluation.video_writer import has_encoder
+from vehicle_pf_tracker.recordings.cdr import deserialize
+from vehicle_pf_tracker.recordings.reader import Recording
 
 
 @pytest.fixture
@@ -273,3 +275,44 @@ def test_without_the_encoder_the_video_is_written_and_the_remedy_said(
     assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err
     shown = cv2.VideoCapture(str(made))
     assert int(shown.get(cv2.CAP_PROP_FRAME_COUNT)) == COUNT
+
+
+def annotations(recording, topic):
+    return [
+        deserialize(memoryview(message.data), "foxglove_msgs/msg/ImageAnnotations").texts[0].text
+        for message in recording.messages({topic})
+    ]
+
+
+def test_a_run_as_a_recording_has_images_estimates_and_annotations(run, video, tmp_path):
+    out = tmp_path / "bag"
+    words = ("--target", TARGET, "--target", f"late@5:{at(4)}", "--end", "8", "--recording", out)
+    for _ in range(2):  # a recording that is there is replaced
+        assert run(video, *words) == 0
+    bag = Recording(out)
+    rows = estimates(tmp_path / "out" / "late")
+    assert [found.stamp_ns for found in bag.frames()] == [row.stamp_ns for row in rows]
+    found = annotations(bag, "/pf_tracker/late/annotations")
+    assert [text.split(" ")[:2] for text in found] == [["late", row.mode] for row in rows]
+    assert len(list(bag.messages({"/pf_tracker/_1/box"}))) == 8
+    # An image comes before its estimates, and the file is in the order of time.
+    stamps = [message.log_time_ns for message in bag.messages()]
+    assert stamps == sorted(stamps)
+
+
+def test_a_recorded_run_of_one_target_keeps_the_truth_of_its_part(run, tmp_path):
+    bag = tmp_path / "bag"
+    folder = frame_folder(tmp_path / "frames")
+    assert run(folder, "--start", "3", "--recording", bag) == 0
+    truths, images = Recording(bag).truth(), list(Recording(bag).frames())
+    assert [truth.stamp_ns for truth in truths] == [found.stamp_ns for found in images]
+    assert len(images) == COUNT - 2
+    assert annotations(Recording(bag), "/pf_tracker/annotations")[0].startswith("TRACKING")
+
+
+def test_a_recorded_run_leaves_its_source_and_its_results_alone(run, tmp_path, capsys):
+    source = record(tmp_path / "bag")
+    for taken in (source, tmp_path / "out"):
+        assert run(source, "--recording", taken) == 1
+        assert "is taken; name another folder" in capsys.readouterr().err
+    assert Recording(source).frame_count == COUNT

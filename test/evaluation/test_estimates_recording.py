@@ -76,3 +76,22 @@ def test_estimates_of_several_nodes_have_topics_of_their_own(recording, tmp_path
     write_with_estimates(tmp_path / "all", recording, runs)
     for name, x in (("apf_tracker", 1.0), ("pf_tracker", 2.0)):
         assert [p.point.x for _, p in read(tmp_path / "all", f"/{name}/position")] == [x]
+
+
+def test_annotations_are_stamped_as_their_images_and_name_the_node(recording, tmp_path):
+    rows = {"apf_tracker": [row(0, x=1.0), row(1, "LOST", 2.0)], "pf_tracker": [row(0, "WAITING")]}
+    write_with_estimates(tmp_path / "all", recording, rows)
+    together = Recording(tmp_path / "all")
+    (kind,) = {
+        info.type_name for info in together.topics if info.name.endswith("/annotations")
+    }  # fmt: skip
+    assert kind == "foxglove_msgs/msg/ImageAnnotations"
+    images = [found.stamp_ns for found in together.frames()]
+    logged = [m.log_time_ns for m in together.messages({"/apf_tracker/annotations"})]
+    assert logged == images[:2]
+    words = [
+        message.texts[0].text
+        for name in rows
+        for _, message in read(tmp_path / "all", f"/{name}/annotations")
+    ]
+    assert words == ["apf TRACKING 0.50", "apf LOST 0.50", "pf WAITING"]

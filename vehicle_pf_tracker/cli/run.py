@@ -19,6 +19,7 @@ from __future__ import annotations
 import argparse
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
@@ -44,6 +45,7 @@ from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.mode_spans import summary
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
 from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describe_run
+from vehicle_pf_tracker.evaluation.run_recording import OnFrame, run_recording
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.tables import comparison
 from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
@@ -83,6 +85,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--video", type=Path, metavar="FILE",
         help="write the frames with box, path and mode to FILE, an mp4",
     )  # fmt: skip
+    add(
+        "--recording", type=Path, metavar="OUT",
+        help="write images (JPEG), truth, estimates and Foxglove's annotations to the rosbag2 "
+        "folder OUT; a recording there is replaced",
+    )  # fmt: skip
     add("--show", action="store_true", help="show them in a window meanwhile; q ends the run")
     add("--particles", action="store_true", help="draw the particles too")
     add_max_diff(parser)
@@ -112,7 +119,8 @@ def run(args: argparse.Namespace) -> int:
         first, frames = _peeked(_frames(source, args, stop, progress))
         targets = _targets(variant, source, args, first)
         trackers = {name: one.tracker for name, one in targets.items()}
-        rows = follow(trackers, _doubting(frames, targets), pictures)
+        with _recording(args, variant, source, list(trackers)) as on_frame:
+            rows = follow(trackers, _doubting(frames, targets), pictures, on_frame)
     notices = list(source.notices)
     for tracker in trackers.values():
         notices += [*tracker.notices, *tracker.road_notices]
@@ -126,7 +134,21 @@ def run(args: argparse.Namespace) -> int:
     print(f"results are in {folder.path}; {SHEET} shows the key frames")
     if args.video:
         print(f"the video is {args.video}")
+    if args.recording:
+        print(f"the recording is {args.recording}, for Foxglove and `ros2 bag play`")
     return INTERRUPTED if stop.came and source.frame_count is not None else 0
+
+
+def _recording(
+    args: argparse.Namespace, variant: Variant, source: Source, targets: Sequence[str]
+) -> AbstractContextManager[OnFrame | None]:
+    if args.recording is None:
+        return nullcontext()
+    place = args.recording.expanduser().resolve()
+    for taken in (Path(args.source), args.output):
+        if taken is not None and place == taken.expanduser().resolve():
+            raise InputError(f"--recording {args.recording} is taken; name another folder")
+    return run_recording(args.recording, f"{variant.name}_tracker", targets, source.truth())
 
 
 def _write(

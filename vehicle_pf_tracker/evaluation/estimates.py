@@ -25,6 +25,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TypeAlias
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.output_files import write_text
 from vehicle_pf_tracker.trackers.estimate import Mode
@@ -97,6 +98,13 @@ class EstimateRow:
     def position(self) -> tuple[float, float] | None:
         """Centre (x, y) in px; None where there is no estimate."""
         return None if self.x is None or self.y is None else (self.x, self.y)
+
+    @property
+    def box(self) -> Box | None:
+        """Box in px; None where there is no estimate."""
+        if self.position is None or self.width is None or self.height is None:
+            return None
+        return Box.around(self.position, self.width, self.height)
 
 
 COLUMNS = tuple(field.name for field in fields(EstimateRow))

@@ -28,6 +28,7 @@ from vehicle_pf_tracker.evaluation.annotation import Annotator, annotated
 from vehicle_pf_tracker.evaluation.contact_sheet import ContactSheet
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker
+from vehicle_pf_tracker.evaluation.run_recording import OnFrame
 from vehicle_pf_tracker.evaluation.video_writer import VideoWriter, video_writer
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 
@@ -90,7 +91,10 @@ class Pictures:
 
 
 def follow(
-    trackers: Mapping[str, OfflineTracker], frames: Numbered, pictures: Pictures
+    trackers: Mapping[str, OfflineTracker],
+    frames: Numbered,
+    pictures: Pictures,
+    on_frame: OnFrame | None = None,
 ) -> dict[str, list[EstimateRow]]:
     """Track every target through the same frames, each decoded once.
 
@@ -102,6 +106,8 @@ def follow(
         Frames with their numbers, which follow each other.
     pictures : Pictures
         Pictures to make meanwhile.
+    on_frame : callable or None
+        Takes each frame with its rows.
 
     Returns
     -------
@@ -132,6 +138,8 @@ def follow(
         for (_, found), *of_frame in zip(shown, *runs, strict=True):
             for name, row in zip(trackers, of_frame, strict=True):
                 rows[name].append(row)
+            if on_frame is not None:
+                on_frame(found, dict(zip(trackers, of_frame, strict=True)))
             estimates = [tracker.estimate for tracker in trackers.values()]
             for annotator, estimate in zip(annotators, estimates, strict=True):
                 annotator.follow(estimate)

@@ -23,7 +23,12 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 
 def line_width(picture: Frame) -> int:
     """Return the width of lines that suits the picture's size, px."""
-    return max(1, round(min(frame_size(picture)) / 300))
+    return line_width_of(frame_size(picture))
+
+
+def line_width_of(size: tuple[int, int]) -> int:
+    """Return the width of lines that suits pictures of a width and height, px."""
+    return max(1, round(min(size) / 300))
 
 
 def write_words(

@@ -21,10 +21,11 @@ from functools import cache
 from typing import Any
 
 from rosbags.serde import SerdeError
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings.foxglove_types import DEFINITIONS
 
 # rosbags before 0.11 lets what a broken message causes through as it is.
 _BROKEN = (SerdeError, struct.error, ValueError, IndexError, AssertionError)
@@ -33,7 +34,10 @@ _HEADER_TYPES = {"std_msgs/Header", "std_msgs/msg/Header", "Header"}
 
 @cache
 def _store() -> Typestore:
-    return get_typestore(Stores.ROS2_JAZZY)
+    store = get_typestore(Stores.ROS2_JAZZY)
+    for name, text in DEFINITIONS.items():
+        store.register(get_types_from_msg(text, name))
+    return store
 
 
 def message_class(type_name: str) -> Any:
@@ -42,7 +46,7 @@ def message_class(type_name: str) -> Any:
     Raises
     ------
     InputError
-        If ROS 2 Jazzy's common interfaces have no such type.
+        If neither ROS 2 Jazzy's common interfaces nor `foxglove_types` have such a type.
     """
     try:
         return _store().types[type_name]

@@ -28,6 +28,7 @@ from vehicle_pf_tracker.evaluation.grid.sources import local_copy
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_text
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.topics import as_token
 
 TRAJECTORIES = "trajectories"
 
@@ -89,8 +90,8 @@ def write_estimate_recordings(
 ) -> list[Path]:
     """Write a recording for each of the evaluation's, and return their folders.
 
-    The estimates are on ``/<system>/seed_<n>/position``, ``box`` and ``mode``. `notify` takes a
-    sentence for each recording that could not be made.
+    The estimates are on ``/<system>/seed_<n>/position``, ``box``, ``mode`` and ``annotations``.
+    `notify` takes a sentence for each recording that could not be made.
     """
     written = []
     for entry in evaluation.recordings:
@@ -106,10 +107,8 @@ def write_estimate_recordings(
 
 
 def topic_name(system: str, seed: int) -> str:
-    """Return the namespace of a run: letters, digits and underscores, no digit first."""
-    name = "".join(c if c.isascii() and c.isalnum() else "_" for c in system)
-    name = f"_{name}" if name[:1].isdigit() else name
-    return f"{name}/seed_{seed}"
+    """Return the namespace of a run."""
+    return f"{as_token(system)}/seed_{seed}"
 
 
 def _rows(evaluation: ScoredEvaluation, recording: str) -> dict[str, tuple[EstimateRow, ...]]:
