@@ -1,0 +1,109 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Reading of lines and zones: what is accepted, and the sentence for what is not."""
+
+import pytest
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.counting_plan import (
+    CountingLine,
+    CountingPlan,
+    CountingZone,
+    read_counting_plan,
+)
+
+GOOD = """
+lines:
+  stop line: {from: [0, 120], to: [320.5, 118], directions: [towards, away]}
+  exit: {from: [0, 20], to: [320, 20]}
+zones:
+  queue: [[0, 60], [320, 60], [320, 120], [0, 120]]
+"""
+
+
+@pytest.fixture
+def read(tmp_path):
+    def read(text):
+        path = tmp_path / "lines.yaml"
+        path.write_text(text)
+        return read_counting_plan(path)
+
+    return read
+
+
+def test_lines_and_zones_are_read(read):
+    assert read(GOOD) == CountingPlan(
+        lines=(
+            CountingLine("stop line", (0, 120), (320.5, 118), ("towards", "away")),
+            CountingLine("exit", (0, 20), (320, 20), ("in", "out")),
+        ),
+        zones=(CountingZone("queue", ((0, 60), (320, 60), (320, 120), (0, 120))),),
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "must have the keys lines and zones"),
+        ("[]", "must have the keys lines and zones"),
+        ("lines: {}", "neither a line nor a zone"),
+        ("line: {a: {from: [0, 0], to: [9, 9]}}", "did you mean 'lines'"),
+        ("lines: [{from: [0, 0], to: [9, 9]}]", "lines must be a mapping by name"),
+        ("lines: {a: {from: [0, 0], to: [9, 9]}, a: {from: [1, 0], to: [9, 9]}}", "there twice"),
+        ("lines: {a: {form: [0, 0], to: [9, 9]}}", "did you mean 'from'"),
+        ("lines: {a: {colour: red}}", "known: from, to, directions"),
+        ("lines: {a: {from: [0, 0]}}", "the line 'a' lacks the point 'to'"),
+        ("lines: {a: {from: [0, 0], to: [0, 0]}}", "shorter than a pixel"),
+        ("lines: {a: {from: [0, 0], to: [0]}}", "the point [0], which is not [x, y]"),
+        ("lines: {a: {from: [0, 0], to: [0, .nan]}}", "which is not [x, y] in px"),
+        ("lines: {a: {from: [0, 0], to: [0, .inf]}}", "which is not [x, y] in px"),
+        ("lines: {a: {from: [0, 0], to: [0, true]}}", "which is not [x, y] in px"),
+        ("lines: {a: {from: [0, 0], to: [0, '9']}}", "which is not [x, y] in px"),
+        ("lines: {a: {from: [0, 0], to: 5}}", "which is not [x, y] in px"),
+        ("lines: {a: 3}", "the line 'a' must have the keys from and to"),
+        ("lines: {no: {from: [0, 0], to: [9, 9]}}", "name False, which is no text"),
+        ("lines: {'': {from: [0, 0], to: [9, 9]}}", "which is no text"),
+        ("lines: {a: {from: [0, 0], to: [9, 9], directions: [in]}}", "two different names"),
+        ("lines: {a: {from: [0, 0], to: [9, 9], directions: [in, in]}}", "two different names"),
+        ("lines: {a: {from: [0, 0], to: [9, 9], directions: in}}", "two different names"),
+        ("zones: {a: [[0, 0], [9, 9]]}", "three corners or more"),
+        ("zones: {a: [[0, 0], [9, 9], [18, 18]]}", "has no area"),
+        ("zones: {a: [[0, 0], [9, 9], [9, 0], [0, 12]]}", "crosses itself"),
+        (f"zones: {{a: {[[k, k * k] for k in range(101)]}}}", "more than 100 corners"),
+        (
+            "lines: {a: {from: [0, 0], to: [9, 9]}}\nzones: {a: [[0, 0], [9, 0], [9, 9]]}",
+            "the name of a line and of a zone",
+        ),
+        ("lines: &x {a: *x}", "aliases are not supported"),
+        ("lines: {", "not valid YAML"),
+    ],
+)
+def test_a_mistake_is_one_sentence_that_names_the_file(read, text, said):
+    with pytest.raises(InputError) as error:
+        read(text)
+    assert said in str(error.value)
+    assert "lines.yaml" in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(InputError, match="cannot read the counting lines"):
+        read_counting_plan(tmp_path / "none.yaml")
+
+
+def test_lines_beyond_the_image_are_found(read):
+    assert read(GOOD).outside(320, 240) == []
+    assert read(GOOD).outside(320, 100) == ["stop line"]
+    assert read("zones: {a: [[400, 0], [500, 0], [450, 9]]}").outside(320, 240) == ["a"]

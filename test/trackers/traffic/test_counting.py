@@ -1,0 +1,296 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Counting at lines and in zones, with paths whose crossings are known."""
+
+import math
+
+import numpy as np
+import pytest
+from traffic_samples import MODES, vehicle
+
+from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, CountingZone
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
+
+ACROSS = CountingLine("across", (0.0, 100.0), (320.0, 100.0))
+ZONE = CountingZone("queue", ((50.0, 50.0), (150.0, 50.0), (150.0, 150.0), (50.0, 150.0)))
+PERIOD_NS = 40_000_000
+LATE = 1_700_000_000_000_000_000  # stamps of today have no digits left for ns in a float
+
+
+def drive(counter, bottoms, modes=None, *, identity=1, x=100.0, label="car"):
+    """Feed one vehicle's lower edges; return all crossings."""
+    modes = modes or "T" * len(bottoms)
+    found = []
+    for index, (bottom, mode) in enumerate(zip(bottoms, modes, strict=True)):
+        estimates = [] if mode == "-" else [vehicle(identity, x, bottom, MODES[mode], label=label)]
+        found += counter.update(estimates, LATE + index * PERIOD_NS)
+    return found
+
+
+def line_counter(**kwargs):
+    return Counter(CountingPlan(lines=(ACROSS,)), **kwargs)
+
+
+def test_downwards_over_a_line_from_left_to_right_is_the_first_direction():
+    (crossing,) = drive(line_counter(), [80, 90, 96, 104, 112])
+    assert (crossing.place, crossing.direction) == ("across", "in")
+    (crossing,) = drive(line_counter(), [120, 110, 90, 80])
+    assert crossing.direction == "out"
+
+
+def test_turning_the_line_round_turns_its_directions():
+    counter = Counter(CountingPlan(lines=(CountingLine("l", (320, 100), (0, 100), ("a", "b")),)))
+    (crossing,) = drive(counter, [80, 90, 110, 120])
+    assert crossing.direction == "b"
+
+
+def test_time_of_a_crossing_lies_between_the_images():
+    # From 96 to 104: the line is half way between images 2 and 3.
+    (crossing,) = drive(line_counter(), [80, 88, 96, 104, 112])
+    assert crossing.stamp_ns == LATE + 2 * PERIOD_NS + PERIOD_NS // 2
+
+
+def test_a_vehicle_that_shakes_on_the_line_counts_once():
+    shaking = [80, 90, 97, 101, 99, 101, 99, 101, 99, 101.5, 99, 101, 110, 120]
+    assert len(drive(line_counter(), shaking)) == 1
+
+
+def test_a_vehicle_that_stops_short_of_the_line_and_shakes_does_not_count():
+    rng = np.random.default_rng(0)
+    shaking = 100 + rng.uniform(-1.9, 1.9, 200)
+    assert drive(line_counter(), [80, 90, *shaking]) == []
+
+
+def test_each_direction_counts_once_for_a_vehicle():
+    there_and_back = [80, 120, 80, 120, 80]
+    assert [c.direction for c in drive(line_counter(), there_and_back)] == ["in", "out"]
+
+
+def test_a_path_past_the_end_of_a_line_does_not_cross_it():
+    short = Counter(CountingPlan(lines=(CountingLine("l", (200, 100), (300, 100)),)))
+    assert drive(short, [80, 90, 110, 120], x=150.0) == []
+    assert len(drive(short, [80, 90, 110, 120], x=250.0, identity=2)) == 1
+
+
+def test_a_vehicle_that_passes_the_end_and_comes_back_through_counts_once():
+    line = CountingLine("l", (200, 100), (300, 100))
+    counter = Counter(CountingPlan(lines=(line,)))
+    found = []
+    path = [(150, 80), (150, 120), (250, 120), (250, 80)]
+    for index, (x, bottom) in enumerate(path):
+        found += counter.update([vehicle(1, x, bottom)], index * PERIOD_NS)
+    assert [c.direction for c in found] == ["out"]
+
+
+def test_an_occluded_vehicle_counts_once_at_the_predicted_time():
+    crossings = drive(line_counter(), [80, 88, 96, 104, 112, 120], "TTOOOT")
+    (crossing,) = crossings
+    assert crossing.stamp_ns == LATE + 2 * PERIOD_NS + PERIOD_NS // 2
+    assert crossing.mode is TrackMode.OCCLUDED
+
+
+def test_an_early_forecast_counts_once_and_nothing_back():
+    # Predicted behind the line, seen before it again, and then across it.
+    crossings = drive(line_counter(), [80, 90, 110, 120, 90, 95, 110, 120], "TTOOTTTT")
+    assert [c.direction for c in crossings] == ["in"]
+    assert crossings[0].stamp_ns < LATE + 3 * PERIOD_NS
+
+
+def test_a_vehicle_seen_before_the_line_again_can_still_turn_back_later():
+    path = [80, 110, 90, 110, 120, 90]
+    assert [c.direction for c in drive(line_counter(), path, "TOTTTT")] == ["in", "out"]
+
+
+@pytest.mark.parametrize("modes", ["TTLLLT", "TT---T"])
+def test_a_lost_vehicle_that_comes_back_behind_the_line_counts_once(modes):
+    (crossing,) = drive(line_counter(), [80, 90, 0, 0, 0, 110], modes)
+    assert crossing.mode is TrackMode.LOST
+    assert crossing.stamp_ns == LATE + 3 * PERIOD_NS  # half way from image 1 to image 5
+    assert crossing.speed_px is None
+
+
+def test_a_tentative_vehicle_counts_late_with_its_own_time():
+    counter = line_counter()
+    assert drive(counter, [80, 96, 104, 110], "tttt") == []
+    assert not counter.totals
+    (crossing,) = counter.update([vehicle(1, 100, 116, label="bus")], LATE + 4 * PERIOD_NS)
+    assert crossing.stamp_ns == LATE + PERIOD_NS + PERIOD_NS // 2
+    assert crossing.mode is TrackMode.TENTATIVE
+    assert crossing.label == "bus"  # what is known when it counts
+    assert counter.update([vehicle(1, 100, 120)], LATE + 5 * PERIOD_NS) == ()
+
+
+def test_a_tentative_vehicle_that_vanishes_does_not_count():
+    counter = line_counter()
+    assert drive(counter, [80, 96, 104, 110, 0, 0], "tttt--") == []
+    assert counter.count("across", "in") == 0
+
+
+def test_a_vehicle_first_seen_on_the_line_does_not_count():
+    assert drive(line_counter(), [99, 101, 110, 130]) == []
+
+
+def test_totals_are_kept_by_direction_and_class():
+    counter = line_counter()
+    for identity, label in enumerate(["car", "bus", "car"], start=1):
+        counter.forget_vehicles()
+        drive(counter, [80, 90, 110], identity=identity, label=label)
+    counter.forget_vehicles()
+    drive(counter, [120, 110, 80], identity=4)
+    assert counter.totals == {
+        ("across", "in", "car"): 2,
+        ("across", "in", "bus"): 1,
+        ("across", "out", "car"): 1,
+    }
+    assert counter.count("across", "in") == 3
+    counter.reset()
+    assert counter.count("across", "in") == 0
+
+
+def test_time_that_goes_back_begins_all_paths_anew():
+    counter = line_counter()
+    counter.update([vehicle(1, 100, 80)], LATE)
+    assert counter.update([vehicle(1, 100, 120)], LATE - PERIOD_NS) == ()
+
+
+def test_many_vehicles_at_once_are_counted_apart():
+    counter = line_counter()
+    found = []
+    for index in range(60):
+        bottoms = {identity: 40 + 2 * index - 3 * identity for identity in range(1, 15)}
+        found += counter.update(
+            [vehicle(identity, 20 * identity, bottom) for identity, bottom in bottoms.items()],
+            LATE + index * PERIOD_NS,
+        )
+    assert sorted(c.identity for c in found) == list(range(1, 15))
+
+
+def test_memory_does_not_grow_with_vehicles_that_are_gone():
+    counter = line_counter()
+    for identity in range(1, 3001):  # one a second
+        counter.update([vehicle(identity, 100, 80)], identity * 10**9)
+    assert len(counter._vehicles) <= 601
+
+
+def test_speed_in_pixels_is_that_of_the_path():
+    (crossing,) = drive(line_counter(), [40 + 4.0 * k for k in range(20)])
+    assert crossing.speed_px == pytest.approx(4.0 / 0.04)  # px per period of 0.04 s
+    assert crossing.speed_kmh is None
+
+
+def test_speed_on_the_road_is_exact_in_perspective():
+    pairs = [
+        Pair((100.0, 50.0), (0.0, 60.0)),
+        Pair((220.0, 50.0), (8.0, 60.0)),
+        Pair((20.0, 200.0), (0.0, 0.0)),
+        Pair((300.0, 200.0), (8.0, 0.0)),
+    ]
+    plane = RoadPlane.of_pairs(pairs, None, margin=0.1, coarsest=5.0)
+    counter = line_counter(plane=plane)
+    metres_per_s = 72 / 3.6
+    found = []
+    for index in range(50):
+        y = 45.0 - metres_per_s * 0.04 * index
+        x, bottom = plane.to_image(np.array([3.0, y]))
+        if bottom < 200:
+            found += counter.update([vehicle(1, x, bottom)], LATE + index * PERIOD_NS)
+    (crossing,) = found
+    assert crossing.speed_kmh == pytest.approx(72.0, rel=1e-6)
+
+
+def test_speed_outside_the_calibrated_area_is_not_given():
+    pairs = [
+        Pair((0.0, 150.0), (0.0, 10.0)),
+        Pair((320.0, 150.0), (8.0, 10.0)),
+        Pair((0.0, 200.0), (0.0, 0.0)),
+        Pair((320.0, 200.0), (8.0, 0.0)),
+    ]
+    plane = RoadPlane.of_pairs(pairs, None, margin=0.0, coarsest=5.0)
+    (crossing,) = drive(line_counter(plane=plane), [80, 90, 110, 120])
+    assert crossing.speed_kmh is None
+    assert crossing.speed_px is not None
+
+
+def zone_counter():
+    return Counter(CountingPlan(zones=(ZONE,)))
+
+
+def test_a_zone_counts_entry_and_exit_and_its_occupancy():
+    counter = zone_counter()
+    occupancy, found = [], []
+    for index, bottom in enumerate([30, 40, 60, 100, 140, 160, 170]):
+        found += counter.update([vehicle(1, 100, bottom)], LATE + index * PERIOD_NS)
+        occupancy.append(counter.occupancy["queue"])
+    assert [(c.place, c.direction) for c in found] == [("queue", "entry"), ("queue", "exit")]
+    assert found[0].stamp_ns == LATE + PERIOD_NS + PERIOD_NS // 2  # from 40 to 60 across 50
+    assert occupancy == [0, 0, 1, 1, 1, 0, 0]
+
+
+def test_a_vehicle_that_shakes_on_the_edge_enters_once():
+    shaking = [30, 40, 51, 49, 51, 49, 51, 49, 60]
+    assert [c.direction for c in drive(zone_counter(), shaking)] == ["entry"]
+
+
+def test_a_vehicle_first_seen_in_a_zone_is_there_without_an_entry():
+    counter = zone_counter()
+    assert drive(counter, [100, 100]) == []
+    assert counter.occupancy == {"queue": 1}
+
+
+@pytest.mark.parametrize(("mode", "there"), [("t", 0), ("T", 1), ("O", 1), ("L", 0)])
+def test_only_confirmed_vehicles_with_a_position_are_in_a_zone(mode, there):
+    counter = zone_counter()
+    if mode != "t":
+        drive(counter, [100])
+    counter.update([vehicle(1, 100, 100, MODES[mode])], LATE + PERIOD_NS)
+    assert counter.occupancy["queue"] == there
+
+
+def test_occupancy_ends_with_the_vehicle():
+    counter = zone_counter()
+    drive(counter, [100, 100])
+    counter.update([], LATE + 5 * PERIOD_NS)
+    assert counter.occupancy["queue"] == 0
+
+
+def test_small_boxes_have_a_margin_of_a_pixel():
+    counter = line_counter()
+    tiny = [(99.2, 0), (100.8, 0), (99.2, 0), (100.8, 1)]
+    found = []
+    found += counter.update([vehicle(1, 100, 90, size=(4, 2))], LATE)
+    for index, (bottom, _) in enumerate(tiny, start=1):
+        found += counter.update([vehicle(1, 100, bottom, size=(4, 2))], LATE + index * PERIOD_NS)
+    assert found == []
+    assert len(counter.update([vehicle(1, 100, 101.5, size=(4, 2))], LATE + 9 * PERIOD_NS)) == 1
+
+
+def test_random_walks_count_as_an_independent_count_says():
+    """Against a plain state machine on the distances, over 300 noisy paths."""
+    rng = np.random.default_rng(5)
+    for identity in range(1, 301):
+        path = np.linspace(60, rng.uniform(80, 140), 60) + rng.normal(0, 1.0, 60)
+        counter = line_counter()
+        got = [c.direction for c in drive(counter, path, identity=identity)]
+        side, expected = 0, []
+        for d in path - 100:
+            now = 0 if abs(d) <= 2.0 else int(math.copysign(1, d))
+            if now and now != side:
+                name = "in" if now > 0 else "out"
+                if side and name not in expected:
+                    expected.append(name)
+                side = now
+        assert got == expected

@@ -1,0 +1,43 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Estimates of vehicles for tests, without a tracker."""
+
+import math
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+
+MODES = {
+    "t": TrackMode.TENTATIVE,
+    "T": TrackMode.TRACKING,
+    "O": TrackMode.OCCLUDED,
+    "L": TrackMode.LOST,
+}
+
+
+def vehicle(identity, x, bottom, mode=TrackMode.TRACKING, *, label="car", size=(30.0, 20.0)):
+    """Make the estimate of a vehicle whose lower edge has its middle at (x, bottom)."""
+    width, height = size
+    return TrackEstimate(
+        identity=identity,
+        box=Box(x - width / 2, bottom - height, width, height),
+        velocity=(0.0, 0.0),
+        mode=mode,
+        confidence=0.9,
+        label=label,
+        score=math.nan,
+        age=1.0,
+        hidden_by=None,
+    )

@@ -1,0 +1,225 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Counting of vehicles at lines and in zones.
+
+A vehicle is where the middle of its box's lower edge is: that point touches the road.
+"""
+
+from __future__ import annotations
+
+from collections import Counter as Tally
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from vehicle_pf_tracker.core.box import Box, Position
+from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
+from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.line_watch import LineWatch, Place
+from vehicle_pf_tracker.trackers.traffic.passage_speed import PassageSpeed
+from vehicle_pf_tracker.trackers.traffic.zone_watch import ENTRY, EXIT, ZoneWatch
+
+_REMEMBERED_NS = 600 * 10**9
+"""Time in ns that a vehicle which is not among the estimates is remembered: the longest that a
+tracker keeps the number of a lost one for."""
+
+CONFIRMED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
+"""Modes of vehicles that count."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crossing:
+    """Passage of one vehicle over a line, or into or out of a zone.
+
+    Attributes
+    ----------
+    stamp_ns : int
+        Time at which it crossed, between the images before and after it, ns.
+    place : str
+        Name of the line or zone.
+    direction : str
+        Name of the line's direction; ``entry`` or ``exit`` of a zone.
+    identity : int
+        Number of the vehicle.
+    label : str
+        Its class; "" where it is unknown.
+    mode : TrackMode
+        Claim about it when it crossed: where that is `OCCLUDED`, its path was predicted; where it
+        is `LOST`, it was seen before and after, and its path is taken to be straight.
+    speed_px : float or None
+        Speed of the lower edge's middle over the last half second, px/s; None where it was not
+        followed for long enough.
+    speed_kmh : float or None
+        The same on the road, km/h; None without a road, or outside its calibrated area.
+    """
+
+    stamp_ns: int
+    place: str
+    direction: str
+    identity: int
+    label: str
+    mode: TrackMode
+    speed_px: float | None
+    speed_kmh: float | None
+
+
+@dataclass(slots=True)
+class _Vehicle:
+    """Memory of one vehicle."""
+
+    lines: list[LineWatch]
+    zones: list[ZoneWatch]
+    speed: PassageSpeed
+    last_ns: int
+    is_confirmed: bool = False
+    waiting: list[Crossing] = field(default_factory=list)
+
+
+class Counter:
+    """Counts each vehicle once per line and direction.
+
+    A vehicle has crossed a line when it has gone from clearly before it to clearly behind it, so
+    that one which shakes on the line counts once. Crossings under an occluder count at the time
+    that is predicted; those of a tentative vehicle count when it is confirmed.
+
+    Parameters
+    ----------
+    plan : CountingPlan
+        Lines and zones.
+    plane : RoadPlane or None
+        Road, for speeds in km/h.
+
+    Attributes
+    ----------
+    totals : Counter of (str, str, str)
+        Crossings by place, direction and class.
+    """
+
+    def __init__(self, plan: CountingPlan, plane: RoadPlane | None = None) -> None:
+        self.plan = plan
+        self.totals: Tally[tuple[str, str, str]] = Tally()
+        self._plane = plane
+        self._vehicles: dict[int, _Vehicle] = {}
+        self._occupancy = {zone.name: 0 for zone in plan.zones}
+        self._last_ns: int | None = None
+        self._before_ns: int | None = None
+
+    @property
+    def occupancy(self) -> Mapping[str, int]:
+        """Confirmed vehicles in each zone in the last image, by its name."""
+        return self._occupancy
+
+    def count(self, place: str, direction: str) -> int:
+        """Return the crossings of all classes at a place in a direction."""
+        return sum(
+            number for (at, to, _), number in self.totals.items() if (at, to) == (place, direction)
+        )
+
+    def forget_vehicles(self) -> None:
+        """Forget where all vehicles were, as when a recording begins again; totals stay."""
+        self._vehicles.clear()
+        self._occupancy = {zone.name: 0 for zone in self.plan.zones}
+        self._last_ns = None
+
+    def reset(self) -> None:
+        """Begin anew, all totals at 0."""
+        self.forget_vehicles()
+        self.totals.clear()
+
+    def update(self, estimates: Sequence[TrackEstimate], stamp_ns: int) -> tuple[Crossing, ...]:
+        """Take the estimates of the next image.
+
+        Parameters
+        ----------
+        estimates : sequence of TrackEstimate
+            All vehicles followed.
+        stamp_ns : int
+            Stamp of the image in ns. Time that goes back begins all paths anew.
+
+        Returns
+        -------
+        tuple of Crossing
+            Those that are counted with this image.
+        """
+        if self._last_ns is not None and stamp_ns < self._last_ns:
+            self.forget_vehicles()
+        self._before_ns, self._last_ns = self._last_ns, stamp_ns
+        self._occupancy = {zone.name: 0 for zone in self.plan.zones}
+        counted = [one for estimate in estimates for one in self._follow(estimate, stamp_ns)]
+        for one in counted:
+            self.totals[one.place, one.direction, one.label] += 1
+        self._drop_old(stamp_ns)
+        return tuple(counted)
+
+    def _follow(self, estimate: TrackEstimate, stamp_ns: int) -> list[Crossing]:
+        mode: TrackMode = estimate.mode
+        if mode is TrackMode.LOST:
+            return []
+        vehicle = self._vehicles.get(estimate.identity)
+        if vehicle is None:
+            vehicle = self._vehicles[estimate.identity] = self._made(stamp_ns)
+        elif vehicle.last_ns != self._before_ns:  # back after it was lost
+            vehicle.speed.clear()
+            mode = TrackMode.LOST
+        vehicle.last_ns = stamp_ns
+        place = Place(reference_point(estimate.box), stamp_ns, estimate.box.height, mode)
+        vehicle.speed.add(place.point, stamp_ns)
+        vehicle.is_confirmed = vehicle.is_confirmed or estimate.mode in CONFIRMED
+        vehicle.waiting += self._passed(vehicle, place, estimate)
+        if not vehicle.is_confirmed:
+            return []
+        for zone in vehicle.zones:
+            self._occupancy[zone.zone.name] += zone.is_inside
+        counted, vehicle.waiting = vehicle.waiting, []
+        return [replace(one, label=estimate.label or one.label) for one in counted]
+
+    def _passed(self, vehicle: _Vehicle, place: Place, estimate: TrackEstimate) -> list[Crossing]:
+        """Return what the vehicle passed with the step to `place`."""
+        found = [
+            (line.line.name, *at_line)
+            for line in vehicle.lines
+            if (at_line := line.follow(place)) is not None
+        ] + [
+            (zone.zone.name, ENTRY if zone.is_inside else EXIT, at_edge)
+            for zone in vehicle.zones
+            if (at_edge := zone.follow(place)) is not None
+        ]
+        if not found:
+            return []
+        speeds = vehicle.speed.pixels(), vehicle.speed.kmh()
+        identity, label = estimate.identity, estimate.label
+        return [
+            Crossing(at.stamp_ns, name, direction, identity, label, at.mode, *speeds)
+            for name, direction, at in found
+        ]
+
+    def _made(self, stamp_ns: int) -> _Vehicle:
+        lines = [LineWatch(line) for line in self.plan.lines]
+        zones = [ZoneWatch(zone) for zone in self.plan.zones]
+        return _Vehicle(lines, zones, PassageSpeed(self._plane), stamp_ns)
+
+    def _drop_old(self, stamp_ns: int) -> None:
+        old = [
+            identity
+            for identity, vehicle in self._vehicles.items()
+            if stamp_ns - vehicle.last_ns > _REMEMBERED_NS
+        ]
+        for identity in old:
+            del self._vehicles[identity]
+
+
+def reference_point(box: Box) -> Position:
+    """Return the middle of a box's lower edge, px."""
+    return box.x + box.width / 2, box.y + box.height
