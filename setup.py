@@ -71,6 +71,7 @@ setup(
         (f"share/{NAME}", ["package.xml"]),
         (f"share/{NAME}/config", files("config/*.yaml") + files("config/*.xml")),
         (f"share/{NAME}/launch", files("launch/*.launch.py")),
+        (f"share/{NAME}/viewers", files("viewers/*.json") + files("viewers/*.perspective")),
     ],
     zip_safe=False,
     install_requires=[] if BUILT_FOR_ROS else RUNTIME,

@@ -76,6 +76,12 @@ def test_every_registered_variant_has_an_executable(setup):
     assert callable(executables.main)
 
 
+def test_layouts_of_viewers_are_installed(setup):
+    viewers = dict(setup["data_files"])["share/vehicle_pf_tracker/viewers"]
+    assert sorted(viewers) == sorted(map(str, Path("viewers").iterdir()))
+    assert len(viewers) == 3
+
+
 def test_executables_are_installed_where_ros2_run_looks():
     text = (ROOT / "setup.cfg").read_text()
     assert text.count("scripts=$base/lib/vehicle_pf_tracker") == 1
