@@ -1,0 +1,144 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Elapsed time, restarts and detections of a stream of many vehicles."""
+
+import numpy as np
+import pytest
+from traffic_samples import vehicle
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.trackers.continuity import StrayImageError
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
+
+PERIOD_NS = 40_000_000
+FRAME = np.zeros((48, 64, 3), np.uint8)
+
+
+class Steps:
+    """Tracker that writes down what it is given."""
+
+    def __init__(self):
+        self.frame_period = 0.0
+        self.elapsed, self.seen, self.resets = [], [], 0
+
+    def step(self, frame, detections=None, elapsed=1.0):
+        self.elapsed.append(elapsed)
+        self.seen.append(detections)
+        return (vehicle(len(self.elapsed), 30, 20),)
+
+    def reset(self):
+        self.resets += 1
+
+
+class Eye:
+    """Detector that writes down the tracks it is given."""
+
+    made = 0
+
+    def __init__(self):
+        Eye.made += 1
+        self.tracks = []
+
+    def detect(self, frame, tracks=()):
+        self.tracks.append([one.identity for one in tracks])
+        return Detections.make([[1, 2, 3, 4]])
+
+
+def feed_all(session, stamps, frame=FRAME):
+    for stamp in stamps:
+        session.feed(frame, stamp)
+
+
+def test_elapsed_is_in_nominal_periods():
+    session = TrafficSession(Steps())
+    regular = [k * PERIOD_NS for k in range(12)]
+    feed_all(session, [*regular, regular[-1] + 3 * PERIOD_NS])
+    assert session.tracker.elapsed == pytest.approx([1.0] * 12 + [3.0])
+    assert session.tracker.frame_period == pytest.approx(0.04)
+
+
+def test_a_given_rate_counts_at_once():
+    session = TrafficSession(Steps(), frame_rate=50.0)
+    feed_all(session, [0, PERIOD_NS])
+    assert session.tracker.elapsed == pytest.approx([1.0, 2.0])
+    assert session.tracker.frame_period == pytest.approx(0.02)
+
+
+def test_the_detector_is_given_the_tracks_of_the_image_before():
+    session = TrafficSession(Steps(), Eye)
+    feed_all(session, [0, PERIOD_NS, 2 * PERIOD_NS])
+    assert session.detector.tracks == [[], [1], [2]]
+    assert [len(found) for found in session.tracker.seen] == [1, 1, 1]
+
+
+def test_detections_from_outside_go_before_the_detector():
+    session = TrafficSession(Steps(), Eye)
+    session.feed(FRAME, 0, Detections.none())
+    assert session.detector.tracks == []
+    assert len(session.tracker.seen[0]) == 0
+    assert TrafficSession(Steps()).detector is None
+
+
+def test_one_odd_image_is_rejected_and_nothing_is_forgotten():
+    session = TrafficSession(Steps())
+    feed_all(session, [0, PERIOD_NS])
+    with pytest.raises(StrayImageError):
+        session.feed(np.zeros((10, 10, 3), np.uint8), 2 * PERIOD_NS)
+    with pytest.raises(StrayImageError):
+        session.feed(FRAME, 3 * PERIOD_NS - 10**12)
+    session.feed(FRAME, 4 * PERIOD_NS)
+    assert session.tracker.resets == 0
+    assert session.restarts == 0
+
+
+def test_a_size_that_stays_begins_anew():
+    session = TrafficSession(Steps(), Eye)
+    feed_all(session, [0, PERIOD_NS])
+    first, other = session.detector, np.zeros((10, 20, 3), np.uint8)
+    with pytest.raises(StrayImageError):
+        session.feed(other, 2 * PERIOD_NS)
+    session.feed(other, 3 * PERIOD_NS)
+    assert (session.tracker.resets, session.restarts) == (1, 1)
+    assert session.detector is not first
+    assert session.detector.tracks == [[]]
+    assert "20x10" in session.events[0]
+
+
+@pytest.mark.parametrize(("resets", "expected"), [(True, 1), (False, 0)])
+def test_time_that_goes_back_and_stays_there_begins_anew(resets, expected):
+    session = TrafficSession(Steps(), reset_on_time_jump=resets)
+    late = 10**12
+    feed_all(session, [late, late + PERIOD_NS])
+    with pytest.raises(StrayImageError):
+        session.feed(FRAME, 0)
+    session.feed(FRAME, PERIOD_NS)
+    assert session.tracker.resets == expected
+    assert "time jumped back" in session.events
+
+
+def test_a_stamp_that_was_ahead_does_not_end_anything():
+    session = TrafficSession(Steps())
+    feed_all(session, [k * PERIOD_NS for k in range(12)])
+    session.feed(FRAME, 12 * PERIOD_NS + 4_000_000_000)
+    session.feed(FRAME, 13 * PERIOD_NS)
+    session.feed(FRAME, 14 * PERIOD_NS)
+    assert session.tracker.resets == 0
+    assert session.tracker.elapsed[-2:] == pytest.approx([2.0, 1.0])
+
+
+def test_a_frame_that_is_none_is_refused():
+    with pytest.raises(InputError, match="a frame must be"):
+        TrafficSession(Steps()).feed(np.zeros((4, 4), np.uint8), 0)
