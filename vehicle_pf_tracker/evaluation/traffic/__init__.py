@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Many vehicles offline: files of detections and tracks, runs and their pictures."""
+"""Many vehicles offline: files of detections and tracks, runs, scores and baselines."""

@@ -1,0 +1,178 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The client of the traffic baselines and its worker."""
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.baselines.client import DEFAULT, VARIABLE
+from vehicle_pf_tracker.evaluation.traffic import client, worker
+from vehicle_pf_tracker.evaluation.traffic.client import TRAFFIC_BASELINES, TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
+
+PYTHON = Path(sys.executable)
+FRAMES = 30
+
+
+def environment():
+    """The interpreter that `make baselines` builds, if it has what is needed."""
+    python = Path(os.environ.get(VARIABLE) or DEFAULT)
+    probe = [str(python), "-c", "import trackers, trackeval"]
+    if not python.is_file() or subprocess.run(probe, capture_output=True, check=False).returncode:
+        pytest.skip("needs TrackEval and trackers: `make baselines`")
+    return python
+
+
+@pytest.fixture(scope="module")
+def real():
+    with TrafficWorker(environment()) as started:
+        yield started
+
+
+def lanes():
+    """Rows of two vehicles side by side: frame, identity, left, top, width, height."""
+    return np.array(
+        [[f, i, 2.0 * f, 40.0 * i, 20, 12] for f in range(1, FRAMES + 1) for i in (1, 2)],
+        dtype=float,
+    )
+
+
+def scene(truth):
+    return TrafficSequence(
+        folder=Path("lanes"),
+        frame_count=FRAMES,
+        frame_rate=30,
+        size=(200, 120),
+        truth=truth,
+        hidden=np.zeros(len(truth), dtype=bool),
+        ignored=np.empty((0, 5)),
+        detections={},
+    )
+
+
+def test_perfect_tracks_have_perfect_scores(real):
+    scores = real.score(scene(lanes()), lanes())
+    assert [scores[name] for name in ("HOTA", "DetA", "AssA", "IDF1", "MOTA")] == [100] * 5
+    assert [scores[name] for name in ("IDSW", "Frag", "FP", "FN")] == [0] * 4
+
+
+def test_an_exchange_of_identities_half_way_is_scored_as_one(real):
+    tracks = lanes()
+    late = tracks[:, 0] > FRAMES / 2
+    tracks[late, 1] = 3 - tracks[late, 1]
+    scores = real.score(scene(lanes()), tracks)
+    assert scores["IDSW"] == 2
+    assert scores["DetA"] == 100
+    assert scores["AssA"] == pytest.approx(100 / 3)  # 15 of 15 + 15 + 15 for each pair
+    assert scores["IDF1"] == pytest.approx(50)
+    assert scores["MOTA"] == pytest.approx(100 * (1 - 2 / 60))
+
+
+def test_missed_frames_are_misses_and_a_fragmentation(real):
+    tracks = lanes()
+    gone = (tracks[:, 1] == 1) & (tracks[:, 0] > 10) & (tracks[:, 0] <= 16)
+    scores = real.score(scene(lanes()), tracks[~gone])
+    assert (scores["FN"], scores["Frag"], scores["IDSW"]) == (6, 1, 0)
+
+
+def test_no_tracks_score_nothing(real):
+    scores = real.score(scene(lanes()), np.empty((0, 6)))
+    assert (scores["HOTA"], scores["MOTA"], scores["FN"]) == (0, 0, 60)
+
+
+@pytest.mark.parametrize("name", TRAFFIC_BASELINES)
+def test_every_baseline_follows_what_is_easy(real, name):
+    detections = np.column_stack([lanes()[:, [0, 2, 3, 4, 5]], np.full(2 * FRAMES, 0.9)])
+    tracks, seconds = real.track(name, scene(lanes()), detections)
+    assert seconds > 0
+    scores = real.score(scene(lanes()), tracks)
+    assert scores["IDSW"] == 0
+    assert scores["MOTA"] > 85  # some need three frames before they believe
+
+
+@pytest.mark.parametrize("name", ["bytetrack", "ocsort", "cbiou"])
+def test_low_scores_are_lost_on_default_thresholds_only(real, name):
+    detections = np.column_stack([lanes()[:, [0, 2, 3, 4, 5]], np.full(2 * FRAMES, 0.4)])
+    assert len(real.track(name, scene(lanes()), detections)[0]) == 0
+    assert len(real.track(f"{name}-low", scene(lanes()), detections)[0]) > FRAMES
+
+
+def test_an_unknown_baseline_is_told(real):
+    with pytest.raises(InputError, match="unknown baseline 'deepsort'; the baselines are sort"):
+        real.track("deepsort", scene(lanes()), np.empty((0, 6)))
+
+
+ECHO = """
+import json, sys
+print(json.dumps({"trackers": "0", "trackeval": "0"}), flush=True)
+for line in sys.stdin:
+    print(json.dumps(json.loads(line)), flush=True)
+"""
+FAILS = 'print("{}", flush=True); input(); print(\'{"error": "ValueError: too much"}\', flush=True)'
+DIES = 'import sys; print("{}", flush=True); input(); sys.exit("out of memory")'
+
+
+def start(monkeypatch, tmp_path, text):
+    script = tmp_path / "worker.py"
+    script.write_text(text)
+    monkeypatch.setattr(client, "_WORKER", script)
+    return TrafficWorker(PYTHON)
+
+
+def test_only_what_is_to_be_scored_is_sent(monkeypatch, tmp_path):
+    truth = lanes()
+    with start(monkeypatch, tmp_path, ECHO) as started:
+        sent = started.score(scene(truth), np.column_stack([truth, np.ones(len(truth))]))["score"]
+    assert sent["frames"] == FRAMES
+    assert sent["truth"] == sent["tracks"] == truth.tolist()
+
+
+def test_a_failure_of_the_libraries_is_told(monkeypatch, tmp_path):
+    with (
+        start(monkeypatch, tmp_path, FAILS) as started,
+        pytest.raises(InputError, match="the traffic baselines cannot go on: ValueError: too much"),
+    ):
+        started.score(scene(lanes()), lanes())
+
+
+def test_a_dead_worker_is_told_with_its_last_words(monkeypatch, tmp_path):
+    with (
+        start(monkeypatch, tmp_path, DIES) as started,
+        pytest.raises(InputError, match="ended: out of memory; `make baselines` builds"),
+    ):
+        started.score(scene(lanes()), lanes())
+
+
+def test_an_environment_without_the_libraries_is_told():
+    with pytest.raises(InputError, match=r"PackageNotFoundError.*trackers"):
+        TrafficWorker(PYTHON)
+
+
+def test_the_worker_needs_nothing_of_this_package():
+    named: list[str] = []
+    for node in ast.walk(ast.parse(Path(worker.__file__).read_text())):
+        if isinstance(node, ast.Import):
+            named += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            named.append(node.module or "")
+    others = {name.partition(".")[0] for name in named} - set(sys.stdlib_module_names)
+    assert others == {"numpy", "trackers", "trackeval", "supervision"}
