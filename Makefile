@@ -58,7 +58,7 @@ test-noble: .venv-noble/installed
 colcon: .venv/colcon
 	PATH="$(CURDIR)/$(BIN):$$PATH" .ci/colcon
 
-# OpenCV's trackers to compare with: two OpenCV packages in one environment overwrite each other.
+# Trackers to compare with, and TrackEval: two OpenCV packages in one environment overwrite each other.
 baselines: .venv-baselines/locked
 
 peers:

@@ -57,7 +57,13 @@ NOBLE = (  # what Ubuntu 24.04 has from apt; its Python is 3.12
     "rich==13.7.1",
     "pytest==7.4.4",
 )
-BASELINES = ("opencv-contrib-python-headless<5",)  # the trackers compared with
+BASELINES = (  # the trackers compared with, and the scores of many vehicles
+    "opencv-contrib-python-headless<5",
+    "trackers==2.6.1",
+    "trackeval==1.3.0",
+)
+# The last two ask for it, and it would overwrite the contrib package, which has all that it has.
+OVERWRITES_CONTRIB = "opencv-python=="
 # The ROS wheels unpack metadata of their own besides; only what pip installed has a WHEEL file.
 INSTALLED = """
 from importlib.metadata import distributions
@@ -81,7 +87,8 @@ def main() -> None:
     locks: dict[str, dict[str, set[str]]] = {}
     for interpreter in args.interpreters:
         version = run(interpreter, "-c", "import sys; print('%d.%d' % sys.version_info[:2])")[0]
-        pins = {"baselines": resolve(interpreter, BASELINES)}
+        baselines = resolve(interpreter, BASELINES)
+        pins = {"baselines": {pin for pin in baselines if not pin.startswith(OVERWRITES_CONTRIB)}}
         if args.only is None:
             pins |= own_pins(interpreter, version)
         for lock, found in pins.items():
