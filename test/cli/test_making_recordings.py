@@ -85,6 +85,41 @@ def test_a_scene_can_be_kept_as_jpeg(tmp_path):
     assert np.abs(read.astype(int) - rendered.astype(int)).mean() < 4
 
 
+def test_a_scene_becomes_a_video_with_its_truth_beside_it(tmp_path, capsys):
+    call("synth", "bar", tmp_path / "clip.mp4", *SHORT)
+    scene = make_scene("bar", settings={"speed": 40.0, "width": 0.0})
+    rendered = list(scene.frames())
+    out = capsys.readouterr().out
+    first = rendered[0].truth.box
+    assert f"--target {first.x:.0f},{first.y:.0f},{first.width:.0f},{first.height:.0f}" in out
+    call("import", tmp_path / "clip.mp4", tmp_path / "bag", "--truth", tmp_path / "clip.csv")
+    recording = Recording(tmp_path / "bag")
+    for read, made in zip(recording.truth(), rendered, strict=True):
+        assert np.allclose(read.box.corners, made.truth.box.corners, rtol=0, atol=1e-3)
+        assert read.occlusion == made.truth.occlusion
+    frames = [image.frame.astype(int) for image in recording.frames()]
+    assert len(frames) == len(rendered)
+    assert all(np.abs(f - m.frame).mean() < 6 for f, m in zip(frames, rendered, strict=True))
+
+
+@pytest.mark.parametrize("there", ["clip.mp4", "clip.csv"])
+def test_a_video_replaces_nothing_unless_asked(tmp_path, capsys, there):
+    (tmp_path / there).write_text("mine")
+    words = ["synth", "bar", str(tmp_path / "clip.mp4"), *SHORT]
+    assert main(words) == 1
+    assert f"{there} exists; give --overwrite to replace it" in capsys.readouterr().err
+    assert (tmp_path / there).read_text() == "mine"
+    assert [path.name for path in tmp_path.iterdir()] == [there]
+    call(*words, "--overwrite")
+    assert cv2.VideoCapture(str(tmp_path / "clip.mp4")).get(cv2.CAP_PROP_FRAME_COUNT) > 0
+
+
+def test_a_format_is_not_for_videos(tmp_path, capsys):
+    words = ["synth", "bar", str(tmp_path / "clip.mp4"), "--format", "raw"]
+    assert main(words) == 2
+    assert "--format is for recordings" in capsys.readouterr().err
+
+
 def test_the_list_names_scenes_and_settings(capsys):
     call("synth", "--list")
     out = capsys.readouterr().out

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`synth`: render a synthetic scene to a recording with exact truth."""
+"""`synth`: render a synthetic scene to a recording or a video, with exact truth."""
 
 from __future__ import annotations
 
@@ -20,9 +20,18 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import UsageError
+from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.evaluation.output_files import write_text
+from vehicle_pf_tracker.evaluation.video_writer import (
+    NO_ENCODER,
+    SUFFIX,
+    has_encoder,
+    video_writer,
+)
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.importing import FORMATS, jpeg
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
@@ -34,7 +43,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of this verb."""
     add = parser.add_argument
     add("scene", nargs="?", metavar="SCENE", help=f"one of: {', '.join(SCENES)}")
-    add("out", nargs="?", type=Path, metavar="OUT", help="rosbag2 folder to write")
+    add(
+        "out", nargs="?", type=Path, metavar="OUT",
+        help="rosbag2 folder to write; or a video, NAME.mp4, with its truth in NAME.csv",
+    )  # fmt: skip
     add("--list", action="store_true", help="list the scenes and their settings")
     add("--seed", type=int, default=0, help="changes textures, noise and traffic (default: 0)")
     add(
@@ -42,25 +54,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="set a setting of the scene; repeatable",
     )  # fmt: skip
     add(
-        "--format", choices=FORMATS, default="raw",
-        help="pixels, or JPEG files (default: raw)",
+        "--format", choices=FORMATS,
+        help="pixels, or JPEG files, in a recording (default: raw)",
     )  # fmt: skip
-    add("--overwrite", action="store_true", help="overwrite an existing recording")
+    add("--overwrite", action="store_true", help="overwrite an existing recording or video")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Render the scene, and print a summary of the recording."""
+    """Render the scene, and print a summary."""
     if args.list:
         print("\n".join(_listing()))
         return 0
     if args.scene is None or args.out is None:
         raise UsageError("synth needs SCENE and OUT; `synth --list` shows the scenes")
     scene = make_scene(args.scene, seed=args.seed, settings=args.settings)
-    record_scene(scene, args.out, args.format, overwrite=args.overwrite)
-    print(
+    facts = (
         f"{args.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
-        f"at {scene.frame_rate:g} frames/s, all with truth"
+        f"at {scene.frame_rate:g} frames/s"
     )
+    if args.out.suffix != SUFFIX:
+        record_scene(scene, args.out, args.format or "raw", overwrite=args.overwrite)
+        print(f"{facts}, all with truth")
+        return 0
+    if args.format:
+        raise UsageError("--format is for recordings; a video is H.264 or MPEG-4")
+    truth, box = _film(scene, args.out, overwrite=args.overwrite)
+    if not has_encoder():
+        tell_notices([NO_ENCODER])
+    print(f"{facts}; the truth is in {truth}, and begins with --target {_words(box)}")
     return 0
 
 
@@ -77,6 +98,34 @@ def record_scene(scene: Scene, out: Path, form: str = "raw", *, overwrite: bool 
             _write_image(writer, rendered.truth.stamp_ns, rendered.frame, form)
             writer.write_truth(rendered.truth)
             progress(number, scene.frame_count)
+
+
+def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
+    """Render `scene` into a video, and its truth into a table; return the table and first box."""
+    table = out.with_suffix(".csv")
+    for path in (out, table):
+        if path.exists() and not overwrite:
+            raise InputError(f"{path} exists; give --overwrite to replace it")
+    lines, boxes = ["frame,x,y,w,h,occ"], []
+    size = scene.width, scene.height
+    with (
+        video_writer(out, size, scene.frame_rate) as writer,
+        counting("rendered") as progress,
+    ):
+        for number, rendered in enumerate(scene.frames(), start=1):
+            writer.write(rendered.frame)
+            box = rendered.truth.box
+            boxes.append(box)
+            cells = (f"{value:.3f}" for value in (box.x, box.y, box.width, box.height))
+            lines.append(f"{number},{','.join(cells)},{rendered.truth.occlusion.value}")
+            progress(number, scene.frame_count)
+        # Within the block, so that there is never a video without its truth.
+        write_text(table, "\n".join(lines) + "\n")
+    return table, boxes[0]
+
+
+def _words(box: Box) -> str:
+    return ",".join(f"{value:.0f}" for value in (box.x, box.y, box.width, box.height))
 
 
 def _listing() -> Iterator[str]:
