@@ -12,8 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Every command line on a page is one that the command takes, and the Python example runs."""
+"""Every command on a page is one that its program takes, and the README's are run."""
 
+import importlib.util
 import re
 import shlex
 from pathlib import Path
@@ -23,50 +24,163 @@ import numpy as np
 import pytest
 
 import vehicle_pf_tracker
-from vehicle_pf_tracker.cli.main import _parser
+from vehicle_pf_tracker.cli.main import _parser, main
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.scenes.catalogue import make_scene
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-PROGRAM = "    vehicle-pf-tracker "
-LINES = [
-    line.partition("#")[0].strip()
-    for page in PAGES
-    for line in page.read_text().splitlines()
-    if line.startswith(PROGRAM) and not {"…", "$"} & set(line)
-]
+README = ROOT / "README.md"
+PAGES = [README, *sorted((ROOT / "docs").glob("*.md"))]
+PROGRAM = "vehicle-pf-tracker"
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.DOTALL | re.MULTILINE)
+INLINE = re.compile(r"(?<!`)`([^`]+)`(?!`)")
 
 
-@pytest.mark.parametrize("line", LINES)
-def test_the_command_is_understood(line):
-    words = [word for word in shlex.split(line)[1:] if word != "&"]
+def code_lines(text):
+    """Yield the lines of shell code: indented or fenced, continued ones joined."""
+    fenced = [code for language, code in FENCE.findall(text) if language in {"", "sh"}]
+    indented = re.findall(r"^ {4,}\S.*$", FENCE.sub("", text), re.MULTILINE)
+    for line in "\n".join([*fenced, *indented]).replace("\\\n", " ").splitlines():
+        yield re.sub(r"\s#\s.*", "", line).strip().removesuffix("&").strip()
+
+
+def mentions(text):
+    """Yield the pieces of code within sentences and tables."""
+    for code in INLINE.findall(FENCE.sub("", text)):
+        yield " ".join(code.split())
+
+
+def words_of(line):
+    """Return a command's words; a shell's variables stand for a word, an ellipsis for none."""
+    line = re.sub(r"\$\([^)]*\)|\$\w+", "VALUE", line)
+    return [word for word in shlex.split(line) if word != "…"]
+
+
+def commands(program, lines):
+    found = {
+        (page.name, line): words_of(line)
+        for page in PAGES
+        for line in lines(page.read_text(encoding="utf-8"))
+        if line.startswith(f"{program} ")
+    }
+    return [pytest.param(words[1:], id=f"{page}: {line}") for (page, line), words in found.items()]
+
+
+COMMANDS = commands(PROGRAM, code_lines)
+PYTHON = commands("python", code_lines) + commands("python", mentions)
+TARGETS = commands("make", code_lines) + commands("make", mentions)
+LAUNCHES = commands("ros2 launch vehicle_pf_tracker", code_lines)
+
+
+@pytest.mark.parametrize("words", COMMANDS)
+def test_the_command_is_understood(words):
     assert _parser(words).parse_args(words).command[1:] == words
 
 
+@pytest.mark.parametrize("words", commands(PROGRAM, mentions))
+def test_the_command_in_a_sentence_is_understood_as_far_as_it_goes(words, capsys):
+    try:
+        _parser(words).parse_args(words)
+    except SystemExit:
+        message = capsys.readouterr().err.splitlines()[-1]
+        assert "the following arguments are required" in message or "expected one" in message
+
+
 def test_there_are_such_commands():
-    used = {line.split()[1] for line in LINES}
-    assert used >= {"import", "evaluate", "tune", "replay", "run"}
+    used = {param.values[0][0] for param in COMMANDS}
+    assert used >= {"synth", "import", "evaluate", "tune", "replay", "run", "road"}
+    assert len(PYTHON) > 5
+    assert len(TARGETS) > 5
+    assert len(LAUNCHES) > 1
 
 
-def test_the_readme_example_follows_a_vehicle(tmp_path, monkeypatch, capsys):
-    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
-    road = np.random.default_rng(0).integers(90, 120, (240, 320, 3), np.uint8)
-    writer = cv2.VideoWriter(
-        str(tmp_path / "traffic.mp4"), cv2.VideoWriter.fourcc(*"mp4v"), 25.0, (320, 240)
-    )
-    for index in range(8):
-        image = cv2.GaussianBlur(road, (0, 0), 2)
-        cv2.rectangle(image, (15 + 3 * index, 180), (57 + 3 * index, 203), (40, 40, 200), -1)
-        cv2.rectangle(image, (22 + 3 * index, 184), (40 + 3 * index, 192), (240, 240, 240), -1)
-        writer.write(image)
-    writer.release()
-    monkeypatch.chdir(tmp_path)
+@pytest.mark.parametrize("words", PYTHON)
+def test_the_python_program_is_there_and_has_the_options(words):
+    sources = python_sources(words)
+    assert sources
+    text = "".join(path.read_text(encoding="utf-8") for path in sources)
+    for option in (word for word in words if word.startswith("--")):
+        assert re.search(rf"\b{option[2:]}\b", text), option
+
+
+def python_sources(words):
+    """Return the files of a script, a module, or a package that can be run."""
+    if words[0] != "-m":
+        return [ROOT / words[0]]
+    if words[1] == "pytest":
+        return [Path(pytest.__file__).parents[1] / "_pytest" / "main.py"]
+    spec = importlib.util.find_spec(words[1])
+    if not spec.submodule_search_locations:
+        return [Path(spec.origin)]
+    files = list(Path(spec.origin).parent.glob("*.py"))
+    return files if any(file.name == "__main__.py" for file in files) else []
+
+
+@pytest.mark.parametrize("words", TARGETS)
+def test_make_knows_the_target(words):
+    rules = re.findall(r"^([\w -]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    targets = {target for rule in rules for target in rule.split()}
+    assert {word for word in words if re.fullmatch(r"[a-z][a-z-]*", word)} <= targets
+
+
+@pytest.mark.parametrize("words", LAUNCHES)
+def test_the_launch_file_declares_what_is_given(words):
+    file, *arguments = words[2:]
+    text = (ROOT / "launch" / file).read_text()
+    for argument in arguments:
+        name = argument.partition(":=")[0]
+        assert re.search(rf"""["']{name}["']""", text), name
+
+
+@pytest.fixture(scope="module")
+def readme_commands(tmp_path_factory):
+    """Run the README's commands in order, but those that need ROS or a minute; give the folder."""
+    folder = tmp_path_factory.mktemp("readme")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for line in code_lines(README.read_text(encoding="utf-8")):
+            if line.startswith(PROGRAM):
+                words = words_of(line)[1:]
+                if words[0] not in {"replay", "evaluate"}:
+                    assert main(words) == 0, line
+    return folder
+
+
+def test_the_readme_commands_write_what_it_says(readme_commands):
+    for name in ("traffic.mp4", "traffic.csv", "out/summary.png", "out/estimates.csv"):
+        assert (readme_commands / name).is_file()
+    video = cv2.VideoCapture(str(readme_commands / "seen.mp4"))
+    assert video.get(cv2.CAP_PROP_FRAME_COUNT) == make_scene("highway").frame_count
+    assert (readme_commands / "rec" / "metadata.yaml").is_file()
+
+
+@pytest.mark.slow
+def test_the_readme_evaluation_writes_its_report(readme_commands, monkeypatch):
+    monkeypatch.chdir(readme_commands)
+    (line,) = [
+        line
+        for line in code_lines(README.read_text(encoding="utf-8"))
+        if line.startswith(f"{PROGRAM} evaluate")
+    ]
+    assert main(words_of(line)[1:]) == 0
+    assert (readme_commands / "results" / "report.html").is_file()
+
+
+def test_the_readme_example_follows_the_vehicle_through_both_occlusions(
+    readme_commands, monkeypatch, capsys
+):
+    (code,) = re.findall(r"```python\n(.*?)```", README.read_text(), re.DOTALL)
+    monkeypatch.chdir(readme_commands)
+    capsys.readouterr()
     exec(compile(code, "README.md", "exec"), {})
     lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == 8
-    assert all(line.startswith("TRACKING") for line in lines)
-    last = float(lines[-1].split("(")[1].split(",")[0])
-    assert last == pytest.approx(36.5 + 21, abs=3)
+    truths = list(make_scene("highway").truths())
+    assert len(lines) == len(truths)
+    modes = [line.split()[0] for line in lines]
+    spans = [mode for mode, before in zip(modes, ["", *modes], strict=False) if mode != before]
+    assert spans == ["TRACKING", "OCCLUDED", "TRACKING", "OCCLUDED", "TRACKING"]
+    last = [float(number) for number in re.findall(r"\(([\d.]+), ([\d.]+)\)", lines[-1])[0]]
+    assert np.hypot(*np.subtract(last, truths[-1].box.centre)) < 5
 
 
 def test_public_names_are_those_listed():

@@ -51,6 +51,39 @@ def test_every_page_can_be_found():
     assert {page for page in PAGES if page.name != "README.md"} <= linked
 
 
+def rows_of(page: str, first: str) -> list[list[str]]:
+    """Cells of the table rows whose first cell begins with `first`, without emphasis."""
+    text = (ROOT / page).read_text(encoding="utf-8").replace("**", "")
+    rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in row] for row in rows if row[0].startswith(first)]
+
+
+def recovered(row: list[str]) -> str:
+    """Sum of cells like ``3 of 5``."""
+    counts = [re.fullmatch(r"(\d+) of (\d+)", cell) for cell in row[1:]]
+    good, judged = (sum(int(count[part]) for count in counts) for part in (1, 2))
+    return f"{good} of {judged}"
+
+
+def test_the_readme_gives_the_results_of_the_pages():
+    claimed = {row[0]: row[1:] for row in rows_of("README.md", "") if len(row) == 4}
+    (all_sequences,) = rows_of("docs/fusion.md", "all sequences")
+    fitted = claimed["`fusion`, fitted on the ten *other* cameras"]
+    assert [f"0{value}" for value in fitted[:2]] == all_sequences[1:3]
+    assert fitted[2] == all_sequences[3]
+    named = {"`fusion` as it ships": "`fusion`", "OpenCV's CSRT": "`baseline:csrt`"}
+    for tracker in ("`fusion` as it ships", "OpenCV's CSRT", "`apf`", "`pf`"):
+        (name,) = [name for name in claimed if name.startswith(tracker)]
+        on_target, _, occlusions = rows_of("docs/sequences.md", named.get(tracker, tracker))
+        assert f"0{claimed[name][0]}" == on_target[-1]
+        assert claimed[name][2] == recovered(occlusions)
+    assert claimed["`fusion` as it ships"][1] == all_sequences[5].removeprefix("0")
+    text = (ROOT / "docs/fusion.md").read_text(encoding="utf-8")
+    csrt, nano = claimed["OpenCV's CSRT"], claimed["NanoTrack v2 (a neural network)"]
+    assert f"CSRT has {csrt[0]} / {csrt[1]} on the same files" in text
+    assert f"NanoTrack v2 {nano[0]} / {nano[1]}" in text
+
+
 def interpretations() -> dict[int, str]:
     """Switches named for each interpretation of the papers, by its number."""
     page = (ROOT / "docs" / "interpretations.md").read_text(encoding="utf-8")
