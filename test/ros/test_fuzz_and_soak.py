@@ -50,3 +50,9 @@ def test_a_short_soak(start_process):
     told = run(start_process, "soak.py", "--minutes", "0.05")
     assert "good images without an answer: 0" in told
     assert "MB a minute" in told
+
+
+def test_a_few_service_requests(start_process):
+    told = run(start_process, "service_requests.py", "--quick")
+    assert "| burst | 1 | 1000 | 30 | 30 |" in told
+    assert "| one by one | 1 | 10 | 50 | 50 |" in told
