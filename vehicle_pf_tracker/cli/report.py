@@ -21,6 +21,9 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import tell_notices
 
+FIGURE_FORMATS = ("pdf", "svg", "png")
+"""Those of `paper_figures.FORMATS`, which loads matplotlib."""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of this verb."""
@@ -42,9 +45,25 @@ def add_report_options(parser: argparse.ArgumentParser) -> None:
         help="write the recordings with truth and all estimates to DIR/estimates, for Foxglove",
     )  # fmt: skip
     add(
+        "--figures", type=_formats, default=(), metavar="FORMATS",
+        help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
+        "pdf, svg or png, several with commas",
+    )  # fmt: skip
+    add(
         "--trajectories", action="store_true",
         help="write truth and estimates as TUM files to DIR/trajectories, for evo",
     )  # fmt: skip
+
+
+def _formats(text: str) -> tuple[str, ...]:
+    """Read ``pdf,svg,png``."""
+    formats = tuple(dict.fromkeys(text.split(",")))
+    for name in formats:
+        if name not in FIGURE_FORMATS:
+            raise argparse.ArgumentTypeError(
+                f"{name!r} is not a format of figures; choose from {', '.join(FIGURE_FORMATS)}"
+            )
+    return formats
 
 
 def run(args: argparse.Namespace) -> int:
@@ -57,6 +76,8 @@ def write(folder: Path, args: argparse.Namespace) -> None:
     """Write the report of `folder` as the options of `add_report_options` say."""
     from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
 
-    options = ReportOptions(args.images, args.video, args.recordings, args.trajectories)
+    options = ReportOptions(
+        args.images, args.video, args.recordings, args.trajectories, args.figures
+    )
     page, *_ = write_report(folder, options, lambda sentence: tell_notices([sentence]))
     print(f"the report is {page}")

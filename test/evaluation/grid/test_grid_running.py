@@ -93,6 +93,13 @@ def test_what_was_interrupted_goes_on_and_comes_out_the_same(plan, tmp_path, out
     assert results(out) == results(tmp_path / "whole")
 
 
+def test_progress_names_recording_system_and_seed(plan, out):
+    told = []
+    complete(plan, out, here, told.append)
+    running = {name for progress in told for name in progress.running}
+    assert {"bridge pf seed 0", "bridge pf seed 1", "free ms seed 0"} <= running
+
+
 def test_what_is_there_is_not_run_again(plan, out):
     complete(plan, out, here, silent)
     before = {path: path.stat().st_mtime_ns for path in out.glob("cells/**/*")}
@@ -131,7 +138,7 @@ def test_a_damaged_cell_is_run_again_and_said(plan, out, harm):
     assert "is damaged: " in EvaluationFolder(out).cell("free", "pf", 1).reason
     notices = []
     assert complete(plan, out, here, silent, notices.append) == 1
-    assert notices == ["stored results that were changed or damaged are run again: free pf 1"]
+    assert notices == ["stored results that were changed or damaged are run again: free pf seed 1"]
     assert results(out) == whole
 
 

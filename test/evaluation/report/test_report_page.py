@@ -14,6 +14,7 @@
 
 """The page, read as a browser would."""
 
+import re
 import shutil
 from collections import Counter
 from html.parser import HTMLParser
@@ -196,3 +197,17 @@ def test_a_folder_without_any_result_still_has_a_report(made_evaluation, tmp_pat
     page = Page(write_report(folder)[0].read_text())
     assert "14 of 14 cells have no result" in page.text("li")
     assert "No cell of this recording has a result." in page.text("p")
+
+
+def test_the_summary_fits_a_screen_of_1280_px(text, tmp_path, browse):
+    measuring = """<script>
+      const frame = document.querySelector("#summary .scroll");
+      document.body.dataset.widths = [frame.scrollWidth, frame.clientWidth, innerWidth];
+    </script></body>"""
+    long_names = text.replace("apf", "baseline:nanotrack")
+    copy = tmp_path / "report.html"
+    copy.write_text(long_names.replace("</body>", measuring))
+    widths = re.search(r'data-widths="(\d+),(\d+),(\d+)"', browse(copy.as_uri()))
+    needed, visible, screen = map(int, widths.groups())
+    assert screen == 1280
+    assert needed <= visible

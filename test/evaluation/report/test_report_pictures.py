@@ -26,7 +26,8 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.report.figures import LEAST_ERROR, error_panel, stretches
+from vehicle_pf_tracker.evaluation.report.figure_data import stretches
+from vehicle_pf_tracker.evaluation.report.figures import LEAST_ERROR, error_panel
 from vehicle_pf_tracker.evaluation.report.filmstrip import (
     Shot,
     longest_occlusions,
@@ -35,7 +36,7 @@ from vehicle_pf_tracker.evaluation.report.filmstrip import (
 )
 from vehicle_pf_tracker.evaluation.report.overlay import Crop, Mark, colour_of, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
-from vehicle_pf_tracker.evaluation.report.svg import SvgMaker, ink
+from vehicle_pf_tracker.evaluation.report.svg import PAGE, SvgMaker
 
 BOX = Box(100, 60, 20, 10)
 
@@ -135,7 +136,7 @@ def test_no_two_figures_of_a_page_share_an_id():
     maker, ids = SvgMaker(), []
     for _ in range(2):
         figure = Figure()
-        figure.add_subplot().plot([1, 2], [3, 4], color=ink("s1"))
+        figure.add_subplot().plot([1, 2], [3, 4], color=PAGE["s1"])
         svg = maker.make(figure, 'a "b" & c')
         assert 'aria-label="a &quot;b&quot; &amp; c"' in svg
         assert "var(--s1)" in svg and "#0a0a01" not in svg

@@ -16,6 +16,7 @@ import csv
 import io
 import json
 import statistics
+from dataclasses import replace
 
 import pytest
 from evaluation_samples import ALONE, HIDDEN, SEEDS, VARIANTS
@@ -125,6 +126,48 @@ def test_latex_escapes_what_it_must(aggregates):
     assert text.count(r"\\") == 1 + len(VARIANTS)
     assert r"\begin{tabular}{lrrrrrr}" in text
     assert "_" not in text.replace(r"\_", "") and "–" not in text
+
+
+def printed(text, system):
+    """Return the cells of a system in the LaTeX table."""
+    (line,) = [line for line in text.splitlines() if line.startswith(f"{system} & ")]
+    return line.removesuffix(r" \\").split(" & ")[1:]
+
+
+def with_means(aggregates, key, means):
+    """Return `aggregates` with these means of a metric by system."""
+    overall = {
+        label: {**found, key: found[key] and replace(found[key], mean=means[label])}
+        for label, found in aggregates.overall.items()
+    }
+    return replace(aggregates, overall=overall)
+
+
+@pytest.mark.parametrize(
+    ("means", "cells"),
+    [
+        ((9.04, 3.2, 5.0), ("9.0", r"\textbf{3.2}", r"\underline{5.0}")),
+        ((3.21, 3.2, 5.0), (r"\textbf{3.2}", r"\textbf{3.2}", "5.0")),
+        ((5.04, 3.2, 5.0), (r"\underline{5.0}", r"\textbf{3.2}", r"\underline{5.0}")),
+        ((3.0, 3.0, 3.0), ("3.0", "3.0", "3.0")),
+    ],
+)
+def test_latex_marks_the_best_and_the_second_as_printed(aggregates, means, cells):
+    changed = with_means(aggregates, "rmse_px", dict(zip(VARIANTS, means, strict=True)))
+    text = writing.summary_tex(changed)
+    assert tuple(printed(text, system)[3] for system in VARIANTS) == cells
+
+
+def test_latex_marks_the_largest_share(aggregates):
+    changed = with_means(aggregates, "success_auc", {"pf": 0.2, "ms": 0.4, "apf": 0.3})
+    shares = [printed(writing.summary_tex(changed), system)[0] for system in VARIANTS]
+    assert shares == ["0.200", r"\textbf{0.400}", r"\underline{0.300}"]
+
+
+def test_the_title_names_the_folder_once(evaluation, aggregates):
+    assert writing.summary_markdown(evaluation, aggregates).startswith(
+        "# Trackers compared: evaluation\n"
+    )
 
 
 def test_the_typical_run_has_the_median_error(evaluation):

@@ -163,7 +163,7 @@ class GridCell:
     @property
     def label(self) -> str:
         """Name of the cell while it runs."""
-        words = (self.source.name, self.system.label, str(self.seed), self.start.kind)
+        words = (self.source.name, self.system.label, f"seed {self.seed}", self.start.kind)
         return " ".join(word for word in (*words, self.start.name) if word)
 
     def key(self) -> str:

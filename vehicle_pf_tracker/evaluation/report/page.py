@@ -93,7 +93,7 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
     maker = SvgMaker()
     plan = evaluation.folder.plan
     return environment.get_template("report.html").render(
-        title=f"Trackers compared: {evaluation.folder.path.resolve().name}",
+        title=title(evaluation),
         facts=_facts(evaluation),
         findings=findings(evaluation, aggregates),
         slots=slots,
@@ -122,6 +122,11 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         command=shlex.join(map(str, plan.get("command", []))),
         failed=_failed_groups(evaluation.failed),
     )  # fmt: skip
+
+
+def title(evaluation: ScoredEvaluation) -> str:
+    """Return the title of the report."""
+    return f"Trackers compared: {evaluation.folder.path.resolve().name}"
 
 
 def styled(aggregates: Aggregates) -> dict[str, int]:

@@ -22,10 +22,11 @@ import itertools
 import re
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+
+from vehicle_pf_tracker.evaluation.report.look import Look
 
 _INK: Mapping[str, str] = MappingProxyType(
     {
@@ -40,29 +41,9 @@ _INK: Mapping[str, str] = MappingProxyType(
 )
 """Stand-ins for the page's colours: what is drawn in one of them is drawn in ``var(--name)``."""
 
-STYLE: Any = {
-    "svg.fonttype": "none",
-    "svg.hashsalt": "vehicle_pf_tracker",
-    "font.size": 8.0,
-    "axes.edgecolor": _INK["rule"],
-    "axes.labelcolor": _INK["muted"],
-    "axes.linewidth": 0.8,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "text.color": _INK["ink"],
-    "xtick.color": _INK["rule"],
-    "ytick.color": _INK["rule"],
-    "xtick.labelcolor": _INK["muted"],
-    "ytick.labelcolor": _INK["muted"],
-    "grid.color": _INK["rule"],
-    "grid.linewidth": 0.5,
-}
-"""Settings to make figures under; see `matplotlib.rc_context`."""
 
-
-def ink(name: str) -> str:
-    """Return the stand-in for a colour of the page, such as ``ink`` or ``s0``."""
-    return _INK[name]
+PAGE = Look(_INK, 8.0, "none")
+"""Figures of the page, which are recoloured by its scheme."""
 
 
 class SvgMaker:
@@ -75,7 +56,7 @@ class SvgMaker:
         """Return `figure` as an SVG element that is read out as `label`."""
         text = io.StringIO()
         nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-        with rc_context(STYLE):
+        with rc_context(PAGE.settings):
             figure.savefig(text, format="svg", transparent=True, metadata=nothing)
         element = text.getvalue()
         element = element[element.index("<svg") :]

@@ -35,6 +35,7 @@ from vehicle_pf_tracker.evaluation.report.columns import (
     RMSE,
     STEP,
     SUCCESS,
+    Column,
     interval_text,
     mean_and_spread_text,
     mean_text,
@@ -44,7 +45,8 @@ from vehicle_pf_tracker.evaluation.report.exports import (
     write_trajectories,
 )
 from vehicle_pf_tracker.evaluation.report.findings import findings, power
-from vehicle_pf_tracker.evaluation.report.page import make_page, styled
+from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
+from vehicle_pf_tracker.evaluation.report.paper_figures import write_figures
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
 from vehicle_pf_tracker.evaluation.report.video import write_videos
 from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
@@ -60,7 +62,7 @@ _LATEX = str.maketrans(
 
 def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
     """Return the findings, the means, the ranks and each recording as Markdown."""
-    parts = [f"# Evaluation {evaluation.folder.path.resolve().name}\n"]
+    parts = [f"# {title(evaluation)}\n"]
     parts.append("".join(f"- {line}\n" for line in findings(evaluation, aggregates)))
     parts.append("## Means over recordings\n\n" + _metrics(aggregates.overall, spread=False))
     parts.append("## Ranks\n\n" + _ranks(aggregates))
@@ -97,22 +99,41 @@ def summary_csv(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
 
 
 def summary_tex(aggregates: Aggregates) -> str:
-    """Return the main means with their spreads as a LaTeX table, for the package booktabs."""
+    """Return the main means as a LaTeX table: the best bold, the second underlined."""
     lines = [
-        "% Means over recordings, with the 95 % interval of the first metric.",
+        "% Means over recordings, with the 95 % interval of the first metric. The best are bold,",
+        "% the second are underlined. Needs the package booktabs.",
         rf"\begin{{tabular}}{{l{'r' * (len(_PAPER) + 1)}}}",
         r"\toprule",
         " & ".join(["system", SUCCESS.title, "interval",
                     *(column.title.translate(_LATEX) for column in _PAPER[1:])]) + r" \\",
         r"\midrule",
     ]  # fmt: skip
+    marks = {column.key: _marks(aggregates, column) for column in _PAPER}
     for label, summaries in aggregates.overall.items():
-        main = summaries.get(SUCCESS.key)
-        within = interval_text(main, SUCCESS).replace(" to ", "--") or "--"
-        cells = [label.translate(_LATEX), mean_text(main, SUCCESS), within]
-        cells += [mean_text(summaries.get(column.key), column) for column in _PAPER[1:]]
-        lines.append(" & ".join(cells).replace(NO_VALUE, "--") + r" \\")
+        within = interval_text(summaries.get(SUCCESS.key), SUCCESS).replace(" to ", "--") or "--"
+        cells = [_marked(summaries.get(column.key), column, marks[column.key]) for column in _PAPER]
+        line = " & ".join([label.translate(_LATEX), cells[0], within, *cells[1:]])
+        lines.append(line.replace(NO_VALUE, "--") + r" \\")
     return "\n".join([*lines, r"\bottomrule", r"\end{tabular}"]) + "\n"
+
+
+def _marks(aggregates: Aggregates, column: Column) -> dict[float, str]:
+    """Return LaTeX's commands for the best and the second-best mean, as they are printed."""
+    found = [summaries.get(column.key) for summaries in aggregates.overall.values()]
+    values = [round(summary.mean, column.decimals) for summary in found if summary is not None]
+    order = sorted(set(values), reverse=bool(column.higher_is_better))
+    if column.higher_is_better is None or len(order) < 2:
+        return {}
+    # Two that share the first place leave no second.
+    commands = (r"\textbf", r"\underline") if values.count(order[0]) == 1 else (r"\textbf",)
+    return dict(zip(order, commands, strict=False))
+
+
+def _marked(summary: Summary | None, column: Column, marks: Mapping[float, str]) -> str:
+    text = mean_text(summary, column)
+    command = "" if summary is None else marks.get(round(summary.mean, column.decimals), "")
+    return f"{command}{{{text}}}" if command else text
 
 
 def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Any]:
@@ -215,12 +236,15 @@ class ReportOptions:
         True for recordings with truth and all estimates, in ``estimates/``.
     trajectories : bool
         True for TUM files of the truth and of all runs, in ``trajectories/``.
+    figures : tuple of str
+        Formats of the figures' files, of `paper_figures.FORMATS`, in ``figures/``.
     """
 
     images: bool = True
     video: bool = False
     recordings: bool = False
     trajectories: bool = False
+    figures: tuple[str, ...] = ()
 
 
 def write_report(
@@ -252,6 +276,8 @@ def write_report(
     page = folder / "report.html"
     write_text(page, make_page(evaluation, aggregates, images=options.images))
     written = [page, *_write_summaries(folder, evaluation, aggregates)]
+    if options.figures:
+        written += write_figures(evaluation, aggregates, styled(aggregates), options.figures)
     if options.trajectories:
         written += write_trajectories(evaluation)
     if options.recordings:
