@@ -22,14 +22,12 @@ from collections.abc import Iterable
 import cv2
 import numpy as np
 
-from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.mode_spans import clock_words
 from vehicle_pf_tracker.image.lettering import line_width, write_words
+from vehicle_pf_tracker.image.outlines import Colour, draw_box, pixels_at
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
-
-Colour = tuple[int, int, int]
 
 COLOURS: dict[str, Colour] = {
     Mode.TRACKING.value: (64, 220, 64),
@@ -41,8 +39,6 @@ NEUTRAL: Colour = (200, 200, 200)
 _PARTICLE: Colour = (96, 160, 255)
 _PATH_LENGTH = 300
 """Positions shown of a path: ten seconds of video, longer ones hide the road."""
-_DASH = 6
-"""Length of a dash and of a gap, in line widths."""
 
 
 class Annotator:
@@ -77,17 +73,16 @@ class Annotator:
             return
         colour, width = COLOURS[estimate.mode.value], line_width(picture)
         if self._shows_particles:
-            for centre in _pixels(estimate.particles):
+            for centre in pixels_at(estimate.particles):
                 cv2.circle(picture, centre, width, _PARTICLE, -1)
-        path = np.array(_pixels(np.asarray(self._path).reshape(-1, 2)), np.int32).reshape(-1, 1, 2)
+        path = np.array(pixels_at(np.asarray(self._path).reshape(-1, 2)), np.int32).reshape(
+            -1, 1, 2
+        )
         cv2.polylines(picture, [path], False, colour, width, cv2.LINE_AA)
-        corners = _pixels(np.asarray(estimate.box.corners))
-        if estimate.mode is Mode.OCCLUDED:
-            _draw_dashed(picture, corners, colour, width)
-        else:
-            cv2.rectangle(picture, corners[0], corners[2], colour, width)
+        is_predicted = estimate.mode is Mode.OCCLUDED
+        draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
         if self._name:
-            x, y = corners[0]
+            x, y = pixels_at(np.asarray(estimate.box.corners))[0]
             write_words(picture, self._name, (x, max(y - 3 * width, 14 * width)), colour, width)
 
     def words(self, row: EstimateRow) -> str:
@@ -113,21 +108,3 @@ def annotated(
     for index, (words, colour) in enumerate([head, *lines], start=1):
         write_words(picture, words, (5 * width, 16 * width * index), colour, width)
     return picture
-
-
-def _draw_dashed(
-    picture: Frame, corners: list[tuple[int, int]], colour: Colour, width: int
-) -> None:
-    for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
-        from_, to = np.array(start, float), np.array(end, float)
-        length = float(np.hypot(*(to - from_)))
-        steps = np.arange(0.0, length, 2 * _DASH * width)
-        for along in steps:
-            ends = from_ + (to - from_) / length * np.array([[along], [along + _DASH * width]])
-            a, b = _pixels(ends)
-            cv2.line(picture, a, b, colour, width)
-
-
-def _pixels(points: Array) -> list[tuple[int, int]]:
-    """Return the pixel that each continuous position (N, 2) lies in."""
-    return [(int(x), int(y)) for x, y in np.floor(points)]

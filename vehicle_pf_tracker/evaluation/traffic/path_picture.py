@@ -1,0 +1,157 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Picture of all paths of a run, each with the number of its vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TypeAlias
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.evaluation.output_files import write_picture
+from vehicle_pf_tracker.image.lettering import line_width, write_words
+from vehicle_pf_tracker.image.outlines import draw_box, pixels_at
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
+from vehicle_pf_tracker.trackers.traffic.drawing import draw_counts, identity_colour
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+
+_PLACES = 16
+"""Points of a path that its number may stand at."""
+_MOST_NUMBERS = 200
+"""Numbers written, those of the longest paths: more of them hide the road."""
+_LEAST_WIDTH = 640
+"""Width in px below which the picture is enlarged, so that numbers are smaller than vehicles."""
+_HIDDEN = 0.4
+"""Brightness of a path's hidden parts."""
+
+Pixel: TypeAlias = tuple[int, int]
+
+
+@dataclass(slots=True)
+class _Path:
+    """An even choice of a path's points, for its number; its lines are drawn already."""
+
+    last: Pixel
+    places: list[Pixel] = field(default_factory=list)
+    length: int = 0
+    stride: int = 1
+
+    def add(self, point: Pixel) -> None:
+        if self.length % self.stride == 0:
+            self.places.append(point)
+        if len(self.places) > _PLACES:
+            self.places, self.stride = self.places[::2], 2 * self.stride
+        self.last = point
+        self.length += 1
+
+
+class PathPicture:
+    """Draws the path of every confirmed vehicle over the frame that shows the most of them.
+
+    Paths are drawn as they grow: memory depends on the number of vehicles, not on the time.
+    """
+
+    def __init__(self) -> None:
+        self._begin((0, 0), 1)
+
+    def _begin(self, size: tuple[int, int], scale: int) -> None:
+        """Begin anew for frames of (height, width) px, enlarged `scale` times."""
+        self._size, self._scale = size, scale
+        self._paths: dict[int, _Path] = {}
+        self._layer: Frame = np.zeros((size[0] * scale, size[1] * scale, 3), np.uint8)
+        self._ground: Frame | None = None
+        self._on_ground: list[TrackEstimate] = []
+
+    def add(self, frame: Frame, estimates: Sequence[TrackEstimate]) -> None:
+        """Take the next frame; one of another size begins the picture anew."""
+        size = frame.shape[0], frame.shape[1]
+        if size != self._size:
+            self._begin(size, max(1, round(_LEAST_WIDTH / frame.shape[1])))
+        visible = [one for one in estimates if one.mode is TrackMode.TRACKING]
+        if self._ground is None or len(visible) > len(self._on_ground):
+            self._ground, self._on_ground = frame.copy(), visible
+        for one in estimates:
+            if one.mode in CONFIRMED:
+                self._extend(one)
+
+    def write(self, path: Path, counter: Counter | None = None) -> bool:
+        """Write the picture; False where there was no frame.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        if self._ground is None:
+            return False
+        picture = self._enlarged(self._ground)
+        drawn = self._layer.any(axis=2)
+        picture[drawn] = self._layer[drawn]
+        width = line_width(picture)
+        for one in self._on_ground:
+            draw_box(picture, self._scaled(one.box), identity_colour(one.identity), width)
+        self._write_numbers(picture)
+        if counter is not None:
+            draw_counts(picture, counter, self._scale)
+        write_picture(path, picture)
+        return True
+
+    def _extend(self, estimate: TrackEstimate) -> None:
+        ((x, y),) = pixels_at(np.array([estimate.box.centre]) * self._scale)
+        path = self._paths.get(estimate.identity)
+        if path is None:
+            path = self._paths[estimate.identity] = _Path((x, y))
+        red, green, blue = identity_colour(estimate.identity)
+        share = _HIDDEN if estimate.mode is TrackMode.OCCLUDED else 1.0
+        colour = int(share * red), int(share * green), int(share * blue)
+        cv2.line(self._layer, path.last, (x, y), colour, line_width(self._layer))
+        path.add((x, y))
+
+    def _write_numbers(self, picture: Frame) -> None:
+        """Write the number of each path where no other number is, or at its end."""
+        width = line_width(picture)
+        taken = np.zeros(picture.shape[:2], bool)
+        longest = sorted(self._paths, key=lambda one: -self._paths[one].length)[:_MOST_NUMBERS]
+        for identity in longest:
+            words, places = str(identity), self._paths[identity].places
+            size = 9 * width * len(words), 13 * width
+            middle_first = sorted(places, key=lambda at: abs(places.index(at) - len(places) // 2))
+            free = (at for at in middle_first if _is_free(taken, at, size))
+            x, y = next(free, places[-1])
+            taken[max(y - size[1], 0) : max(y, 0), max(x, 0) : max(x + size[0], 0)] = True
+            write_words(picture, words, (x, y), identity_colour(identity), width)
+
+    def _enlarged(self, frame: Frame) -> Frame:
+        size = frame.shape[1] * self._scale, frame.shape[0] * self._scale
+        enlarged: Frame = cv2.resize(frame, size, interpolation=cv2.INTER_CUBIC)  # type: ignore[assignment]
+        return enlarged
+
+    def _scaled(self, box: Box) -> Box:
+        return Box(*(value * self._scale for value in (box.x, box.y, box.width, box.height)))
+
+
+def _is_free(taken: npt.NDArray[np.bool_], place: Pixel, size: tuple[int, int]) -> bool:
+    """Test whether words of this size fit at `place`, inside the picture and over no others."""
+    (x, y), (width, height) = place, size
+    if x < 0 or y - height < 0 or x + width > taken.shape[1] or y > taken.shape[0]:
+        return False
+    return not taken[y - height : y, x : x + width].any()
