@@ -24,6 +24,7 @@ RUNTIME = [
 EVALUATION = ["matplotlib>=3.6", "scipy>=1.11", "jinja2>=3.1"]
 NUMBA = ["numba>=0.60"]
 VIDEO = ["av>=14"]
+ONNX = ["onnxruntime>=1.17"]
 CLUSTER = ["distributed>=2024.5", "fsspec>=2024.5"]
 TUNE = ["optuna>=4.0", *EVALUATION]
 TEST = ["pytest>=7", "hypothesis>=6.100"]
@@ -80,11 +81,12 @@ setup(
         "evaluation": EVALUATION,
         "numba": NUMBA,
         "video": VIDEO,
+        "onnx": ONNX,
         "cluster": CLUSTER,
         "tune": TUNE,
         "test": TEST,
         "lint": LINT,
-        "dev": TEST + LINT + COVERAGE + NUMBA + VIDEO + CLUSTER + TUNE + READERS,
+        "dev": TEST + LINT + COVERAGE + NUMBA + VIDEO + ONNX + CLUSTER + TUNE + READERS,
     },
     entry_points={
         "console_scripts": [

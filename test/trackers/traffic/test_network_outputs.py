@@ -1,0 +1,124 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Forms of networks' outputs, without running any."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.trackers.traffic import class_names
+from vehicle_pf_tracker.trackers.traffic.network_outputs import class_count, decode, form_of
+
+
+def zeros(*shape):
+    return np.zeros(shape, np.float32)
+
+
+@pytest.mark.parametrize(
+    ("outputs", "size", "form", "classes"),
+    [
+        ({"output0": zeros(1, 84, 8400)}, (640, 640), "YOLOv8", 80),
+        ({"output0": zeros(1, 5, 8400)}, (640, 640), "YOLOv8", 1),
+        ({"output": zeros(1, 8400, 85)}, (640, 640), "YOLOX", 80),
+        ({"output": zeros(1, 3549, 85)}, (416, 416), "YOLOX", 80),
+        ({"output": zeros(1, 5040, 6)}, (640, 384), "YOLOX", 1),
+        ({"output0": zeros(1, 84, 34000)}, (1280, 1280), "YOLOv8", 80),
+        (
+            {"num_detections": zeros(1), "detection_boxes": zeros(1, 100, 4),
+             "detection_scores": zeros(1, 100), "detection_classes": zeros(1, 100)},
+            (320, 320), "SSD", None,
+        ),
+        (
+            {"boxes": zeros(10, 4), "labels": zeros(10), "scores": zeros(10)},
+            (320, 320), "SSD", None,
+        ),
+    ],
+)  # fmt: skip
+def test_forms_are_told_apart(outputs, size, form, classes):
+    assert form_of(outputs, *size) == form
+    assert class_count(form, outputs) == classes
+
+
+@pytest.mark.parametrize(
+    "outputs",
+    [
+        {"output0": zeros(1, 300, 6)},  # without the boxes of all cells
+        {"output0": zeros(1, 25200, 85)},  # YOLOv5
+        {"output0": zeros(1, 4, 8400)},
+        {"output0": zeros(2, 84, 8400)},
+        {"output0": zeros(1000)},
+        {"boxes": zeros(10, 4), "scores": zeros(10)},
+    ],
+)
+def test_other_forms_are_refused_with_their_shapes(outputs):
+    with pytest.raises(InputError, match="are not those of YOLOX") as error:
+        form_of(outputs, 640, 640)
+    assert all(str(value.shape) in str(error.value) for value in outputs.values())
+
+
+def test_relative_boxes_of_yolox_are_placed_in_their_cells():
+    output = zeros(1, 84, 6)  # of 64 x 64 px
+    output[0, :, 4:] = 1
+    output[0, 9, :4] = [0.25, 0.5, np.log(2), 0]  # column 1, row 1 of the cells of 8 px
+    output[0, 83, :4] = [0.5, 0.5, 0, 0]  # the last of those of 32 px
+    found = decode("YOLOX", {"output": output}, 64, 64)
+    assert found.boxes[9] == pytest.approx([(1.25 * 8) - 8, 1.5 * 8 - 4, 16, 8])
+    assert found.boxes[83] == pytest.approx([32, 32, 32, 32])
+
+
+def test_the_score_of_yolox_is_that_of_an_object_and_of_its_class():
+    output = zeros(1, 84, 7)
+    output[0, :, 0] = 50.0  # in px
+    output[0, 0, 4:] = [0.5, 0.2, 0.8]
+    found = decode("YOLOX", {"output": output}, 64, 64)
+    assert found.scores[0] == pytest.approx(0.4)
+    assert found.classes[0] == 1
+
+
+@pytest.mark.parametrize("scale", [1.0, 320.0])
+def test_boxes_of_ssd_may_be_shares_or_pixels(scale):
+    outputs = {
+        "boxes": np.array([[0.1, 0.2, 0.3, 0.6]]) * scale,
+        "labels": np.array([3]),
+        "scores": np.array([0.9]),
+    }
+    found = decode("SSD", outputs, 320, 320)
+    assert found.boxes[0] == pytest.approx([32, 64, 64, 128])
+
+
+def test_numbers_without_meaning_are_passed_on_as_such():
+    output = zeros(1, 6, 84)
+    output[0, :, 3] = np.nan
+    found = decode("YOLOv8", {"output": output}, 64, 64)
+    assert np.isnan(found.scores[3])
+
+
+def test_coco_from_one_has_its_gaps():
+    names = class_names.coco_from_one()
+    assert [names[number] for number in (1, 3, 4, 6, 8, 90)] == [
+        "person", "car", "motorcycle", "bus", "truck", "toothbrush",
+    ]  # fmt: skip
+    assert 12 not in names
+    assert len(names) == 80
+
+
+@pytest.mark.parametrize("text", ["", "names", "__import__('os')", "{0: ", "[" * 5000, "{'a': 1}"])
+def test_odd_metadata_gives_no_names(text):
+    assert class_names.parse_metadata(text) == {}
+
+
+def test_names_of_exporters_are_read():
+    assert class_names.parse_metadata("{0: 'car', 1: 'bus'}") == {0: "car", 1: "bus"}
+    assert class_names.parse_metadata("['car', 'bus']") == {0: "car", 1: "bus"}

@@ -1,0 +1,165 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Outputs of detection networks, told apart by names and shapes.
+
+=========  ================================================  =======================================
+form       outputs                                           input it is given
+=========  ================================================  =======================================
+`YOLOX`    one, (1, N, 5 + classes): centre, size, score of  BGR from 0 to 255, in the upper left
+           an object, scores of the classes                  corner of grey
+`YOLOV8`   one, (1, 4 + classes, N): centre, size, scores    RGB from 0 to 1, in the middle of grey
+`SSD`      several, whose names contain boxes, scores, and   RGB, stretched; bytes, or from 0 to 1
+           classes or labels                                 where the input has real numbers
+=========  ================================================  =======================================
+
+N is the number of cells of 8, 16 and 32 px (and 64 px) that the input has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.errors import InputError
+
+YOLOX, YOLOV8, SSD = "YOLOX", "YOLOv8", "SSD"
+
+_STRIDES = ((8, 16, 32), (8, 16, 32, 64))
+"""Sizes of cells in px that networks have."""
+_RAW_CENTRE = 32.0
+"""Largest centre of boxes, in cells or px, up to which YOLOX's boxes are relative to their cells,
+as its own export leaves them. In px, the last cell's centre is where the input ends."""
+_NORMALISED = 2.0
+"""Largest coordinate up to which SSD's boxes are shares of the image; beyond it they are px."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Boxes that a network found.
+
+    Attributes
+    ----------
+    boxes : array, shape (N, 4)
+        Left, top, width and height in px of its input.
+    scores : array, shape (N,)
+        Score of the best class.
+    classes : integer array, shape (N,)
+        Its number.
+    """
+
+    boxes: Array
+    scores: Array
+    classes: npt.NDArray[np.int64]
+
+
+def form_of(outputs: Mapping[str, Array], width: int, height: int) -> str:
+    """Tell the form of a network's outputs for an input of this size in px.
+
+    Raises
+    ------
+    InputError
+        If it is none of those above.
+    """
+    if _ssd_names(list(outputs)) is not None:
+        return SSD
+    if len(outputs) == 1:
+        (output,) = outputs.values()
+        if output.ndim == 3 and output.shape[0] == 1:
+            counts = {len(_cells(width, height, strides)[0]) for strides in _STRIDES}
+            if output.shape[1] in counts and output.shape[2] > 5:
+                return YOLOX
+            if output.shape[2] in counts and output.shape[1] > 4:
+                return YOLOV8
+    shapes = ", ".join(f"{name} {tuple(value.shape)}" for name, value in outputs.items())
+    raise InputError(f"its outputs ({shapes}) are not those of YOLOX, YOLOv8 or SSD")
+
+
+def class_count(form: str, outputs: Mapping[str, Array]) -> int | None:
+    """Return the number of classes; None where the outputs do not tell."""
+    if form == SSD:
+        return None
+    (output,) = outputs.values()
+    return int(output.shape[2] - 5 if form == YOLOX else output.shape[1] - 4)
+
+
+def decode(form: str, outputs: Mapping[str, Array], width: int, height: int) -> Found:
+    """Read the outputs for an input of this size in px."""
+    if form == SSD:
+        return _decode_ssd(outputs, width, height)
+    (output,) = outputs.values()
+    rows = np.asarray(output[0] if form == YOLOX else output[0].T, np.float64)
+    boxes = _placed(rows[:, :4], width, height) if form == YOLOX else rows[:, :4]
+    scores = rows[:, 5:] * rows[:, 4:5] if form == YOLOX else rows[:, 4:]
+    classes = scores.argmax(axis=1)
+    best = scores[np.arange(len(scores)), classes]
+    corner = boxes[:, :2] - boxes[:, 2:] / 2
+    return Found(np.hstack([corner, boxes[:, 2:]]), best, classes)
+
+
+def _placed(boxes: Array, width: int, height: int) -> Array:
+    """Place YOLOX's boxes that are relative to their cells; others stay as they are."""
+    if not len(boxes) or float(np.abs(boxes[:, :2]).max()) > _RAW_CENTRE:
+        return boxes
+    for strides in _STRIDES:
+        corners, sizes = _cells(width, height, strides)
+        if len(corners) == len(boxes):
+            with np.errstate(over="ignore"):  # a box without end is left out later
+                return np.hstack([(boxes[:, :2] + corners) * sizes, np.exp(boxes[:, 2:]) * sizes])
+    return boxes
+
+
+def _cells(width: int, height: int, strides: Sequence[int]) -> tuple[Array, Array]:
+    """Return column and row (N, 2) of every cell, and its size (N, 1) in px."""
+    corners, sizes = [], []
+    for stride in strides:
+        rows, columns = np.mgrid[: height // stride, : width // stride]
+        corners.append(np.stack([columns.ravel(), rows.ravel()], axis=1).astype(np.float64))
+        sizes.append(np.full((rows.size, 1), float(stride)))
+    return np.concatenate(corners), np.concatenate(sizes)
+
+
+def _ssd_names(names: Sequence[str]) -> tuple[str, str, str] | None:
+    """Return the names of SSD's boxes, scores and classes; None where one is missing."""
+    found = []
+    for words in (("boxes",), ("scores",), ("classes", "labels")):
+        fitting = [
+            name
+            for name in names
+            if any(word in name.lower() for word in words) and "raw" not in name.lower()
+        ]
+        if not fitting:
+            return None
+        found.append(fitting[0])
+    return found[0], found[1], found[2]
+
+
+def _decode_ssd(outputs: Mapping[str, Array], width: int, height: int) -> Found:
+    names = _ssd_names(list(outputs))
+    assert names is not None, "it is SSD by these names"
+    boxes = np.asarray(outputs[names[0]], np.float64).reshape(-1, 4)
+    scores = np.asarray(outputs[names[1]], np.float64).ravel()
+    classes = np.asarray(outputs[names[2]]).ravel().astype(np.int64)
+    count = min(len(boxes), len(scores), len(classes))
+    boxes = boxes[:count]
+    if names[0].startswith("detection_"):  # TensorFlow has y before x
+        boxes = boxes[:, [1, 0, 3, 2]]
+    if not boxes.size or float(np.nanmax(np.abs(boxes))) <= _NORMALISED:
+        boxes = boxes * np.array([width, height, width, height])
+    corners = np.hstack([boxes[:, :2], boxes[:, 2:] - boxes[:, :2]])
+    return Found(corners, scores[:count], classes[:count])

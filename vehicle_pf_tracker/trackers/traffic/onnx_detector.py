@@ -1,0 +1,211 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Detection by a network of the user's, with ONNX Runtime (the extra `onnx`)."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.letterbox import PADDING, Fit, letterboxed, stretched
+from vehicle_pf_tracker.trackers.traffic import class_names
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.detector_parameters import DetectorParameters
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
+from vehicle_pf_tracker.trackers.traffic.network_outputs import (
+    SSD,
+    YOLOV8,
+    YOLOX,
+    Found,
+    class_count,
+    decode,
+    form_of,
+)
+
+_TYPES: Mapping[str, Any] = {
+    "tensor(float)": np.float32,
+    "tensor(float16)": np.float16,
+    "tensor(uint8)": np.uint8,
+}
+"""Types of inputs, by ONNX Runtime's names."""
+_CELL = 32
+"""Size of the largest cells of most networks, px: an open input's sides are multiples of it."""
+_MOST_BOXES = 3000
+"""Best boxes of which overlapping ones are suppressed; that takes the square of their number."""
+
+
+class OnnxDetector:
+    """Network in an ONNX file, whose form is told from its outputs.
+
+    Boxes that overlap are suppressed across classes, since a van that is a car and a truck at once
+    is one vehicle.
+
+    Parameters
+    ----------
+    parameters : DetectorParameters
+        The file, its classes, thresholds.
+
+    Attributes
+    ----------
+    form : str
+        ``YOLOX``, ``YOLOv8`` or ``SSD``.
+
+    Raises
+    ------
+    InputError
+        If ONNX Runtime is not installed, the file cannot be used, or it has no such classes.
+    """
+
+    def __init__(self, parameters: DetectorParameters) -> None:
+        self._parameters = parameters
+        self._path = Path(parameters.model)
+        self._session = _open(self._path)
+        self._input, self._type, self._is_planar, self._fixed = self._read_input()
+        size = self._size(parameters.input_size, parameters.input_size)
+        # One run on grey: many files leave the shapes of their outputs open.
+        outputs = self._run(np.full((size[1], size[0], 3), PADDING, np.uint8))
+        try:
+            self.form = form_of(outputs, *size)
+            self._names = self._class_names(class_count(self.form, outputs))
+            self._classes = self._chosen_classes()
+        except InputError as error:
+            raise InputError(f"the network {self._path}: {error}") from None
+
+    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
+        """Find vehicles; `tracks` are not used."""
+        picture, fit = self._fitted(frame)
+        found = decode(self.form, self._run(picture), *frame_size(picture))
+        boxes, scores, classes = self._filtered(found)
+        kept = self._without_overlaps(boxes, scores)
+        labels = [self._names.get(int(number), str(number)) for number in classes[kept]]
+        return Detections.make(fit.to_image(boxes[kept]), scores[kept], labels)
+
+    def _read_input(self) -> tuple[str, Any, bool, tuple[int | None, int | None]]:
+        """Return name and type of the input, whether its colours are planes, and its fixed size."""
+        inputs = self._session.get_inputs()
+        shape = list(inputs[0].shape)
+        is_image = len(inputs) == 1 and len(shape) == 4 and inputs[0].type in _TYPES
+        is_planar = is_image and shape[1] == 3
+        if not is_image or not (is_planar or shape[3] == 3):
+            raise InputError(
+                f"the network {self._path} takes no images: its one input must be (1, 3, height, "
+                f"width) or (1, height, width, 3), and is {shape}"
+            )
+        sides = shape[2:4] if is_planar else shape[1:3]
+        height, width = (side if isinstance(side, int) and side > 0 else None for side in sides)
+        return inputs[0].name, _TYPES[inputs[0].type], is_planar, (width, height)
+
+    def _size(self, across: int, down: int) -> tuple[int, int]:
+        """Return width and height of the input for an image of this size, px."""
+        scale = self._parameters.input_size / max(across, down)
+        free = [max(1, round(side * scale / _CELL)) * _CELL for side in (across, down)]
+        return self._fixed[0] or free[0], self._fixed[1] or free[1]
+
+    def _fitted(self, frame: Frame) -> tuple[Frame, Fit]:
+        width, height = self._size(*frame_size(frame))
+        if self.form == SSD:
+            return stretched(frame, width, height)
+        return letterboxed(frame, width, height, centred=self.form == YOLOV8)
+
+    def _run(self, picture: Frame) -> dict[str, Array]:
+        """Run the network on an image of its input's size."""
+        form = getattr(self, "form", None)  # not known before the first run
+        pixels = picture[:, :, ::-1] if form == YOLOX else picture
+        values = pixels.astype(self._type)
+        if self._type is not np.uint8 and form != YOLOX:
+            values = values / self._type(255)
+        if self._is_planar:
+            values = values.transpose(2, 0, 1)
+        names = [output.name for output in self._session.get_outputs()]
+        batch = np.ascontiguousarray(values[None], dtype=self._type)
+        try:
+            outputs = self._session.run(names, {self._input: batch})
+        except Exception as error:  # ONNX Runtime's errors have no base of their own
+            reason = " ".join(str(error).split())[:200]
+            raise InputError(f"the network {self._path} cannot be run: {reason}") from None
+        return dict(zip(names, outputs, strict=True))
+
+    def _class_names(self, count: int | None) -> dict[int, str]:
+        """Return the names of the classes by their numbers; empty where nothing tells them."""
+        words = [word.strip() for word in self._parameters.names.split(",") if word.strip()]
+        if words:
+            if count is not None and len(words) != count:
+                raise InputError(f"it has {count} classes, and detector.names {len(words)} names")
+            return class_names.numbered(tuple(words))
+        metadata = self._session.get_modelmeta().custom_metadata_map
+        in_file = class_names.parse_metadata(metadata.get("names", ""))
+        if in_file:
+            return in_file
+        if self.form == SSD:
+            return class_names.coco_from_one()
+        if count == len(class_names.COCO):
+            return class_names.numbered(class_names.COCO)
+        if count == 1:
+            return {0: ""}
+        raise InputError(f"it has {count} classes without names; give them with detector.names")
+
+    def _chosen_classes(self) -> frozenset[int]:
+        """Return the numbers of the classes that are vehicles; empty for all."""
+        if len(self._names) == 1:
+            return frozenset()
+        words = self._parameters.classes
+        if words == DetectorParameters().classes:  # a network need not know all of these
+            known = [word for word in words.split(",") if word in self._names.values()]
+            words = ",".join(known) or words
+        return class_names.chosen(words, self._names)
+
+    def _filtered(self, found: Found) -> tuple[Array, Array, npt.NDArray[np.int64]]:
+        """Return boxes, scores and classes of usable boxes of the chosen classes, best first."""
+        usable = np.isfinite(found.boxes).all(axis=1) & (found.boxes[:, 2:] > 0).all(axis=1)
+        usable &= found.scores >= max(self._parameters.min_score, 1e-9)
+        if self._classes:
+            usable &= np.isin(found.classes, sorted(self._classes))
+        kept = np.flatnonzero(usable)
+        kept = kept[np.argsort(-found.scores[kept], kind="stable")][:_MOST_BOXES]
+        return found.boxes[kept], found.scores[kept], found.classes[kept]
+
+    def _without_overlaps(self, boxes: Array, scores: Array) -> list[int]:
+        """Return the indices of the boxes that no better one overlaps."""
+        kept = cv2.dnn.NMSBoxes(boxes.tolist(), scores.tolist(), 0.0, self._parameters.overlap)
+        return sorted(int(index) for index in np.asarray(kept).ravel())
+
+
+def _open(path: Path) -> Any:
+    """Load a network."""
+    try:
+        runtime = importlib.import_module("onnxruntime")
+    except ImportError:
+        raise InputError(
+            "networks need ONNX Runtime: install the extra [onnx], "
+            "pip install 'vehicle_pf_tracker[onnx]'"
+        ) from None
+    if not path.is_file():
+        raise InputError(f"there is no network {path}")
+    options = runtime.SessionOptions()
+    options.log_severity_level = 3  # errors: it warns of every unused weight
+    try:
+        return runtime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+    except Exception as error:  # ONNX Runtime's errors have no base of their own
+        reason = " ".join(str(error).split())[:200]
+        raise InputError(f"the network {path} cannot be loaded: {reason}") from None

@@ -1,0 +1,32 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Entry of `traffic`, beside the registry: it follows all vehicles where variants follow one."""
+
+from __future__ import annotations
+
+from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.trackers.traffic.detector_parameters import (
+    TrafficRunParameters as TrafficParameters,
+)
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+
+__all__ = ["TRAFFIC", "TrafficParameters", "TrafficTracker"]
+
+TRAFFIC = Variant(
+    "traffic",
+    "traffic.variant:Traffic",
+    "every vehicle in view, with identities (this package)",
+    "many vehicles at once, counts at lines and in zones",
+)
