@@ -45,6 +45,7 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "synth": ("synth", "render a synthetic scene to a recording, with exact truth"),
         "params": ("params", "print the commented default parameters of a variant"),
         "run": ("run", "track vehicles in a video, recording or stream, without ROS"),
+        "traffic": ("traffic", "follow every vehicle in view, and count them at lines"),
         "pick": ("pick", "point at vehicles in a frame, to get their boxes for run"),
         "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
         "tune": (

@@ -17,19 +17,18 @@
 from __future__ import annotations
 
 import argparse
-import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
 
 from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import INTERRUPTED, UsageError, show, tell_notices
+from vehicle_pf_tracker.cli.frames import Numbered, numbered_frames, peeked
 from vehicle_pf_tracker.cli.picture_window import PictureWindow
-from vehicle_pf_tracker.cli.progress import OnProgress, counting
+from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_span
-from vehicle_pf_tracker.cli.stopping import Stop, stopping
+from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.cli.targets import by_name, parse_target, read_targets
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -52,10 +51,7 @@ from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
 from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source, open_source
-from vehicle_pf_tracker.recordings.span import numbered_part
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
-
-Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
 
 SHEET = "summary.png"
 TRACKS = "tracks.csv"
@@ -116,7 +112,7 @@ def run(args: argparse.Namespace) -> int:
     show_in = window.show if window else None
     pictures = Pictures(args.video, particles=args.particles, show=show_in)
     with stopping() as stop, counting("tracked") as progress:
-        first, frames = _peeked(_frames(source, args, stop, progress))
+        first, frames = peeked(numbered_frames(source, args, stop, progress))
         targets = _targets(variant, source, args, first)
         trackers = {name: one.tracker for name, one in targets.items()}
         with _recording(args, variant, source, list(trackers)) as on_frame:
@@ -220,20 +216,6 @@ def _first_truth(source: Source, args: argparse.Namespace, first_ns: int) -> Tru
             "with --target x,y,w,h"
         )
     return truth
-
-
-def _frames(source: Source, args: argparse.Namespace, stop: Stop, progress: OnProgress) -> Numbered:
-    part = numbered_part(stop.until(source.frames()), args.start, args.end)
-    for number, found in part:
-        progress(number, source.frame_count)
-        yield number, found
-
-
-def _peeked(frames: Numbered) -> tuple[tuple[int, StampedFrame], Numbered]:
-    first = next(frames, None)
-    if first is None:
-        raise InputError("the source ended before its first image")
-    return first, itertools.chain([first], frames)
 
 
 def _doubting(frames: Numbered, targets: Mapping[str, _Target]) -> Numbered:

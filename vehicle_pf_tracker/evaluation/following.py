@@ -37,7 +37,7 @@ Draw: TypeAlias = Callable[[], Frame]
 
 _DEFAULT_RATE = 30.0
 """Frame rate of a video whose stamps state none, 1/s."""
-_RATE_FRAMES = 30
+RATE_FRAMES = 30
 """Frames whose stamps give the video's rate: the median of a second forgives a gap."""
 
 
@@ -120,7 +120,7 @@ def follow(
         If a target is invalid in its frame, or the video cannot be written.
     """
     # The rate is that of the first second, so this much is read ahead of the video.
-    ahead = list(itertools.islice(frames, _RATE_FRAMES if pictures.video else 1))
+    ahead = list(itertools.islice(frames, RATE_FRAMES if pictures.video else 1))
     rows: dict[str, list[EstimateRow]] = {name: [] for name in trackers}
     if not ahead:
         return rows
@@ -134,7 +134,7 @@ def follow(
         Annotator(name if len(trackers) > 1 else "", particles=pictures.particles)
         for name in trackers
     ]
-    with pictures.drawing(_rate(ahead)) as take:
+    with pictures.drawing(frame_rate_of(ahead)) as take:
         for (_, found), *of_frame in zip(shown, *runs, strict=True):
             for name, row in zip(trackers, of_frame, strict=True):
                 rows[name].append(row)
@@ -152,7 +152,7 @@ def follow(
     return rows
 
 
-def _rate(frames: list[tuple[int, StampedFrame]]) -> float:
+def frame_rate_of(frames: list[tuple[int, StampedFrame]]) -> float:
     """Return the frame rate of `frames` by their stamps, 1/s."""
     stamps = [found.stamp_ns for _, found in frames]
     gaps = sorted(later - earlier for earlier, later in itertools.pairwise(stamps))

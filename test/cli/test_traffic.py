@@ -1,0 +1,289 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`traffic` from the command line, with a tracker that follows whatever is detected."""
+
+import csv
+import json
+import math
+
+import cv2
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.cli import traffic
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+
+COUNT = 20
+HIDDEN = range(8, 12)
+"""Frames (from 1) in which the first vehicle is not detected."""
+LINES = """
+lines:
+  exit: {from: [0, 60], to: [96, 60], directions: [down, up]}
+zones:
+  yard: [[0, 0], [96, 0], [96, 40], [0, 40]]
+"""
+
+
+class Follower:
+    """Stand-in of the tracker: the k-th detection is vehicle k, hidden where it is missing."""
+
+    def __init__(self, parameters=None):
+        self.parameters, self.frame_period, self.seed = parameters, 0.0, 7
+        self._boxes, self._given, self._next = {}, {}, 100
+
+    def step(self, frame, detections=None, elapsed=1.0):
+        seen = {} if detections is None else dict(enumerate(detections.boxes.tolist(), start=1))
+        # The first detection is the left one.
+        seen = {1 if box[0] < 40 else 2: box for box in seen.values()}
+        found = []
+        for identity in sorted({*self._boxes, *seen}):
+            mode = TrackMode.TRACKING if identity in seen else TrackMode.OCCLUDED
+            last = self._boxes.get(identity, seen.get(identity))
+            x, y, width, height = seen.get(identity) or (last[0], last[1] + 3, *last[2:])
+            self._boxes[identity] = (x, y, width, height)
+            found.append(self._estimate(identity, Box(x, y, width, height), mode))
+        for identity, (box, label) in self._given.items():
+            found.append(self._estimate(identity, box, TrackMode.TRACKING, label))
+        return tuple(found)
+
+    def add(self, box, label=""):
+        self._next += 1
+        self._given[self._next] = box, label
+        return self._next
+
+    def remove(self, identity):
+        return self._given.pop(identity, None) is not None
+
+    def reset(self):
+        self._boxes.clear()
+
+    @staticmethod
+    def _estimate(identity, box, mode, label="car"):
+        return TrackEstimate(identity, box, (0.0, 3.0), mode, 0.9, label, math.nan, 1.0, None)
+
+
+@pytest.fixture(autouse=True)
+def _tracker(monkeypatch):
+    monkeypatch.setattr(traffic, "TrafficTracker", Follower)
+
+
+@pytest.fixture
+def bag(tmp_path):
+    """A recording of grey noise, and det.txt with two vehicles that drive down."""
+    rows = []
+    with RecordingWriter(tmp_path / "bag") as writer:
+        for index in range(COUNT):
+            frame = np.random.default_rng(index).integers(90, 120, (96, 128, 3), np.uint8)
+            writer.write_image(1_000_000_000 + index * 40_000_000, frame)
+            if index + 1 not in HIDDEN:
+                rows.append(f"{index + 1},-1,20,{3 * index + 10},16,12,0.9,-1,-1,-1")
+            rows.append(f"{index + 1},-1,60,{3 * index + 5},16,12,0.8,-1,-1,-1")
+    (tmp_path / "det.txt").write_text("\n".join(rows) + "\n")
+    (tmp_path / "lines.yaml").write_text(LINES)
+    return tmp_path / "bag"
+
+
+@pytest.fixture
+def run(bag, tmp_path):
+    """Call `traffic` on the recording with its detections; return the folder it wrote."""
+
+    def call(*words, status=0, detections=True):
+        out = tmp_path / "out"
+        given = ["--detections", str(tmp_path / "det.txt")] if detections else []
+        assert main(["traffic", str(bag), "-o", str(out), *given, *map(str, words)]) == status
+        return out
+
+    return call
+
+
+def table(path):
+    with path.open() as file:
+        return list(csv.DictReader(file))
+
+
+def test_tracks_of_every_frame_are_written(run):
+    out = run()
+    assert {path.name for path in out.iterdir()} == {
+        "tracks.csv", "tracks.txt", "run.json", "summary.png",
+    }  # fmt: skip
+    rows = table(out / "tracks.csv")
+    assert len(rows) == 2 * COUNT
+    assert [row["frame"] for row in rows[:4]] == ["1", "1", "2", "2"]
+    assert {row["frame"] for row in rows if row["mode"] == "OCCLUDED"} == set(map(str, HIDDEN))
+    mot = [line.split(",") for line in (out / "tracks.txt").read_text().splitlines()]
+    assert len(mot) == 2 * COUNT
+    assert mot[0][:6] == ["1", "1", "20.00", "10.00", "16.00", "12.00"]
+
+
+def test_visible_only_leaves_hidden_vehicles_out(run):
+    out = run("--visible-only")
+    mot = (out / "tracks.txt").read_text().splitlines()
+    assert len(mot) == 2 * COUNT - len(HIDDEN)
+    assert len(table(out / "tracks.csv")) == 2 * COUNT
+
+
+def test_counts_at_lines_and_in_zones(run, tmp_path, capsys):
+    out = run("--lines", tmp_path / "lines.yaml")
+    counts = table(out / "counts.csv")
+    # The lower edges pass y = 60 in frames 14 and 15, and y = 40 in frames 7 to 9.
+    downs = [(row["id"], row["frame"]) for row in counts if row["direction"] == "down"]
+    assert [one for one, _ in downs] == ["1", "2"]
+    assert {row["place"] for row in counts} == {"exit", "yard"}
+    speeds = [float(row["speed_px_s"]) for row in counts if row["place"] == "exit"]
+    assert speeds == pytest.approx([75.0, 75.0])  # 3 px in 0.04 s
+    info = json.loads((out / "run.json").read_text())["summary"]
+    assert {"place": "exit", "direction": "down", "class": "car", "count": 2} in info["counts"]
+    assert info["occupancy"]["yard"]["most"] == 2
+    text = capsys.readouterr().out
+    assert "line exit: 2 down (2 car), 0 up" in text
+    assert "zone yard: 0 entered, 2 left" in text
+
+
+def test_the_summary_is_for_people(run, capsys):
+    run()
+    out, err = capsys.readouterr()
+    assert "2 vehicles in 20 frames, at most 2 at once (2 car)" in out
+    assert "longest: vehicle 1, for 0:00.8 (frames 1 to 20)" in out
+    assert "1 occlusion survived under the same number; 0 vehicles not seen again" in out
+    assert err == ""
+
+
+def test_run_json_says_how_it_was_made(run, tmp_path):
+    info = json.loads((run("--set", "lost_after=1.5") / "run.json").read_text())
+    assert info["command"][:2] == ["vehicle-pf-tracker", "traffic"]
+    assert info["parameters"]["lost_after"] == 1.5
+    assert info["detector"] == str(tmp_path / "det.txt")
+    assert (info["variant"], info["seed"]) == ("traffic", 7)
+    assert info["versions"]["numpy"] == np.__version__
+    assert info["summary"]["vehicles"] == 2
+
+
+def test_elapsed_comes_from_the_stamps(run):
+    out = run()
+    stamps = [int(row["stamp_ns"]) for row in table(out / "tracks.csv")]
+    assert stamps[:3] == [1_000_000_000, 1_000_000_000, 1_040_000_000]
+
+
+def test_a_part_of_the_source_keeps_its_numbers(run):
+    rows = table(run("--start", 5, "--end", 9) / "tracks.csv")
+    assert {row["frame"] for row in rows} == set("56789")
+    # Detections belong to the frames' numbers in the source.
+    assert float(rows[0]["y"]) == 3 * 4 + 10 + 6
+
+
+def test_two_runs_are_equal(run):
+    first = run()
+    text = [(first / name).read_text() for name in ("tracks.csv", "tracks.txt")]
+    second = run("--overwrite")
+    assert text == [(second / name).read_text() for name in ("tracks.csv", "tracks.txt")]
+
+
+def test_results_are_not_replaced_unasked(run, capsys):
+    out = run()
+    before = (out / "tracks.csv").stat().st_mtime_ns
+    run(status=1)
+    assert "has results already" in capsys.readouterr().err
+    assert (out / "tracks.csv").stat().st_mtime_ns == before
+
+
+def test_the_picture_shows_both_paths(run):
+    picture = cv2.imread(str(run() / "summary.png"))[:, :, ::-1].astype(int)
+    assert picture.shape == (480, 640, 3)  # enlarged five times
+    strong = picture.max(axis=2) - picture.min(axis=2) > 120
+    columns = np.flatnonzero(strong.sum(axis=0) > 100)
+    # The centres drive down at x = 28 and x = 68, between y = 16 and 73 or 11 and 68.
+    assert {28 * 5, 68 * 5} <= set(columns)
+
+
+def test_the_video_has_every_frame(run, tmp_path):
+    run("--lines", tmp_path / "lines.yaml", "--video", tmp_path / "out.mp4")
+    video = cv2.VideoCapture(str(tmp_path / "out.mp4"))
+    assert video.get(cv2.CAP_PROP_FRAME_COUNT) == COUNT
+    assert video.get(cv2.CAP_PROP_FPS) == pytest.approx(25, abs=0.1)
+
+
+def test_targets_given_by_hand_are_followed_from_their_frame(run):
+    words = ["--target", "van@3:50,50,20,10", "--target", "5,5,10,10", "--detector", "none"]
+    rows = table(run(*words, detections=False) / "tracks.csv")
+    by_id = {}
+    for row in rows:
+        by_id.setdefault((row["id"], row["label"]), []).append(int(row["frame"]))
+    # Followed in the frames after the one that they are given in.
+    assert {key: min(frames) for key, frames in by_id.items()} == {
+        ("101", ""): 2,
+        ("102", "van"): 4,
+    }
+
+
+@pytest.mark.parametrize(
+    ("words", "detections", "said", "status"),
+    [
+        (["--detector", "none"], False, "without a detector nothing is followed", 2),
+        (["--detector", "motion"], True, "give either --detections, or --detector", 2),
+        (["--detector", "none", "--model", "a.onnx"], False, "--model is not used by", 2),
+        (["--detector", "model"], False, "detector.model names no .onnx file", 1),
+        (["--set", "lost_afterr=1"], True, "did you mean 'lost_after'", 1),
+        (["--set", "target.width=5", "--set", "target.height=5"], True, "give --target", 1),
+        (["--set", "road.from_tf=true", "--set", "road.intrinsics=1,1,1,1"], True, "for nodes", 1),
+        (["--target", "500,500,10,10"], True, "in frame 1, the target", 1),
+        (["--video", "a.avi"], True, "must end in .mp4", 1),
+        (["--start", "99"], True, "no frame lies between", 1),
+        (["--lines", "none.yaml"], True, "cannot read the counting lines none.yaml", 1),
+        (["--detector", "nothing"], False, "invalid choice", 2),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, said, status):
+    out = run(*words, status=status, detections=detections)
+    err = capsys.readouterr().err
+    assert said in err
+    assert "Traceback" not in err
+    assert not out.exists() or not any(out.iterdir())
+
+
+def test_bad_detections_are_named_by_their_row(run, tmp_path, capsys):
+    (tmp_path / "det.txt").write_text("1,-1,1,1,9,9,1\n2,-1,one\n")
+    run(status=1)
+    assert "row 2 of the detections" in capsys.readouterr().err
+
+
+def test_an_interrupt_keeps_what_was_written(run, monkeypatch):
+    class StopsAtNine(Follower):
+        def step(self, frame, detections=None, elapsed=1.0):
+            self.steps = getattr(self, "steps", 0) + 1
+            if self.steps == 9:
+                stops[0].came = True
+            return super().step(frame, detections, elapsed)
+
+    stops = []
+    stopping = traffic.stopping
+
+    class Watched:
+        def __enter__(self):
+            self.inner = stopping()
+            stops.append(self.inner.__enter__())
+            return stops[0]
+
+        def __exit__(self, *details):
+            return self.inner.__exit__(*details)
+
+    monkeypatch.setattr(traffic, "stopping", Watched)
+    monkeypatch.setattr(traffic, "TrafficTracker", StopsAtNine)
+    out = run(status=130)
+    assert {row["frame"] for row in table(out / "tracks.csv")} == set("123456789")
+    assert (out / "summary.png").exists()
+    assert json.loads((out / "run.json").read_text())["summary"]["frames"] == 9

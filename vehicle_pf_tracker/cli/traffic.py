@@ -1,0 +1,262 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`traffic`: follow every vehicle of a source offline, and count them."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vehicle_pf_tracker.cli import parameter_options
+from vehicle_pf_tracker.cli.console import INTERRUPTED, UsageError, tell_notices
+from vehicle_pf_tracker.cli.frames import numbered_frames, peeked
+from vehicle_pf_tracker.cli.picture_window import PictureWindow
+from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.shared_options import add_span
+from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.cli.targets import TargetOption, by_name, parse_target, read_targets
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.following import Pictures
+from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
+from vehicle_pf_tracker.evaluation.run_folder import RUN, versions
+from vehicle_pf_tracker.evaluation.traffic.detection_file import DetectionFile
+from vehicle_pf_tracker.evaluation.traffic.following import Target, TrafficRun
+from vehicle_pf_tracker.evaluation.traffic.summary import limited
+from vehicle_pf_tracker.evaluation.traffic.track_files import TRACKS, track_files
+from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
+from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
+from vehicle_pf_tracker.parameters.road import RoadParameters
+from vehicle_pf_tracker.parameters.table import to_mapping
+from vehicle_pf_tracker.recordings.source import Source, open_source
+from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
+from vehicle_pf_tracker.trackers.traffic.detector_choice import detector_maker
+from vehicle_pf_tracker.trackers.traffic.detector_parameters import MODEL, MOTION, NONE
+from vehicle_pf_tracker.trackers.traffic.session import Detector, TrafficSession
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.variant import TRAFFIC
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.parameters.configuration import Configuration
+
+PICTURE = "summary.png"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of this verb."""
+    add = parser.add_argument
+    add(
+        "source", metavar="SOURCE",
+        help="recording, video file, folder of images, index of a camera, or URL of a stream",
+    )  # fmt: skip
+    add(
+        "-o", "--output", type=Path, metavar="DIR",
+        help="folder for tracks.csv, tracks.txt, counts.csv, run.json and summary.png "
+        "(default: results/ and the source's name)",
+    )  # fmt: skip
+    add("--overwrite", action="store_true", help="replace the results that are in DIR")
+    add("--topic", help="the image topic, if a recording has several")
+    add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states")
+    add_span(parser)
+    add(
+        "--detections", type=Path, metavar="FILE",
+        help="detections as MOTChallenge has them, det.txt, instead of a detector",
+    )  # fmt: skip
+    add(
+        "--detector", choices=(MOTION, MODEL, NONE),
+        help="find what moves before a standing camera (the default), use a network of yours, or "
+        "follow only the vehicles given with --target",
+    )  # fmt: skip
+    add("--model", metavar="FILE", help="the network, .onnx: YOLOX, YOLOv8 or SSD")
+    add("--lines", type=Path, metavar="FILE", help="lines and zones to count at, lines.yaml")
+    add(
+        "--video", type=Path, metavar="FILE",
+        help="write the frames with all vehicles and counts to FILE, an mp4",
+    )  # fmt: skip
+    add("--show", action="store_true", help="show them in a window meanwhile; q ends the run")
+    add(
+        "--visible-only", action="store_true",
+        help="leave vehicles that are occluded, and so predicted, out of tracks.txt",
+    )  # fmt: skip
+    parameter_options.add_arguments(parser)
+    add(
+        "--target", type=parse_target, action="append", default=[],
+        metavar="[NAME][@FRAME:]X,Y,W,H",
+        help="a vehicle to follow from the first frame or from FRAME on, beside those that are "
+        "detected: top-left corner and size in px; repeatable",
+    )  # fmt: skip
+    add("--targets", type=Path, metavar="FILE", help="targets that `pick` wrote")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Follow all vehicles, write the results, and print a summary."""
+    setup = _Setup.of(args)
+    source = open_source(args.source, topic=args.topic, fps=args.fps)
+    folder = _folder(args)
+    window = PictureWindow(args.source) if args.show else None
+    pictures = Pictures(args.video, show=window.show if window else None)
+    with (
+        stopping() as stop,
+        counting("tracked") as progress,
+        track_files(folder, counting=bool(setup.plan), visible_only=args.visible_only) as files,
+    ):
+        first, frames = peeked(numbered_frames(source, args, stop, progress))
+        tracking = setup.tracking(first[0])
+        tracking.follow(frames, files, pictures)
+    notices = [*source.notices, *setup.notices(), *tracking.notices]
+    if args.video and not has_encoder():
+        notices.append(NO_ENCODER)
+    tell_notices(limited(notices))
+    write_json(folder / RUN, _description(args, source, setup, tracking, notices))
+    tracking.paths.write(folder / PICTURE, tracking.counter)
+    for sentence in tracking.summary.sentences(tracking.counter):
+        print(sentence)
+    print(f"results are in {folder}; {PICTURE} shows all paths")
+    if args.video:
+        print(f"the video is {args.video}")
+    return INTERRUPTED if stop.came and source.frame_count is not None else 0
+
+
+@dataclass(frozen=True, slots=True)
+class _Setup:
+    """Everything that the options choose, checked before the first frame is read."""
+
+    configuration: Configuration
+    plan: CountingPlan | None
+    plane: RoadPlane | None
+    detections: DetectionFile | None
+    make_detector: Callable[[], Detector] | None
+    targets: Sequence[TargetOption]
+
+    @classmethod
+    def of(cls, args: argparse.Namespace) -> _Setup:
+        configuration = _configuration(args)
+        targets = [*args.target, *(read_targets(args.targets) if args.targets else [])]
+        if configuration.tracker.detector.kind == NONE and not (args.detections or targets):
+            raise UsageError(
+                "without a detector nothing is followed; give vehicles with --target x,y,w,h, or "
+                "--detections FILE"
+            )
+        return cls(
+            configuration,
+            read_counting_plan(args.lines) if args.lines else None,
+            _plane(configuration.session.road),
+            DetectionFile(args.detections) if args.detections else None,
+            detector_maker(configuration.tracker.detector),
+            targets,
+        )
+
+    def tracking(self, first: int) -> TrafficRun:
+        """Make the run; its first frame has the number `first`."""
+        parameters, settings = self.configuration.tracker, self.configuration.session
+        session = TrafficSession(
+            TrafficTracker(parameters),
+            self.make_detector,
+            frame_rate=parameters.frame_rate,
+            reset_on_time_jump=settings.reset_on_time_jump,
+        )
+        return TrafficRun(
+            session,
+            Counter(self.plan, self.plane) if self.plan else None,
+            detections_of=self.detections.of if self.detections is not None else None,
+            targets=self._targets_by_frame(first),
+        )
+
+    def notices(self) -> list[str]:
+        """Return irregularities of the files, a sentence each."""
+        return self.detections.notices if self.detections is not None else []
+
+    def _targets_by_frame(self, first: int) -> Mapping[int, Sequence[Target]]:
+        found: dict[int, list[Target]] = {}
+        for name, boxes in by_name(self.targets, first).items():
+            for frame, box in boxes.items():
+                found.setdefault(frame, []).append(Target(name, box))
+        return found
+
+
+def _configuration(args: argparse.Namespace) -> Configuration:
+    """Return the parameters; the options of the detector go before files and ``--set``."""
+    configuration = parameter_options.chosen(TRAFFIC, args)
+    if configuration.session.target.box is not None:
+        raise InputError("target.x to target.height are for one vehicle; give --target x,y,w,h")
+    if args.detections and (args.detector or args.model):
+        raise UsageError("give either --detections, or --detector and --model")
+    if args.model and args.detector not in {None, MODEL}:
+        raise UsageError(f"--model is not used by --detector {args.detector}; leave one out")
+    if args.detections:
+        return configuration.updated({"detector.kind": NONE})
+    if args.model:
+        return configuration.updated({"detector.kind": MODEL, "detector.model": args.model})
+    if args.detector:
+        return configuration.updated({"detector.kind": args.detector})
+    return configuration
+
+
+def _plane(road: RoadParameters) -> RoadPlane | None:
+    """Return the road that speeds are measured on; its lens and pose cannot come from topics."""
+    if not road.is_set:
+        return None
+    if road.from_camera_info or road.from_tf:
+        raise InputError(
+            "road.from_camera_info and road.from_tf are for nodes; offline, give road.intrinsics, "
+            "road.distortion and road.camera_pose"
+        )
+    return road.plane(road.lens, road.pose)
+
+
+def _folder(args: argparse.Namespace) -> Path:
+    path: Path = args.output or Path("results", Path(args.source).stem or "traffic")
+    if (path / TRACKS).exists() and not args.overwrite:
+        raise InputError(f"{path} has results already; name another folder, or give --overwrite")
+    folder = make_folder(path)
+    for name in (RUN, PICTURE):
+        (folder / name).unlink(missing_ok=True)
+    return folder
+
+
+def _description(
+    args: argparse.Namespace,
+    source: Source,
+    setup: _Setup,
+    tracking: TrafficRun,
+    notices: Sequence[str],
+) -> dict[str, Any]:
+    """Make the content of `run.json`."""
+    configuration = setup.configuration
+    return {
+        "command": list(args.command),
+        "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "recording": args.source,
+        "image_topic": source.image_topic,
+        "variant": TRAFFIC.name,
+        "seed": tracking.session.tracker.seed,
+        "detector": str(args.detections or configuration.tracker.detector.kind),
+        "parameters": {
+            **to_mapping(configuration.tracker),
+            **to_mapping(configuration.session),
+        },
+        "versions": {**versions(), **_runtime_version(configuration.tracker.detector.kind)},
+        "summary": tracking.summary.to_json(tracking.counter),
+        "notices": list(notices),
+    }
+
+
+def _runtime_version(kind: str) -> dict[str, str]:
+    return {"onnxruntime": metadata.version("onnxruntime")} if kind == MODEL else {}
