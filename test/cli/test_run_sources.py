@@ -14,7 +14,9 @@
 
 """`run` on videos and folders, in parts, with several targets, into pictures."""
 
+import json
 import os
+import resource
 import signal
 import threading
 
@@ -27,6 +29,7 @@ from small_recordings import COUNT, TARGET, box_of, frame_folder, frame_of, reco
 import vehicle_pf_tracker.cli.run as run_verb
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation import video_writer
 from vehicle_pf_tracker.evaluation.estimates import read_estimates
 from vehicle_pf_tracker.evaluation.video_writer import has_encoder
@@ -207,6 +210,32 @@ def test_a_run_that_fails_leaves_no_video(run, tmp_path):
     assert list(made.parent.iterdir()) == []
 
 
+@pytest.fixture
+def little_space():
+    """Let no file grow beyond 8 kB: writing fails then as it does on a full disk."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    yield lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8192, before[1]))
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.parametrize("encoder", [False, pytest.param(True, marks=pytest.mark.skipif(
+    not has_encoder(), reason="PyAV is an extra"))])  # fmt: skip
+def test_a_video_that_finds_no_space_is_an_error_and_is_not_left(
+    tmp_path, monkeypatch, little_space, encoder
+):
+    monkeypatch.setattr(video_writer, "has_encoder", lambda: encoder)
+    path = tmp_path / "made.mp4"
+    noise = np.random.default_rng(0).integers(0, 256, (30, 120, 160, 3), np.uint8)
+    little_space()
+    with (
+        pytest.raises(InputError, match=f"cannot write {path}"),
+        video_writer.video_writer(path, (160, 120), 25.0) as writer,
+    ):
+        for frame in noise:
+            writer.write(frame)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_there_is_no_window_without_a_display(run, video, monkeypatch, capsys):
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
@@ -216,10 +245,17 @@ def test_there_is_no_window_without_a_display(run, video, monkeypatch, capsys):
 
 @pytest.fixture
 def interrupts():
-    """Take SIGINT as Python does, also where a shell in the background ignores it."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    """Take signals as Python does, also where a shell in the background or nohup ignores them."""
+    before = {
+        number: signal.signal(number, handler)
+        for number, handler in (
+            (signal.SIGINT, signal.default_int_handler),
+            (signal.SIGHUP, signal.SIG_DFL),
+        )
+    }
     yield
-    signal.signal(signal.SIGINT, before)
+    for number, handler in before.items():
+        signal.signal(number, handler)
 
 
 @pytest.mark.usefixtures("interrupts")
@@ -250,19 +286,27 @@ def test_other_threads_leave_the_signals_alone():
 
 
 @pytest.mark.usefixtures("interrupts")
-def test_what_was_tracked_until_ctrl_c_is_kept(run, video, tmp_path, monkeypatch):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_what_was_tracked_until_a_signal_is_kept_and_said(
+    run, video, tmp_path, monkeypatch, capsys, number
+):
     doubting = run_verb._doubting
 
     def interrupted(frames, targets):
-        for number, found in doubting(frames, targets):
-            if number == 6:
-                os.kill(os.getpid(), signal.SIGINT)
-            yield number, found
+        for frame, found in doubting(frames, targets):
+            if frame == 6:
+                os.kill(os.getpid(), number)
+            yield frame, found
 
     monkeypatch.setattr(run_verb, "_doubting", interrupted)
-    assert run(video, "--target", TARGET) == 130
+    made = tmp_path / "made.mp4"
+    assert run(video, "--target", TARGET, "--video", made) == 128 + number
     rows = estimates(tmp_path / "out")
     assert 6 <= len(rows) < COUNT
+    words = f"a signal ended the run after {len(rows)} of {COUNT} frames"
+    assert words in capsys.readouterr().err
+    assert json.loads((tmp_path / "out" / "run.json").read_text())["notices"][-1] == words
+    assert cv2.VideoCapture(str(made)).get(cv2.CAP_PROP_FRAME_COUNT) == len(rows)
 
 
 def test_without_the_encoder_the_video_is_written_and_the_remedy_said(

@@ -14,6 +14,8 @@
 
 """What other readers, rosbag2's rules and a failing program make of our recordings."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import yaml
@@ -24,6 +26,7 @@ from rosbags.rosbag2 import Reader
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import messages, topics
+from vehicle_pf_tracker.recordings import writer as writing
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import COMPRESSIONS, RecordingWriter
 
@@ -148,6 +151,35 @@ def test_an_existing_recording_is_replaced_only_on_demand(record):
         writer.write_image(stamp_of(0), frame_of(0))
         assert Recording(folder).frame_count == 3
     assert Recording(folder).frame_count == 1
+
+
+def test_a_recording_is_still_there_when_its_replacement_is_ended(tmp_path, monkeypatch):
+    folder = tmp_path / "bag"
+    with RecordingWriter(folder) as writer:
+        writer.write_truth(truth_of(0))
+    before = (folder / "bag_0.mcap").read_bytes()
+    rename = Path.rename
+
+    def ended(path, target):
+        if path.suffix == ".partial":
+            raise KeyboardInterrupt
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", ended)
+    with pytest.raises(KeyboardInterrupt), RecordingWriter(folder, overwrite=True) as writer:
+        writer.write_image(5, np.zeros((4, 6, 3), np.uint8))
+    assert [path.name for path in tmp_path.iterdir()] == ["bag"]
+    assert (folder / "bag_0.mcap").read_bytes() == before
+
+
+def test_a_recording_that_cannot_be_begun_leaves_nothing(tmp_path, monkeypatch):
+    def ended(*_arguments, **_options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(writing.Writer, "start", ended)
+    with pytest.raises(KeyboardInterrupt):
+        RecordingWriter(tmp_path / "bag")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_overwrite_never_replaces_anything_else(tmp_path):

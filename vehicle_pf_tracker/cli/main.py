@@ -35,6 +35,7 @@ from vehicle_pf_tracker.cli.console import (
     UsageError,
     tell_error,
 )
+from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
 from vehicle_pf_tracker.core.address_space import check_address_space
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 
@@ -75,7 +76,12 @@ _REPRODUCE = (
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line `argv`, that of the process if None, and return the exit status."""
     words = sys.argv[1:] if argv is None else argv
-    return exit_status(lambda: _run(list(words)))
+    try:
+        with raising_terminated():
+            return exit_status(lambda: _run(list(words)))
+    except Terminated as ended:
+        ended.end()
+        return SIGNALS_STATUS + ended.number  # not reached unless the signal is blocked
 
 
 def exit_status(action: Callable[[], int], program: str = PROGRAM) -> int:

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli import parameter_options
-from vehicle_pf_tracker.cli.console import INTERRUPTED, UsageError, show, tell_notices
+from vehicle_pf_tracker.cli.console import UsageError, show, tell_notices
 from vehicle_pf_tracker.cli.frames import Numbered, numbered_frames, peeked
 from vehicle_pf_tracker.cli.picture_window import PictureWindow
 from vehicle_pf_tracker.cli.progress import counting
@@ -122,6 +122,10 @@ def run(args: argparse.Namespace) -> int:
         notices += [*tracker.notices, *tracker.road_notices]
     if args.video and not has_encoder():
         notices.append(NO_ENCODER)
+    was_cut_short = stop.came and source.frame_count is not None  # a live source ends so
+    if was_cut_short:
+        done = max(len(found) for found in rows.values())
+        notices.append(f"a signal ended the run after {done} of {source.frame_count} frames")
     tell_notices(notices)
     _write(folder, args, source, trackers, rows, notices)
     pictures.sheet.write(folder.path / SHEET)
@@ -132,7 +136,7 @@ def run(args: argparse.Namespace) -> int:
         print(f"the video is {args.video}")
     if args.recording:
         print(f"the recording is {args.recording}, for Foxglove and `ros2 bag play`")
-    return INTERRUPTED if stop.came and source.frame_count is not None else 0
+    return stop.status if was_cut_short else 0
 
 
 def _recording(

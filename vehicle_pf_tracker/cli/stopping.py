@@ -12,24 +12,78 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Ctrl-C as the end of the input: what was done until then is kept."""
+"""Signals that end a command: partial files are removed, and what was tracked is kept."""
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from types import FrameType
 from typing import TypeVar
 
 T = TypeVar("T")
 
+Handle = Callable[[int, FrameType | None], None]
+
+SIGNALS_STATUS = 128
+"""Exit status of a program that a signal ended, less the signal's number, as shells have it."""
+
+
+class Terminated(BaseException):
+    """SIGTERM or SIGHUP came; raised as `KeyboardInterrupt` is, so that partial files go."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+    def end(self) -> None:
+        """End the process by the signal, as the one who sent it expects."""
+        signal.signal(self.number, signal.SIG_DFL)
+        os.kill(os.getpid(), self.number)
+
+
+@contextmanager
+def raising_terminated() -> Iterator[None]:
+    """Raise `Terminated` where SIGTERM or SIGHUP would end the process; a second one ends it."""
+
+    def raise_terminated(number: int, _frame: FrameType | None) -> None:
+        signal.signal(number, signal.SIG_DFL)
+        raise Terminated(number)
+
+    # Who has set a handler of their own, or ignores it as under nohup, keeps that.
+    unset = [
+        number
+        for number in (signal.SIGTERM, signal.SIGHUP)
+        if signal.getsignal(number) is signal.SIG_DFL
+    ]
+    with _handled(unset, raise_terminated):
+        yield
+
 
 class Stop:
-    """Ends an iteration when a signal has come."""
+    """Ends an iteration when a signal has come.
+
+    Attributes
+    ----------
+    number : int or None
+        Number of that signal.
+    """
 
     def __init__(self) -> None:
-        self.came = False
+        self.number: int | None = None
+
+    @property
+    def came(self) -> bool:
+        """Whether one has come."""
+        return self.number is not None
+
+    @property
+    def status(self) -> int:
+        """Exit status that tells of the signal; 0 if none has come."""
+        return 0 if self.number is None else SIGNALS_STATUS + self.number
 
     def until(self, items: Iterable[T]) -> Iterator[T]:
         """Yield items until then."""
@@ -41,24 +95,32 @@ class Stop:
 
 @contextmanager
 def stopping() -> Iterator[Stop]:
-    """Take SIGINT and SIGTERM as a stop, once; a second one acts as usual.
-
-    Outside of the main thread, where Python allows no handlers, signals stay as they are.
-    """
+    """Take SIGINT, SIGTERM and SIGHUP as a stop, once; a second one acts as usual."""
     stop = Stop()
-    if threading.current_thread() is not threading.main_thread():
-        yield stop
-        return
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    signals = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    numbers = [
+        number for number in signals
+        if number is signal.SIGINT or signal.getsignal(number) is not signal.SIG_IGN
+    ]  # fmt: skip
+    before = {number: signal.getsignal(number) for number in numbers}
 
-    def note(number: int, _frame: object) -> None:
-        stop.came = True
+    def note(number: int, _frame: FrameType | None) -> None:
+        stop.number = number
         signal.signal(number, before[signal.Signals(number)])
 
-    for number in before:
-        signal.signal(number, note)
-    try:
+    with _handled(numbers, note):
         yield stop
+
+
+@contextmanager
+def _handled(numbers: Iterable[signal.Signals], handle: Handle) -> Iterator[None]:
+    """Handle signals meanwhile; outside of the main thread, where none can be, they stay."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, handle) for number in numbers}
+    try:
+        yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

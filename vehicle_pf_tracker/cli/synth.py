@@ -119,8 +119,7 @@ def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
             cells = (f"{value:.3f}" for value in (box.x, box.y, box.width, box.height))
             lines.append(f"{number},{','.join(cells)},{rendered.truth.occlusion.value}")
             progress(number, scene.frame_count)
-        # Within the block, so that there is never a video without its truth.
-        write_text(table, "\n".join(lines) + "\n")
+    write_text(table, "\n".join(lines) + "\n")
     return table, boxes[0]
 
 

@@ -55,8 +55,10 @@ def make_folder(path: Path) -> Path:
             raise InputError(f"the output {path} is a file; name a folder")
         path.mkdir(parents=True, exist_ok=True)
         probe = _partial(path / "probe")
-        probe.touch()
-        probe.unlink()
+        try:
+            probe.touch()
+        finally:
+            probe.unlink(missing_ok=True)
     return path
 
 

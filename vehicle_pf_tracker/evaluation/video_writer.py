@@ -29,6 +29,7 @@ import numpy as np
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.output_files import make_folder, replacing
+from vehicle_pf_tracker.image.opencv_log import quiet_opencv
 
 SUFFIX = ".mp4"
 NO_ENCODER = (
@@ -47,6 +48,9 @@ class VideoWriter(Protocol):
 
     def close(self) -> None:
         """Complete the file."""
+
+    def is_complete(self) -> bool:
+        """Return whether the closed file has every frame."""
 
 
 @contextmanager
@@ -80,6 +84,8 @@ def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Vid
             yield writer
         finally:
             writer.close()
+        if not writer.is_complete():
+            raise InputError(f"cannot write {path}: frames are missing; is the disk full?")
 
 
 def has_encoder() -> bool:
@@ -89,16 +95,24 @@ def has_encoder() -> bool:
 
 class _OpenCvVideo:
     def __init__(self, path: Path, size: tuple[int, int], rate: float) -> None:
-        self._size = size
+        self._size, self._path, self._count = size, path, 0
         self._writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"mp4v"), rate, size)
         if not self._writer.isOpened():
             raise InputError("this OpenCV cannot write mp4v videos")
 
     def write(self, frame: Frame) -> None:
-        self._writer.write(cv2.cvtColor(_cropped(frame, self._size), cv2.COLOR_RGB2BGR))
+        self._count += 1
+        with quiet_opencv():
+            self._writer.write(cv2.cvtColor(_cropped(frame, self._size), cv2.COLOR_RGB2BGR))
 
     def close(self) -> None:
-        self._writer.release()
+        with quiet_opencv():
+            self._writer.release()
+
+    def is_complete(self) -> bool:
+        with quiet_opencv():  # its writer reports no failure, as that of a full disk
+            found = cv2.VideoCapture(str(self._path)).get(cv2.CAP_PROP_FRAME_COUNT)
+        return int(found) == self._count
 
 
 class _H264Video:
@@ -119,6 +133,9 @@ class _H264Video:
     def close(self) -> None:
         self._container.mux(self._stream.encode())
         self._container.close()
+
+    def is_complete(self) -> bool:
+        return True  # PyAV raises an error for each failure
 
 
 def _cropped(frame: Frame, size: tuple[int, int]) -> Frame:

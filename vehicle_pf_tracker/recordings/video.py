@@ -20,15 +20,14 @@ import math
 import os
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.image.opencv_log import quiet_opencv
 from vehicle_pf_tracker.recordings.footage import (
     LAST_STAMP_NS,
     START_NS,
@@ -40,9 +39,6 @@ from vehicle_pf_tracker.recordings.footage import (
 
 # The decoder's own complaints would go to the terminal beside our sentence.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
-
-_SILENT = 0
-"""OpenCV's log level that says nothing; not every version names it."""
 
 
 _ROUNDING_NS = 1_000_000
@@ -138,24 +134,11 @@ class VideoFile:
         return notices + ([f"frames of the truth without an image: {lost}"] if lost else [])
 
     def _open(self) -> cv2.VideoCapture:
-        with _quiet():
+        with quiet_opencv():
             video = cv2.VideoCapture(str(self._path), _backend())
         if not video.isOpened():
             raise InputError(f"{self._path} is not a video file that can be decoded")
         return video
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep OpenCV from complaining on the terminal."""
-    # OpenCV moved these functions between 4 and 5.
-    logging: Any = getattr(cv2.utils, "logging", cv2)
-    level = logging.getLogLevel()
-    logging.setLogLevel(_SILENT)
-    try:
-        yield
-    finally:
-        logging.setLogLevel(level)
 
 
 def _backend() -> int:
@@ -180,7 +163,7 @@ class Camera:
 
     def __init__(self, source: int | str) -> None:
         self._name = f"the camera {source}" if isinstance(source, int) else f"the stream {source}"
-        with _quiet():
+        with quiet_opencv():
             backend = cv2.CAP_ANY if isinstance(source, int) else _backend()
             self._video = cv2.VideoCapture(source, backend)
         if not self._video.isOpened():

@@ -75,11 +75,18 @@ class OutputFolder:
             self.partial.mkdir(parents=True)
 
     def publish(self) -> None:
-        """Put the finished folder in its place."""
+        """Put the finished folder in its place; a former one goes when it is there."""
+        former = self.partial.with_suffix(".former")
         with output_errors(self.target):
-            if self.target.exists():
-                shutil.rmtree(self.target)
-            self.partial.rename(self.target)
+            try:
+                if self.target.exists():
+                    self.target.rename(former)
+                self.partial.rename(self.target)
+            except BaseException:  # a signal too
+                if former.exists() and not self.target.exists():
+                    former.rename(self.target)
+                raise
+            shutil.rmtree(former, ignore_errors=True)
 
     def discard(self) -> None:
         """Remove what was collected."""
@@ -146,9 +153,13 @@ class RecordingWriter:
         self._channels: dict[str, _Channel] = {}
         self._schemas: dict[str, int] = {}
         self._times: tuple[int, int] | None = None
-        self._stream = (self._output.partial / self._file_name).open("wb")
-        self._mcap = Writer(self._stream, compression=COMPRESSIONS[compression])
-        self._mcap.start(profile=Profile.ROS2, library="vehicle_pf_tracker")
+        try:
+            self._stream = (self._output.partial / self._file_name).open("wb")
+            self._mcap = Writer(self._stream, compression=COMPRESSIONS[compression])
+            self._mcap.start(profile=Profile.ROS2, library="vehicle_pf_tracker")
+        except BaseException:  # a signal too
+            self._output.discard()
+            raise
 
     def __enter__(self) -> RecordingWriter:
         return self
