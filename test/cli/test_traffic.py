@@ -17,6 +17,8 @@
 import csv
 import json
 import math
+import re
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -26,6 +28,7 @@ from vehicle_pf_tracker.cli import traffic
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 COUNT = 20
@@ -287,3 +290,28 @@ def test_an_interrupt_keeps_what_was_written(run, monkeypatch):
     assert {row["frame"] for row in table(out / "tracks.csv")} == set("123456789")
     assert (out / "summary.png").exists()
     assert json.loads((out / "run.json").read_text())["summary"]["frames"] == 9
+
+
+def block(language):
+    """The one block of code of this language on the page."""
+    page = Path(__file__).parents[2] / "docs" / "traffic.md"
+    (code,) = re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL)
+    return code
+
+
+def test_the_lines_of_the_page_are_counted_at(run, tmp_path):
+    (tmp_path / "page.yaml").write_text(block("yaml"))
+    counts = table(run("--lines", tmp_path / "page.yaml") / "counts.csv")
+    # The first vehicle begins below the line, and drives past its end at x = 40.
+    assert [(row["place"], row["direction"], row["id"]) for row in counts] == [("exit", "in", "2")]
+
+
+def test_the_example_of_the_page_runs(monkeypatch, capsys):
+    monkeypatch.setattr("vehicle_pf_tracker.trackers.traffic.tracker.TrafficTracker", Follower)
+    frame = np.zeros((240, 320, 3), np.uint8)
+    camera = [
+        (index * 40_000_000, frame, Detections.make([[60, 5.0 * index, 30, 20]]))
+        for index in range(40)
+    ]
+    exec(compile(block("py"), "traffic.md", "exec"), {"camera": camera})
+    assert capsys.readouterr().out == "2 in car\n"
