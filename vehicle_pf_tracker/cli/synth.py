@@ -12,13 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`synth`: render a synthetic scene to a recording or a video, with exact truth."""
+"""`synth`: render a synthetic scene to a recording or a video, or traffic to a folder."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.progress import counting
@@ -36,16 +37,24 @@ from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.importing import FORMATS, jpeg
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
+from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.scenes.scene import Scene
+from vehicle_pf_tracker.scenes.traffic_catalogue import (
+    TRAFFIC_SCENES,
+    TrafficSceneParameters,
+    make_traffic_scene,
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of this verb."""
     add = parser.add_argument
-    add("scene", nargs="?", metavar="SCENE", help=f"one of: {', '.join(SCENES)}")
+    names = ", ".join((*SCENES, *TRAFFIC_SCENES))
+    add("scene", nargs="?", metavar="SCENE", help=f"one of: {names}")
     add(
         "out", nargs="?", type=Path, metavar="OUT",
-        help="rosbag2 folder to write; or a video, NAME.mp4, with its truth in NAME.csv",
+        help="rosbag2 folder to write; or a video, NAME.mp4, with its truth in NAME.csv; the "
+        "scenes traffic-* are written as MOTChallenge folders",
     )  # fmt: skip
     add("--list", action="store_true", help="list the scenes and their settings")
     add("--seed", type=int, default=0, help="changes textures, noise and traffic (default: 0)")
@@ -67,6 +76,8 @@ def run(args: argparse.Namespace) -> int:
         return 0
     if args.scene is None or args.out is None:
         raise UsageError("synth needs SCENE and OUT; `synth --list` shows the scenes")
+    if args.scene in TRAFFIC_SCENES:
+        return _run_traffic(args)
     scene = make_scene(args.scene, seed=args.seed, settings=args.settings)
     facts = (
         f"{args.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
@@ -82,6 +93,22 @@ def run(args: argparse.Namespace) -> int:
     if not has_encoder():
         tell_notices([NO_ENCODER])
     print(f"{facts}; the truth is in {truth}, and begins with --target {_words(box)}")
+    return 0
+
+
+def _run_traffic(args: argparse.Namespace) -> int:
+    if args.format or args.overwrite or args.out.suffix == SUFFIX:
+        raise UsageError(
+            f"{args.scene} is written as a new MOTChallenge folder: no video, --format or "
+            "--overwrite"
+        )
+    scene = make_traffic_scene(args.scene, seed=args.seed, settings=args.settings)
+    with counting("rendered") as progress:
+        write_mot_folder(scene, args.out, args.seed, progress)
+    print(
+        f"{args.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
+        f"at {scene.frame_rate:g} frames/s, with truth of {len(scene.vehicles)} vehicles"
+    )
     return 0
 
 
@@ -130,9 +157,19 @@ def _words(box: Box) -> str:
 def _listing() -> Iterator[str]:
     for name, kind in SCENES.items():
         yield f"{name}: {kind.summary}"
-        for spec in specs(kind.parameters).values():
-            facts = ", ".join(filter(None, (spec.unit, spec.bounds, " | ".join(spec.choices))))
-            yield f"  {spec.name}={spec.default} [{facts}]: {spec.doc}"
+        yield from _settings(kind.parameters)
+    for name, traffic in TRAFFIC_SCENES.items():
+        yield f"{name}: {traffic.summary}"
+        changed = (f"{key}={value}" for key, value in traffic.settings.items())
+        yield f"  the settings of traffic with {', '.join(changed)}"
+    yield "traffic:"
+    yield from _settings(TrafficSceneParameters)
+
+
+def _settings(parameters: type[Any]) -> Iterator[str]:
+    for spec in specs(parameters).values():
+        facts = ", ".join(filter(None, (spec.unit, spec.bounds, " | ".join(spec.choices))))
+        yield f"  {spec.name}={spec.default} [{facts}]: {spec.doc}"
 
 
 def _write_image(writer: RecordingWriter, stamp_ns: int, frame: Frame, form: str) -> None:

@@ -1,0 +1,214 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Flow of traffic in lanes: drivers who follow each other, change lanes and wait."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+
+_ACCELERATION, _BRAKING = 1.5, 2.0
+"""Comfortable acceleration and braking, m/s²: Treiber's intelligent driver model in towns."""
+_HARDEST = 8.0
+"""Hardest braking that tyres allow, m/s²."""
+_GAP, _HEADWAY = 2.0, 1.2
+"""Gap to a vehicle that stands, m, and time to one that drives, s, of the same model."""
+_IMPATIENT = 0.85
+"""Share of the wanted speed below which the vehicle ahead is overtaken."""
+_LOOK_AHEAD = 30.0
+"""Distance in which a slower vehicle ahead makes a driver change lanes, m."""
+_ROOM_AHEAD, _ROOM_BEHIND = 14.0, 12.0
+"""Room needed in the other lane, m."""
+_CHANGE = 2.5
+"""Duration of a change of lanes, s."""
+_PATIENCE = 3.0
+"""Shortest time between two changes of one driver, s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Driver:
+    """A driver in traffic.
+
+    Attributes
+    ----------
+    lane : int
+        Lane in the beginning.
+    front : float
+        Position of the front along the road in the beginning, m.
+    length : float
+        Length of the vehicle, m.
+    speed : float
+        Wanted speed, m/s.
+    """
+
+    lane: int
+    front: float
+    length: float
+    speed: float
+
+
+@dataclass(frozen=True, slots=True)
+class Hold:
+    """A red light at `place` (m along the road), from `begin` to `end` (s)."""
+
+    place: float
+    begin: float
+    end: float
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """Way of every driver.
+
+    Attributes
+    ----------
+    front : array, shape (drivers, frames)
+        Position of the front along the road, m.
+    lane : array, shape (drivers, frames)
+        Lane, with fractions during changes.
+    """
+
+    front: Array
+    lane: Array
+
+
+class _Traffic:
+    """State of all drivers while they are simulated."""
+
+    def __init__(self, drivers: Sequence[Driver], lanes: int, period: float) -> None:
+        self.lanes, self.period = lanes, period
+        self.front = np.array([one.front for one in drivers])
+        self.length = np.array([one.length for one in drivers])
+        self.wanted = np.array([one.speed for one in drivers])
+        self.speed = self.wanted.copy()
+        self.origin = np.array([one.lane for one in drivers])
+        self.goal = self.origin.copy()
+        self.since = np.full(len(drivers), -math.inf)
+        self.time = 0.0
+
+    @property
+    def progress(self) -> Array:
+        """Share of the present change of lanes that is done, smooth at both ends."""
+        share = np.clip((self.time - self.since) / _CHANGE, 0.0, 1.0)
+        smooth: Array = share * share * (3 - 2 * share)
+        return smooth
+
+    @property
+    def lane(self) -> Array:
+        """Lane with fractions."""
+        lane: Array = self.origin + (self.goal - self.origin) * self.progress
+        return lane
+
+    def occupies(self) -> npt.NDArray[np.bool_]:
+        """Lanes that each driver occupies, shape (drivers, lanes): two during a change."""
+        numbers = np.arange(self.lanes)
+        done = self.progress >= 1
+        here = numbers == self.goal[:, None]
+        return np.asarray(here | ((numbers == self.origin[:, None]) & ~done[:, None]))
+
+    def step(self, holds: Sequence[Hold]) -> None:
+        """Advance by one frame."""
+        gap, closing = self._ahead(holds)
+        approach = self.speed * closing / (2 * math.sqrt(_ACCELERATION * _BRAKING))
+        wanted_gap = _GAP + np.maximum(0.0, self.speed * _HEADWAY + approach)
+        thrust = _ACCELERATION * (
+            1 - (self.speed / self.wanted) ** 4 - (wanted_gap / np.maximum(gap, 0.1)) ** 2
+        )
+        thrust = np.maximum(thrust, -_HARDEST)
+        before = self.speed
+        self.speed = np.maximum(before + thrust * self.period, 0.0)
+        # Never into the vehicle ahead, however the scene begins.
+        self.front += np.minimum((before + self.speed) / 2 * self.period, np.maximum(gap - 0.3, 0))
+        self.time += self.period
+
+    def change_lanes(self) -> None:
+        """Let impatient drivers begin to change, the first ones first."""
+        gap, _ = self._ahead(())
+        slow = (self.speed < _IMPATIENT * self.wanted) & (gap < _LOOK_AHEAD) & (self.speed > 2)
+        rested = self.time - self.since > _CHANGE + _PATIENCE
+        for index in np.flatnonzero(slow & rested)[np.argsort(-self.front[slow & rested])]:
+            for lane in (self.goal[index] + 1, self.goal[index] - 1):
+                if 0 <= lane < self.lanes and self._has_room(int(index), int(lane)):
+                    self.origin[index], self.goal[index] = self.goal[index], lane
+                    self.since[index] = self.time
+                    break
+
+    def _ahead(self, holds: Sequence[Hold]) -> tuple[Array, Array]:
+        """Gap to what is ahead (m) and speed of closing in (m/s) of every driver."""
+        occupied = self.occupies()
+        shared = (occupied[:, None] & occupied[None]).any(axis=2)
+        gaps = self.front[None] - self.length[None] - self.front[:, None]
+        gaps = np.where(shared & (self.front[None] > self.front[:, None]), gaps, math.inf)
+        leader = gaps.argmin(axis=1)
+        gap = gaps[np.arange(len(gaps)), leader]
+        closing = np.where(np.isfinite(gap), self.speed - self.speed[leader], 0.0)
+        for hold in holds:
+            if hold.begin <= self.time < hold.end:
+                distance = hold.place - self.front
+                # Who cannot stop any more drives on.
+                stops = (distance > self.speed**2 / (2 * _HARDEST)) & (distance < gap)
+                gap, closing = np.where(stops, distance, gap), np.where(stops, self.speed, closing)
+        return gap, closing
+
+    def _has_room(self, index: int, lane: int) -> bool:
+        others = self.occupies()[:, lane]
+        others[index] = False
+        ahead = self.front - self.length - self.front[index]
+        behind = self.front[index] - self.length[index] - self.front
+        return not (others & (ahead < _ROOM_AHEAD) & (behind < _ROOM_BEHIND)).any()
+
+
+def simulate(
+    drivers: Sequence[Driver],
+    lanes: int,
+    frame_count: int,
+    frame_rate: float,
+    holds: Sequence[Hold] = (),
+    *,
+    changing: bool = False,
+) -> Flow:
+    """Let drivers follow each other (intelligent driver model) for `frame_count` frames.
+
+    Parameters
+    ----------
+    drivers : sequence of Driver
+        Who drives.
+    lanes : int
+        Number of lanes of the one direction.
+    frame_count : int
+        Number of frames.
+    frame_rate : float
+        Frames per second.
+    holds : sequence of Hold
+        Red lights, for all lanes.
+    changing : bool
+        Let drivers overtake slower ones.
+    """
+    if not drivers:
+        return Flow(np.empty((0, frame_count)), np.empty((0, frame_count)))
+    traffic = _Traffic(drivers, lanes, 1 / frame_rate)
+    front, lane = np.empty((2, len(drivers), frame_count))
+    for index in range(frame_count):
+        front[:, index], lane[:, index] = traffic.front, traffic.lane
+        if changing:
+            traffic.change_lanes()
+        traffic.step(holds)
+    return Flow(front, lane)

@@ -1,0 +1,135 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A scene with many vehicles, and the exact truth about every one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.scenes.compositing import Image, PixelWindow, overlap, paint
+from vehicle_pf_tracker.scenes.scene import Actor, Eye
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleTruth:
+    """Truth about one vehicle in one frame.
+
+    Attributes
+    ----------
+    identity : int
+        Number of the vehicle, from 1.
+    box : Box
+        Its box, cut at the image's borders, px.
+    whole : Box
+        Its whole box.
+    visible : float
+        Share of it that is not hidden by others, of what is inside the image.
+    """
+
+    identity: int
+    box: Box
+    whole: Box
+    visible: float
+
+
+@dataclass(frozen=True, slots=True)
+class TrafficScene:
+    """Synthetic traffic; the same scene, parameters and seed give bit-identical frames.
+
+    Attributes
+    ----------
+    name : str
+        Name in the catalogue.
+    width, height : int
+        Image size in px.
+    frame_rate : float
+        Frames per second.
+    frame_count : int
+        Number of frames.
+    backdrop : callable
+        Draws what never moves and hides nothing.
+    vehicles : tuple of (Actor, Actor)
+        Shadow and body of each vehicle. The lower a body stands, the nearer it is.
+    obstacles : tuple of Actor
+        What stands in front of all vehicles, in painting order.
+    camera : Eye
+        Takes the picture; it must not move.
+    """
+
+    name: str
+    width: int
+    height: int
+    frame_rate: float
+    frame_count: int
+    backdrop: Callable[[], Image]
+    vehicles: tuple[tuple[Actor, Actor], ...]
+    obstacles: tuple[Actor, ...]
+    camera: Eye
+
+    def frames(self) -> Iterator[tuple[Frame, tuple[VehicleTruth, ...]]]:
+        """Render every frame in order, with its truth."""
+        backdrop = self.backdrop()
+        for index in range(self.frame_count):
+            picture = backdrop.copy()
+            order = self._far_to_near(index)
+            shadows = [self.vehicles[number][0] for number in order]
+            bodies = [self.vehicles[number][1] for number in order]
+            for actor in (*shadows, *bodies, *self.obstacles):
+                box = actor.path(index)
+                if not PixelWindow.of(box, self.width, self.height).empty:
+                    paint(picture, actor.seen(index), box)
+            yield self.camera.capture(picture, index), self.truth(index)
+
+    def truth(self, index: int) -> tuple[VehicleTruth, ...]:
+        """Exact truth about every vehicle in the image of frame `index`, by identity."""
+        order = self._far_to_near(index)
+        found = []
+        for depth, number in enumerate(order):
+            nearer = (*(self.vehicles[other][1] for other in order[depth + 1 :]), *self.obstacles)
+            whole = self.vehicles[number][1].path(index)
+            box = self._cut(whole)
+            if box is not None:
+                visible = self._visible(self.vehicles[number][1], nearer, index)
+                found.append(VehicleTruth(number + 1, box, whole, visible))
+        return tuple(sorted(found, key=lambda one: one.identity))
+
+    def _far_to_near(self, index: int) -> list[int]:
+        def foot(number: int) -> float:
+            box = self.vehicles[number][1].path(index)
+            return box.y + box.height
+
+        return sorted(range(len(self.vehicles)), key=foot)
+
+    def _cut(self, box: Box) -> Box | None:
+        left, top = max(box.x, 0.0), max(box.y, 0.0)
+        right = min(box.x + box.width, float(self.width))
+        bottom = min(box.y + box.height, float(self.height))
+        inside = left < right and top < bottom
+        return Box(left, top, right - left, bottom - top) if inside else None
+
+    def _visible(self, body: Actor, nearer: tuple[Actor, ...], index: int) -> float:
+        box = body.path(index)
+        window = PixelWindow.of(box, self.width, self.height)
+        own = body.seen(index).coverage(box, window)
+        seen = own
+        for actor in nearer:
+            place = actor.path(index)
+            if actor.hides and overlap(place, box):
+                seen = seen * (1 - actor.seen(index).coverage(place, window))
+        # A corner of the box may hold nothing of the silhouette.
+        return round(float(seen.sum() / own.sum()), 9) if own.sum() > 0 else 0.0
