@@ -17,7 +17,9 @@
 import csv
 import json
 import math
+import os
 import re
+import signal
 from pathlib import Path
 
 import cv2
@@ -204,6 +206,13 @@ def test_results_are_not_replaced_unasked(run, capsys):
     assert (out / "tracks.csv").stat().st_mtime_ns == before
 
 
+def test_a_run_that_fails_keeps_the_results_before(run, capsys):
+    out = run()
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    run("--overwrite", "--target", "500,500,10,10", status=1)
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+
+
 def test_the_picture_shows_both_paths(run):
     picture = cv2.imread(str(run() / "summary.png"))[:, :, ::-1].astype(int)
     assert picture.shape == (480, 640, 3)  # enlarged five times
@@ -264,32 +273,22 @@ def test_bad_detections_are_named_by_their_row(run, tmp_path, capsys):
     assert "row 2 of the detections" in capsys.readouterr().err
 
 
-def test_an_interrupt_keeps_what_was_written(run, monkeypatch):
-    class StopsAtNine(Follower):
+def test_an_interrupt_keeps_what_was_written(run, monkeypatch, capsys):
+    class Interrupted(Follower):
+        steps = 0
+
         def step(self, frame, detections=None, elapsed=1.0):
-            self.steps = getattr(self, "steps", 0) + 1
+            self.steps += 1
             if self.steps == 9:
-                stops[0].came = True
+                os.kill(os.getpid(), signal.SIGINT)
             return super().step(frame, detections, elapsed)
 
-    stops = []
-    stopping = traffic.stopping
-
-    class Watched:
-        def __enter__(self):
-            self.inner = stopping()
-            stops.append(self.inner.__enter__())
-            return stops[0]
-
-        def __exit__(self, *details):
-            return self.inner.__exit__(*details)
-
-    monkeypatch.setattr(traffic, "stopping", Watched)
-    monkeypatch.setattr(traffic, "TrafficTracker", StopsAtNine)
+    monkeypatch.setattr(traffic, "TrafficTracker", Interrupted)
     out = run(status=130)
     assert {row["frame"] for row in table(out / "tracks.csv")} == set("123456789")
     assert (out / "summary.png").exists()
     assert json.loads((out / "run.json").read_text())["summary"]["frames"] == 9
+    assert "a signal ended the run after 9 of 20 frames" in capsys.readouterr().err
 
 
 def block(language):

@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle_pf_tracker.cli import parameter_options
-from vehicle_pf_tracker.cli.console import INTERRUPTED, UsageError, tell_notices
+from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.frames import numbered_frames, peeked
 from vehicle_pf_tracker.cli.picture_window import PictureWindow
 from vehicle_pf_tracker.cli.progress import counting
@@ -123,15 +123,20 @@ def run(args: argparse.Namespace) -> int:
     notices = [*source.notices, *setup.notices(), *tracking.notices]
     if args.video and not has_encoder():
         notices.append(NO_ENCODER)
+    was_cut_short = stop.came and source.frame_count is not None  # a live source ends so
+    if was_cut_short:
+        done = tracking.summary.frames
+        notices.append(f"a signal ended the run after {done} of {source.frame_count} frames")
     tell_notices(limited(notices))
     write_json(folder / RUN, _description(args, source, setup, tracking, notices))
-    tracking.paths.write(folder / PICTURE, tracking.counter)
+    if not tracking.paths.write(folder / PICTURE, tracking.counter):
+        (folder / PICTURE).unlink(missing_ok=True)
     for sentence in tracking.summary.sentences(tracking.counter):
         print(sentence)
     print(f"results are in {folder}; {PICTURE} shows all paths")
     if args.video:
         print(f"the video is {args.video}")
-    return INTERRUPTED if stop.came and source.frame_count is not None else 0
+    return stop.status if was_cut_short else 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,10 +230,7 @@ def _folder(args: argparse.Namespace) -> Path:
     path: Path = args.output or Path("results", Path(args.source).stem or "traffic")
     if (path / TRACKS).exists() and not args.overwrite:
         raise InputError(f"{path} has results already; name another folder, or give --overwrite")
-    folder = make_folder(path)
-    for name in (RUN, PICTURE):
-        (folder / name).unlink(missing_ok=True)
-    return folder
+    return make_folder(path)
 
 
 def _description(

@@ -87,8 +87,6 @@ def test_crossings_are_rows_of_counts(tmp_path):
 
 
 def test_files_appear_whole_or_not_at_all(tmp_path):
-    (tmp_path / "counts.csv").write_text("of an earlier run")
-
     def write_and_fail():
         with track_files(tmp_path) as files:
             files.write(1, 0, ALL)
@@ -97,6 +95,24 @@ def test_files_appear_whole_or_not_at_all(tmp_path):
     with pytest.raises(RuntimeError):
         write_and_fail()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_that_fails_leaves_the_earlier_one_and_one_that_does_not_replaces_all(tmp_path):
+    with track_files(tmp_path, counting=True) as files:
+        files.write(1, 0, ALL)
+    before = {path.name: path.read_text() for path in tmp_path.iterdir()}
+
+    def write_and_fail():
+        with track_files(tmp_path) as files:
+            files.write(2, 0, ALL)
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        write_and_fail()
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == before
+    with track_files(tmp_path) as files:
+        files.write(2, 0, ALL)
+    assert {path.name for path in tmp_path.iterdir()} == {"tracks.csv", "tracks.txt"}
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path):

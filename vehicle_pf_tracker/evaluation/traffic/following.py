@@ -40,6 +40,9 @@ from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
 
+_MOST_NOTICES = 200
+"""Notices kept: a camera without a clock gives one per frame, for hours."""
+
 
 @dataclass(frozen=True, slots=True)
 class Target:
@@ -69,8 +72,6 @@ class TrafficRun:
         Vehicles and occlusions.
     paths : PathPicture
         Picture of all paths.
-    notices : list of str
-        Irregularities, a sentence each.
     """
 
     def __init__(
@@ -85,11 +86,24 @@ class TrafficRun:
         self.counter = counter
         self.summary = TrafficSummary()
         self.paths = PathPicture()
-        self.notices: list[str] = []
+        self._notices: list[str] = []
+        self._more_notices = 0
         self._detections_of = detections_of
         self._targets = targets
         self._by_name: dict[str, int] = {}
         self._restarts = 0
+
+    @property
+    def notices(self) -> list[str]:
+        """Irregularities, a sentence each; of very many only the first."""
+        more = self._more_notices
+        return [*self._notices, *([f"and {more} more notices"] if more else [])]
+
+    def _note(self, sentence: str) -> None:
+        if len(self._notices) < _MOST_NOTICES:
+            self._notices.append(sentence)
+        else:
+            self._more_notices += 1
 
     def follow(self, frames: Numbered, files: TrackFiles, pictures: Pictures | None = None) -> None:
         """Follow all vehicles through `frames`, which have their numbers in the source.
@@ -120,15 +134,16 @@ class TrafficRun:
     def _step(self, number: int, found: StampedFrame) -> tuple[TrackEstimate, ...] | None:
         """Take a frame; None where it is rejected, so that nothing is known of its time."""
         if found.frame is None:
-            self.notices.append(f"frame {number} was rejected: it cannot be read")
+            self._note(f"frame {number} was rejected: it cannot be read")
             return None
         detections = self._detections_of(number) if self._detections_of is not None else None
         try:
             estimates = self.session.feed(found.frame, found.stamp_ns, detections)
         except InputError as error:
-            self.notices.append(f"frame {number} was rejected: {error}")
+            self._note(f"frame {number} was rejected: {error}")
             return None
-        self.notices += [f"frame {number}: {event}" for event in self.session.events]
+        for event in self.session.events:
+            self._note(f"frame {number}: {event}")
         if self.counter is not None and self.session.restarts != self._restarts:
             self._restarts = self.session.restarts
             self.counter.forget_vehicles()

@@ -98,7 +98,7 @@ def track_files(
 ) -> Iterator[TrackFiles]:
     """Open the files of a run in `folder`; they appear under their names when all is written.
 
-    Those of an earlier run are removed first, so that none is ever left beside others' results.
+    Until then, and if anything goes wrong, those of an earlier run stay as they are.
 
     Raises
     ------
@@ -106,9 +106,6 @@ def track_files(
         If they cannot be written.
     """
     names = [TRACKS, MOT_TRACKS, COUNTS] if counting else [TRACKS, MOT_TRACKS]
-    for name in (TRACKS, MOT_TRACKS, COUNTS):
-        with output_errors(folder / name):
-            (folder / name).unlink(missing_ok=True)
     with ExitStack() as stack:
         partials = [stack.enter_context(replacing(folder / name)) for name in names]
         with ExitStack() as opened:
@@ -120,6 +117,9 @@ def track_files(
             yield TrackFiles(
                 csv_file, mot_file, counts[0] if counts else None, visible_only=visible_only
             )
+    if not counting:  # none of an earlier run beside the tracks of this one
+        with output_errors(folder / COUNTS):
+            (folder / COUNTS).unlink(missing_ok=True)
 
 
 def track_row(frame: int, stamp_ns: int, estimate: TrackEstimate) -> list[Any]:
