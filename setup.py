@@ -92,6 +92,7 @@ setup(
         "console_scripts": [
             f"vehicle-pf-tracker = {NAME}.cli.main:main",
             f"bag_replay = {NAME}.cli.main:bag_replay",
+            f"video_source = {NAME}.ros.executables:video_source",
             *(f"{one.executable} = {NAME}.ros.executables:main" for one in VARIANTS.values()),
         ],
     },

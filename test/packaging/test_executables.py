@@ -24,7 +24,7 @@ import pytest
 
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
-ROS_NODES = [variant.executable for variant in VARIANTS.values()]
+ROS_NODES = ["video_source", *(variant.executable for variant in VARIANTS.values())]
 
 
 def executable(name):

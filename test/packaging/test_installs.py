@@ -31,7 +31,9 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARE = Path("share", "vehicle_pf_tracker")
-EXECUTABLES = {"vehicle-pf-tracker", "bag_replay", *(f"{name}_tracker" for name in VARIANTS)}
+EXECUTABLES = {
+    "vehicle-pf-tracker", "bag_replay", "video_source", *(f"{name}_tracker" for name in VARIANTS),
+}  # fmt: skip
 ASK = """
 import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.config_files import config_path

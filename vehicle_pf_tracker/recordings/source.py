@@ -24,11 +24,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings.footage import Footage
-from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
+from vehicle_pf_tracker.recordings.open_footage import is_recording, open_footage
 from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
-from vehicle_pf_tracker.recordings.video import Camera, VideoFile
-
-_CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
 
 
 class Source(Protocol):
@@ -116,25 +113,15 @@ def open_source(
     InputError
         If there is no such source, or an option does not fit it.
     """
-    text = str(source)
-    if text.isdecimal() and not Path(text).exists():
-        return _footage(Camera(int(text)), text, topic)
-    if "://" in text:
-        camera = Camera(text)
-        return _footage(camera if camera.is_endless else VideoFile(text, fps=fps), text, topic)
-    path = Path(text)
+    path = Path(source)
     if is_recording(path):
         if fps is not None:
             raise InputError(f"{path} is a recording, whose images have stamps; leave --fps out")
         return Recording(path, topic)
-    refuse_other_bags(path)
-    if not path.exists():
-        raise InputError(f"there is no file or folder {path}")
-    if path.is_dir():
-        return _footage(FrameFolder(path, fps), text, topic)
-    if not path.is_file():
-        raise InputError(f"{path} is not a regular file or a folder")
-    return _footage(VideoFile(path, fps=fps), text, topic)
+    footage = open_footage(source, fps=fps)
+    if topic is not None:
+        raise InputError(f"{source} is not a recording and has no topics; leave --topic out")
+    return FootageSource(footage)
 
 
 def frame_at(source: Source, number: int) -> Frame:
@@ -152,30 +139,3 @@ def frame_at(source: Source, number: int) -> Frame:
                 raise InputError(f"frame {number} cannot be read")
             return found.frame
     raise InputError(f"there is no frame {number}; the source has {count}")
-
-
-def is_recording(path: Path) -> bool:
-    """Return whether `path` is a rosbag2 folder or an MCAP file, by its name and content."""
-    return path.suffix == ".mcap" or (path / "metadata.yaml").exists()
-
-
-def refuse_other_bags(path: Path) -> None:
-    """Raise for a bag of ROS 1 or of SQLite, with the command that converts it.
-
-    Raises
-    ------
-    InputError
-        If it is one.
-    """
-    kinds = {".bag": "a ROS 1 bag", ".db3": "a bag in SQLite"}
-    if path.suffix in kinds:
-        folder = path.parent if path.suffix == ".db3" else path
-        raise InputError(
-            f"{path} is {kinds[path.suffix]}; convert it to MCAP: {_CONVERSION.format(path=folder)}"
-        )
-
-
-def _footage(footage: Footage, name: str, topic: str | None) -> FootageSource:
-    if topic is not None:
-        raise InputError(f"{name} is not a recording and has no topics; leave --topic out")
-    return FootageSource(footage)

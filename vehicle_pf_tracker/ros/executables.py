@@ -12,13 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The program behind all nodes: ``<variant>_tracker`` runs the variant in its name."""
+"""The programs behind all nodes: ``<variant>_tracker`` runs the variant in its name."""
 
 from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from vehicle_pf_tracker.core.address_space import check_address_space
@@ -46,22 +46,55 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
         Exit status; see `vehicle_pf_tracker.ros.node.process.run_node`.
     """
     name = variant or Path(sys.argv[0]).stem.removesuffix("_tracker")
-    # Imported late, so that a signal while libraries load ends the program without a traceback.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        check_address_space()
+
+    def run() -> int:
         from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
         from vehicle_pf_tracker.trackers.registry import find_variant  # noqa: PLC0415
 
         return run_node(find_variant(name), sys.argv[1:] if args is None else args)
+
+    return _status(f"{name}_tracker", run)
+
+
+def video_source(args: Sequence[str] | None = None) -> int:
+    """Run the node that publishes a video, a folder of images, a camera or a stream.
+
+    Parameters
+    ----------
+    args : sequence of str, optional
+        Command line without the program's name; that of the process if left out.
+
+    Returns
+    -------
+    int
+        Exit status; see `vehicle_pf_tracker.ros.video_source.process.run_video_source`.
+    """
+
+    def run() -> int:
+        from vehicle_pf_tracker.ros.video_source.process import run_video_source  # noqa: PLC0415
+
+        return run_video_source(sys.argv[1:] if args is None else args)
+
+    return _status("video_source", run)
+
+
+def _status(program: str, run: Callable[[], int]) -> int:
+    """Return the status of `run`, which imports what it needs.
+
+    It imports late, so that a signal while libraries load ends the program without a traceback.
+    """
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        check_address_space()
+        return run()
     except InputError as error:
-        print(f"{name}_tracker: {error}", file=sys.stderr)
+        print(f"{program}: {error}", file=sys.stderr)
         return 1
     except ModuleNotFoundError as error:
-        print(f"{name}_tracker: {_NO_ROS.format(error.name)}", file=sys.stderr)
+        print(f"{program}: {_NO_ROS.format(error.name)}", file=sys.stderr)
         return 1
     except MemoryError:
-        print(f"{name}_tracker: there is not enough memory", file=sys.stderr)
+        print(f"{program}: there is not enough memory", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 0

@@ -16,30 +16,21 @@
 
 from __future__ import annotations
 
-import itertools
-import os
-import signal
 import sys
-import threading
 import time
 import traceback
 from collections import deque
 from collections.abc import Sequence
-from pathlib import Path
-from types import FrameType
 
 import rclpy
 from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.node import Node
-from rclpy.utilities import remove_ros_args
 
-from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.yaml_text import check_yaml_file
 from vehicle_pf_tracker.ros.node.allocator import keep_image_memory
 from vehicle_pf_tracker.ros.node.image_executor import node_executor
 from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
-from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
+from vehicle_pf_tracker.ros.process import end_at_once, run_process
 from vehicle_pf_tracker.ros.transport import image_transport
 from vehicle_pf_tracker.trackers.registry import Variant
 
@@ -52,44 +43,6 @@ _FAILING = 10.0
 it ends, so that ``respawn`` in a launch file can restart it."""
 
 _BROKEN = "a request could not be answered:"
-
-
-class _Interrupts:
-    """Signals end the program until ROS is up; from then on rclpy's own handlers end the spin.
-
-    `ros2 launch` sends SIGINT twice, and the second must not reach the clean-up. rclpy knows SIGINT
-    and SIGTERM alone; a terminal that closes sends SIGHUP, which is turned into SIGTERM.
-    """
-
-    def __init__(self) -> None:
-        self.left_to_ros = False
-        signal.signal(signal.SIGINT, self)
-        signal.signal(signal.SIGTERM, self)
-        if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as nohup sets it
-            _turn_hangup_into_termination()
-
-    def __call__(self, number: int, frame: FrameType | None) -> None:
-        if not self.left_to_ros:
-            raise KeyboardInterrupt
-
-
-def _turn_hangup_into_termination() -> None:
-    """Send SIGTERM on SIGHUP, from a thread: Python's handlers wait while rclpy waits for messages.
-
-    Blocking the signal instead would leave it deadly in threads that libraries have started before.
-    """
-    reader, writer = os.pipe()
-    os.set_blocking(writer, False)
-    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
-    signal.signal(signal.SIGHUP, lambda number, frame: None)
-    threading.Thread(target=_await_hangup, args=(reader,), name="SIGHUP", daemon=True).start()
-
-
-def _await_hangup(reader: int) -> None:
-    """Read the numbers of signals until SIGHUP is one of them."""
-    while os.read(reader, 1) != bytes([signal.SIGHUP]):
-        pass
-    os.kill(os.getpid(), signal.SIGTERM)
 
 
 def run_node(variant: Variant, arguments: Sequence[str]) -> int:
@@ -107,37 +60,16 @@ def run_node(variant: Variant, arguments: Sequence[str]) -> int:
     int
         Exit status: 0 ended by a signal, 1 a user's mistake (printed on stderr), 2 usage.
     """
-    status = _run(variant, arguments)
-    if is_loading():  # a thread in LLVM would be left behind, and may not outlive Python
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(status)
-    return status
-
-
-def _run(variant: Variant, arguments: Sequence[str]) -> int:
-    interrupts = _Interrupts()
     name = f"{variant.name}_tracker"
     keep_image_memory()
-    try:
-        _check_parameter_files(arguments)
-        rclpy.init(args=list(arguments))
-        interrupts.left_to_ros = True
-        others = remove_ros_args(list(arguments))
+
+    def serve(others: list[str]) -> int:
         return _usage(name, others) if others else _serve(variant)
-    except InputError as error:
-        return _fail(name, str(error))
-    except (RCLError, UnknownROSArgsError) as error:
-        return _fail(name, _first_sentence(error))
-    finally:
-        rclpy.try_shutdown()
 
-
-def _check_parameter_files(arguments: Sequence[str]) -> None:
-    """Refuse files in which a key is there twice, of which ROS would take the last."""
-    for option, value in itertools.pairwise(arguments):
-        if option == "--params-file" and Path(value).is_file():  # of others, ROS says why
-            check_yaml_file(Path(value), "parameter file")
+    status = run_process(name, arguments, serve)
+    if is_loading():  # a thread in LLVM would be left behind
+        end_at_once(status)
+    return status
 
 
 def _serve(variant: Variant) -> int:
@@ -195,15 +127,3 @@ def _usage(name: str, words: Sequence[str]) -> int:
         file=sys.stdout if asked else sys.stderr,
     )
     return 0 if asked else 2
-
-
-def _fail(name: str, sentence: str) -> int:
-    print(f"{name}: {sentence}", file=sys.stderr)
-    return 1
-
-
-def _first_sentence(error: Exception) -> str:
-    if isinstance(error, UnknownROSArgsError):
-        return f"unknown ROS arguments: {error}"
-    text = str(error).replace("failed to initialize rcl: ", "")
-    return text.partition(", at /")[0]

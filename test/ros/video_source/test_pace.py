@@ -1,0 +1,82 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Stamps keep a file's intervals and follow the clock of live images; waits double."""
+
+import threading
+import time
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from vehicle_pf_tracker.ros.video_source.pacing import BackOff, Pace
+
+MS = 1_000_000
+
+
+class Clock:
+    def __init__(self, *times):
+        self.times = list(times)
+
+    def __call__(self):
+        return self.times.pop(0)
+
+
+def test_a_file_keeps_its_intervals_and_is_not_early():
+    pace = Pace(Clock(5_000 * MS), threading.Event(), is_live=False)
+    pace.begin()
+    began = time.monotonic()
+    stamps = [pace.stamp(ms * MS) for ms in (1000, 1040, 1120)]
+    assert stamps == [5_000 * MS, 5_040 * MS, 5_120 * MS]
+    assert time.monotonic() - began >= 0.12
+
+
+def test_a_new_pass_begins_at_the_clock_and_never_before_the_last_stamp():
+    pace = Pace(Clock(5_000 * MS, 5_500 * MS, 4_000 * MS), threading.Event(), is_live=False)
+    stamps = []
+    for _ in range(3):
+        pace.begin()
+        stamps.append(pace.stamp(1000 * MS))
+    assert stamps == [5_000 * MS, 5_500 * MS, 5_500 * MS + 1]
+
+
+def test_live_images_have_the_clock_but_each_a_time_of_its_own():
+    pace = Pace(Clock(7, 7, 5, 100), threading.Event(), is_live=True)
+    assert [pace.stamp(0) for _ in range(4)] == [7, 8, 9, 100]
+
+
+def test_the_end_of_the_process_ends_waits():
+    stop = threading.Event()
+    stop.set()
+    pace, back_off = Pace(Clock(0), stop, is_live=False), BackOff(stop, 60.0)
+    pace.begin()
+    began = time.monotonic()
+    pace.stamp(0)
+    pace.stamp(3600 * 1000 * MS)
+    back_off.wait()
+    assert time.monotonic() - began < 5
+
+
+def test_waits_double_up_to_the_longest_and_begin_again_after_an_image():
+    stop = threading.Event()
+    stop.set()
+    back_off = BackOff(stop, 1.0, 5.0)
+    waits = []
+    for _ in range(4):
+        waits.append(back_off.seconds)
+        back_off.wait()
+    assert waits == [1.0, 2.0, 4.0, 5.0]
+    back_off.reset()
+    assert back_off.seconds == 1.0

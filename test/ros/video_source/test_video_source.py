@@ -1,0 +1,247 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The executable `video_source`, heard through Fast DDS, with sources that break and come back."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import signal
+import threading
+import time
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+
+import cv2
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from tracker_rig import HEIGHT, TARGET, WIDTH, road
+
+from vehicle_pf_tracker.ros.messages import stamp_ns
+
+pytestmark = pytest.mark.ros
+
+FPS = 25
+COUNT = 10
+CALIBRATION = f"""
+image_width: {{width}}
+image_height: {HEIGHT}
+camera_matrix: {{{{data: [50, 0, 32, 0, 50, 24, 0, 0, 1]}}}}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder of images at 25 Hz."""
+    made = tmp_path / "frames"
+    (made / "img").mkdir(parents=True)
+    for number, frame in enumerate(road(COUNT), start=1):
+        cv2.imwrite(str(made / "img" / f"{number:06}.png"), cv2.cvtColor(frame, cv2.COLOR_RGB2BGR))
+    (made / "sequence.json").write_text(json.dumps({"fps": FPS}))
+    return made
+
+
+@pytest.fixture
+def start(start_process):
+    """Return a function that runs `video_source SOURCE` with parameters."""
+
+    def start(source, **parameters):
+        code = (
+            "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler);"
+            "from vehicle_pf_tracker.ros.executables import video_source; sys.exit(video_source())"
+        )
+        given = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
+        return start_process("-c", code, str(source), "--ros-args", *given)
+
+    return start
+
+
+def test_images_are_those_of_the_source_at_its_times(bench, start, folder, tmp_path):
+    (tmp_path / "camera.yaml").write_text(CALIBRATION.format(width=WIDTH))
+    start(folder, loop=True, frame_id="mast", camera_info_url=tmp_path / "camera.yaml")
+    infos = bench.collect(CameraInfo, "camera_info", 50)
+    images = bench.collect(Image, "image", 50)
+    bench.wait_for(lambda: len(images) > 2 * COUNT)
+    assert {image.header.frame_id for image in images} == {"mast"}
+    frames = [frame.tobytes() for frame in road(COUNT)]
+    order = [frames.index(bytes(image.data)) for image in images]
+    assert all((b - a) % COUNT == 1 for a, b in itertools.pairwise(order))
+    stamps = [stamp_ns(image.header) for image in images]
+    steps = [b - a for a, b, n in zip(stamps, stamps[1:], order[1:], strict=False) if n]
+    assert set(steps) == {10**9 // FPS}
+    assert all(a < b for a, b in itertools.pairwise(stamps))
+    assert abs(stamps[-1] - time.time_ns()) < 60e9
+    assert {image.header.stamp.nanosec for image in images[:5]} <= {
+        info.header.stamp.nanosec for info in infos
+    }
+    assert (infos[0].width, infos[0].k[2]) == (WIDTH, 32.0)
+
+
+def test_compressed_images_come_too_and_no_calibration_of_another_size(
+    bench, start, folder, tmp_path
+):
+    (tmp_path / "camera.yaml").write_text(CALIBRATION.format(width=WIDTH + 1))
+    process = start(folder, loop=True, compressed=True, camera_info_url=tmp_path / "camera.yaml")
+    images = bench.collect(CompressedImage, "image/compressed")
+    infos = bench.collect(CameraInfo, "camera_info")
+    bench.wait_for(lambda: images)
+    assert "jpeg" in images[0].format
+    decoded = cv2.imdecode(np.frombuffer(images[0].data, np.uint8), cv2.IMREAD_COLOR)
+    blue_above_red = decoded[TARGET[1] + 3, :, 0].astype(int) - decoded[TARGET[1] + 3, :, 2]
+    assert decoded.shape == (HEIGHT, WIDTH, 3)
+    assert (blue_above_red > 100).sum() > TARGET[2] / 2  # the upper half of the vehicle
+    assert not infos
+    assert f"the calibration is for {WIDTH + 1}x{HEIGHT} px" in process.output
+
+
+def test_a_tracker_hears_it_without_a_word_of_remapping(bench, start, start_node, folder):
+    names = ("x", "y", "width", "height")
+    target = [f"target.{name}:={float(v)}" for name, v in zip(names, TARGET, strict=True)]
+    start_node("pf", *(word for one in target for word in ("-p", one)))
+    modes = bench.collect(DiagnosticArray, "/pf_tracker/mode", 50)
+    start(folder, loop=True)
+    bench.wait_for(lambda: any(one.status[0].message == "TRACKING" for one in modes), 120.0)
+
+
+def test_a_folder_ends_with_the_process(start, folder):
+    process = start(folder, fps=200)
+    assert process.wait() == 0
+    assert f"the source has ended after {COUNT} images" in process.output
+
+
+@pytest.mark.parametrize(
+    ("source", "parameters", "said"),
+    [
+        ("/nowhere.mp4", {}, "there is no file or folder /nowhere.mp4"),
+        ("", {}, "give a source"),
+        ("/dev/null", {}, "/dev/null is not a regular file or a folder"),
+        (__file__, {}, "is not a video file that can be decoded"),
+        ("rec.mcap", {}, "rec.mcap is a recording; `bag_replay rec.mcap` plays it"),
+        ("http://127.0.0.1:9/stream", {}, "the stream http://127.0.0.1:9/stream cannot be opened"),
+        ("FOLDER", {"camera_info_url": "/no.yaml"}, "cannot read the calibration /no.yaml"),
+        ("FOLDER", {"jpeg_quality": 101}, "the parameter jpeg_quality cannot have this value"),
+        ("FOLDER", {"frame_id": 5}, "the parameter frame_id cannot have this value"),
+        ("FOLDER", {"fps": "quick"}, "the parameter fps is neither 0 nor from"),
+        ("FOLDER", {"fps": -2}, "the parameter fps is neither 0 nor from"),
+    ],
+)
+def test_a_mistake_ends_in_one_sentence(start, folder, source, parameters, said):
+    process = start(folder if source == "FOLDER" else source, **parameters)
+    assert process.wait(60) == 1
+    assert process.output.startswith("video_source: ")
+    assert said in process.output
+    assert process.output.count("\n") == 1
+
+
+def test_an_image_that_cannot_be_read_ends_it(start, folder):
+    (folder / "img" / "000004.png").write_bytes(b"no image")
+    process = start(folder)
+    assert process.wait() == 1
+    assert "000004.png cannot be read" in process.output
+    assert "Traceback" not in process.output
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_it_well(bench, start, folder, number):
+    process = start(folder, loop=True)
+    images = bench.collect(Image, "image")
+    bench.wait_for(lambda: images)
+    process.send(number)
+    assert process.wait(10.0) == 0
+    assert "Traceback" not in process.output
+
+
+def test_a_folder_that_vanishes_and_appears_again(bench, start, folder):
+    process = start(folder, loop=True)
+    images = bench.collect(Image, "image")
+    bench.wait_for(lambda: images)
+    folder.rename(folder.with_name("elsewhere"))
+    process.wait_for_output("trying again after 1 s")
+    folder.with_name("elsewhere").rename(folder)
+    process.wait_for_output("images again after")
+    before = len(images)
+    bench.wait_for(lambda: len(images) > before + 1)
+
+
+def test_a_signal_is_obeyed_while_the_source_is_away(bench, start, folder):
+    process = start(folder, loop=True)
+    images = bench.collect(Image, "image")
+    bench.wait_for(lambda: images)
+    folder.rename(folder.with_name("elsewhere"))
+    process.wait_for_output("trying again after 1 s")
+    process.send(signal.SIGTERM)
+    assert process.wait(10.0) == 0
+
+
+class Stream:
+    """A network camera of `port`, which can be broken off: JPEG images over HTTP."""
+
+    def __init__(self, port: int = 0):
+        image = cv2.imencode(".jpg", road(1)[0])[1].tobytes()
+        lasts = threading.Event()
+        lasts.set()
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_GET(self):
+                self.send_response(200)
+                self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
+                self.end_headers()
+                head = f"--frame\r\nContent-Type: image/jpeg\r\nContent-Length: {len(image)}"
+                while lasts.is_set():
+                    self.wfile.write(head.encode() + b"\r\n\r\n" + image + b"\r\n")
+                    time.sleep(0.02)
+
+            def log_message(self, *words):
+                pass
+
+        self._lasts = lasts
+        self._server = ThreadingHTTPServer(("127.0.0.1", port), Handler)
+        self._server.daemon_threads = True
+        self.port = self._server.server_address[1]
+        threading.Thread(target=self._server.serve_forever, daemon=True).start()
+
+    def end(self):
+        self._lasts.clear()
+        self._server.shutdown()
+        self._server.server_close()
+
+
+@pytest.mark.skipif(
+    cv2.CAP_FFMPEG not in cv2.videoio_registry.getStreamBackends(),
+    reason="this OpenCV reads no network streams",
+)
+def test_a_stream_that_breaks_is_opened_again(bench, start):
+    stream = Stream()
+    process = start(f"http://127.0.0.1:{stream.port}/cam.mjpg")
+    images = bench.collect(Image, "image", qos_profile_sensor_data)
+    bench.wait_for(lambda: len(images) > 3, 60.0)
+    stamps = [stamp_ns(image.header) for image in images]
+    assert all(a < b for a, b in itertools.pairwise(stamps))
+    assert abs(stamps[-1] - time.time_ns()) < 60e9
+    stream.end()
+    process.wait_for_output("sends no more images; trying again after 1 s", 60.0)
+    assert process.popen.poll() is None
+    again = Stream(stream.port)
+    process.wait_for_output("images again after", 60.0)
+    before = len(images)
+    bench.wait_for(lambda: len(images) > before + 3, 60.0)
+    process.send(signal.SIGINT)
+    assert process.wait(10.0) == 0
+    again.end()

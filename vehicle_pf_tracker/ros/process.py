@@ -1,0 +1,128 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A process of ROS: arguments, signals, exit status."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from types import FrameType
+
+import rclpy
+from rclpy.utilities import remove_ros_args
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.yaml_text import check_yaml_file
+from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
+
+
+class _Interrupts:
+    """Signals end the program until ROS is up; from then on rclpy's own handlers end the spin.
+
+    `ros2 launch` sends SIGINT twice, and the second must not reach the clean-up. rclpy knows SIGINT
+    and SIGTERM alone; a terminal that closes sends SIGHUP, which is turned into SIGTERM.
+    """
+
+    def __init__(self) -> None:
+        self.left_to_ros = False
+        signal.signal(signal.SIGINT, self)
+        signal.signal(signal.SIGTERM, self)
+        if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as nohup sets it
+            _turn_hangup_into_termination()
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        if not self.left_to_ros:
+            raise KeyboardInterrupt
+
+
+def _turn_hangup_into_termination() -> None:
+    """Send SIGTERM on SIGHUP, from a thread: Python's handlers wait while rclpy waits for messages.
+
+    Blocking the signal instead would leave it deadly in threads that libraries have started before.
+    """
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+    signal.signal(signal.SIGHUP, lambda number, frame: None)
+    threading.Thread(target=_await_hangup, args=(reader,), name="SIGHUP", daemon=True).start()
+
+
+def _await_hangup(reader: int) -> None:
+    """Read the numbers of signals until SIGHUP is one of them."""
+    while os.read(reader, 1) != bytes([signal.SIGHUP]):
+        pass
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
+def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]], int]) -> int:
+    """Run `serve` between the start of ROS and its end.
+
+    Parameters
+    ----------
+    name : str
+        Name of the executable, for its errors.
+    arguments : sequence of str
+        Command line without the program's name.
+    serve : callable
+        Gets the words that are not ROS's, and returns the exit status.
+
+    Returns
+    -------
+    int
+        Exit status: that of `serve`, or 1 for a user's mistake (printed on stderr).
+    """
+    interrupts = _Interrupts()
+    try:
+        _check_parameter_files(arguments)
+        rclpy.init(args=list(arguments))
+        interrupts.left_to_ros = True
+        return serve(remove_ros_args(list(arguments)))
+    except InputError as error:
+        return _fail(name, str(error))
+    except (RCLError, UnknownROSArgsError) as error:
+        return _fail(name, _first_sentence(error))
+    finally:
+        rclpy.try_shutdown()
+
+
+def end_at_once(status: int) -> None:
+    """End the process where a thread that cannot be ended would outlive Python."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
+
+
+def _check_parameter_files(arguments: Sequence[str]) -> None:
+    """Refuse files in which a key is there twice, of which ROS would take the last."""
+    for option, value in itertools.pairwise(arguments):
+        if option == "--params-file" and Path(value).is_file():  # of others, ROS says why
+            check_yaml_file(Path(value), "parameter file")
+
+
+def _fail(name: str, sentence: str) -> int:
+    print(f"{name}: {sentence}", file=sys.stderr)
+    return 1
+
+
+def _first_sentence(error: Exception) -> str:
+    if isinstance(error, UnknownROSArgsError):
+        return f"unknown ROS arguments: {error}"
+    text = str(error).replace("failed to initialize rcl: ", "")
+    return text.partition(", at /")[0]
