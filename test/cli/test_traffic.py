@@ -178,6 +178,15 @@ def test_run_json_says_how_it_was_made(run, tmp_path):
     assert info["summary"]["vehicles"] == 2
 
 
+def test_the_printed_parameters_are_taken(run, tmp_path, capsys):
+    assert main(["params", "traffic"]) == 0
+    printed = capsys.readouterr().out
+    assert "detector.min_score: 0.1" in printed
+    (tmp_path / "mine.yaml").write_text(printed.replace("lost_after: 2.0", "lost_after: 9.0"))
+    info = json.loads((run("--params", tmp_path / "mine.yaml") / "run.json").read_text())
+    assert info["parameters"]["lost_after"] == 9.0
+
+
 def test_elapsed_comes_from_the_stamps(run):
     out = run()
     stamps = [int(row["stamp_ns"]) for row in table(out / "tracks.csv")]

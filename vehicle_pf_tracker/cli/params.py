@@ -54,7 +54,9 @@ def run(args: argparse.Namespace) -> int:
     if args.markdown and args.variant == ALL:
         print(all_markdown(), end="")
         return 0
-    variant = find_variant(args.variant)
+    from vehicle_pf_tracker.trackers.traffic.variant import TRAFFIC
+
+    variant = TRAFFIC if args.variant == TRAFFIC.name else find_variant(args.variant)
     if args.path:
         print(config_path(variant.name))
     elif args.markdown:

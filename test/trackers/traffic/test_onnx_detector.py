@@ -85,6 +85,14 @@ def test_ssd_is_stretched_and_numbers_classes_as_coco_does(tmp_path):
     }
 
 
+def test_an_open_input_has_the_size_of_the_parameter(tmp_path):
+    path = networks.yolov8(tmp_path / "net.onnx", size="side")
+    found = detector(path).detect(picture((80, 96, 16, 16, RED), size=(128, 128)))
+    assert found.boxes.tolist() == [pytest.approx([80, 96, 16, 16])]
+    with pytest.raises(InputError, match="cannot be run"):  # its cells are those of 64 x 64 px
+        detector(path, input_size=128)
+
+
 def test_only_the_chosen_classes_are_given(tmp_path):
     path = networks.yolov8(tmp_path / "net.onnx")
     assert detector(path, classes="truck").detect(picture(CAR, TRUCK)).labels == ("truck",)
