@@ -22,6 +22,7 @@ RUNTIME = [
     "PyYAML>=6.0",
 ]
 EVALUATION = ["matplotlib>=3.6", "scipy>=1.11", "jinja2>=3.1"]
+TRAFFIC = ["scipy>=1.11"]  # assignment of detections to vehicles
 NUMBA = ["numba>=0.60"]
 VIDEO = ["av>=14"]
 ONNX = ["onnxruntime>=1.17"]
@@ -79,6 +80,7 @@ setup(
     extras_require={
         "ros": ROS,
         "evaluation": EVALUATION,
+        "traffic": TRAFFIC,
         "numba": NUMBA,
         "video": VIDEO,
         "onnx": ONNX,
@@ -86,7 +88,7 @@ setup(
         "tune": TUNE,
         "test": TEST,
         "lint": LINT,
-        "dev": TEST + LINT + COVERAGE + NUMBA + VIDEO + ONNX + CLUSTER + TUNE + READERS,
+        "dev": TEST + LINT + COVERAGE + TRAFFIC + NUMBA + VIDEO + ONNX + CLUSTER + TUNE + READERS,
     },
     entry_points={
         "console_scripts": [

@@ -18,13 +18,51 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from vehicle_pf_tracker.core.frame import Frame
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+
+_WIDEST = 400
+"""Width in px above which the image is halved: finer says nothing more about vehicles."""
+_HISTORY = 300
+"""Frames that the background is made of: 10 s."""
+_WARM_UP = 15
+"""Frames in which the background is learnt and nothing is reported."""
+_THRESHOLD = 400.0
+"""Squared distance of colours, three channels together, from which on a pixel has changed."""
+_SHADOW = 0.35
+"""Least brightness of a shadow, of the background's."""
+_LEARNT_EVERY = 3
+"""Frames between two in which the background is learnt, which takes a second pass."""
+_VEHICLE = 255
+"""Value that OpenCV marks what moves by; shadows have another."""
+_CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (7, 7))
+"""Holes and gaps up to this size are closed: windscreens show the sky."""
+_ALL_MOVES = 0.5
+"""Share of the image that moves from which on it is the camera that does, or the light."""
 
 
 class MotionDetector:
-    """Model of the background, whose difference to the image shows vehicles."""
+    """Model of the background, whose difference to the image shows vehicles.
+
+    Attributes
+    ----------
+    disturbed : bool
+        True where so much of the latest image differs that nothing was reported: the camera moves,
+        or the light was switched. The background is then learnt anew.
+    """
+
+    def __init__(self) -> None:
+        self.disturbed = False
+        self._blobs = BlobReader()
+        self._shape: tuple[int, ...] = ()
+        self._restart()
 
     def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
         """Find what moves.
@@ -35,5 +73,73 @@ class MotionDetector:
             RGB image.
         tracks : sequence of TrackEstimate
             Estimates of the frame before; the background is not learnt where they stand.
+
+        Returns
+        -------
+        Detections
+            Boxes, scored by how full they are.
         """
-        raise NotImplementedError
+        small, zoom = _reduced(check_frame(frame))
+        if small.shape != self._shape:
+            self._shape = small.shape
+            self._restart()
+        self._count += 1
+        self.disturbed = False
+        if self._count <= _WARM_UP:
+            self._model.apply(small, None, -1)
+            return Detections.none()
+        mask = np.asarray(self._model.apply(small, None, 0), np.uint8)
+        followed = [one for one in tracks if one.mode in (TrackMode.TRACKING, TrackMode.OCCLUDED)]
+        if self._count % _LEARNT_EVERY == 0:
+            self._learn(small, [one for one in followed if one.mode is TrackMode.TRACKING], zoom)
+        moving = np.where(mask == _VEHICLE, mask, 0).astype(np.uint8)
+        if np.count_nonzero(moving) > _ALL_MOVES * moving.size:
+            self.disturbed = True
+            self._restart()
+            return Detections.none()
+        moving = np.asarray(cv2.medianBlur(moving, 3), np.uint8)
+        moving = np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED), np.uint8)
+        edges, fullness = self._blobs.read(moving, _predicted(followed) * zoom)
+        boxes = np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
+        return Detections.make(boxes, fullness)
+
+    def _restart(self) -> None:
+        self._model = cv2.createBackgroundSubtractorKNN(_HISTORY, _THRESHOLD, True)
+        self._model.setShadowThreshold(_SHADOW)
+        self._count = 0
+
+    def _learn(
+        self, small: npt.NDArray[np.uint8], standing: Sequence[TrackEstimate], zoom: float
+    ) -> None:
+        """Learn the background, but keep it where vehicles are: one that stops must not melt in."""
+        image = small
+        if standing:
+            image, known = small.copy(), self._model.getBackgroundImage()
+            width, height = frame_size(small)
+            for track in standing:
+                left, top, right, bottom = (_edges(track) * zoom).tolist()
+                columns = slice(max(int(left), 0), min(int(right) + 1, width))
+                rows = slice(max(int(top), 0), min(int(bottom) + 1, height))
+                image[rows, columns] = known[rows, columns]
+        self._model.apply(image, None, _LEARNT_EVERY / _HISTORY)
+
+
+def _reduced(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:
+    """Halve the image until it is narrow enough; also its scale."""
+    small, zoom = np.ascontiguousarray(frame), 1.0
+    while small.shape[1] > _WIDEST:
+        half = (max(small.shape[1] // 2, 1), max(small.shape[0] // 2, 1))
+        small = np.asarray(cv2.resize(small, half, interpolation=cv2.INTER_AREA), np.uint8)
+        zoom *= 0.5
+    return small, zoom
+
+
+def _edges(track: TrackEstimate) -> Array:
+    box = track.box
+    return np.array([box.x, box.y, box.x + box.width, box.y + box.height])
+
+
+def _predicted(tracks: Sequence[TrackEstimate]) -> Array:
+    """Edges (T, 4) in px where vehicles are about to be."""
+    moved = [_edges(track) + np.tile(track.velocity, 2) for track in tracks]
+    return np.array(moved).reshape(-1, 4)

@@ -12,13 +12,102 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameters of `traffic`."""
+"""Parameters of `traffic`; docs/traffic.md says what each part is for."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.parameters.table import group, parameter
+
+
+@dataclass(frozen=True, slots=True)
+class RoadMotionParameters:
+    """Motion of vehicles on the plane of the road."""
+
+    horizon: float = parameter(
+        -0.2,
+        "Row of the horizon, 0 the upper border and 1 the lower one; negative: above the image. "
+        "Far below zero: vehicles keep their size and speed in px.",
+        minimum=-100.0,
+        maximum=0.9,
+        unit="of the image's height",
+        tuned=(-0.5, 0.3),
+    )
+    acceleration: float = parameter(
+        2.0,
+        "Larger: follows brakes and turns faster; a hidden vehicle is found over a wider place.",
+        minimum=0.01,
+        maximum=50.0,
+        unit="m/s^2",
+        tuned=(0.7, 5.0),
+    )
+    top_speed: float = parameter(
+        25.0,
+        "Larger: a new vehicle is looked for further away in its second frame.",
+        minimum=0.1,
+        maximum=100.0,
+        unit="m/s",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class DetectionParameters:
+    """Use of detections."""
+
+    edge_noise: float = parameter(
+        0.05,
+        "Larger: boxes are smoothed more.",
+        minimum=0.001,
+        maximum=0.5,
+        unit="of the size",
+        tuned=(0.02, 0.1),
+    )
+    covered: float = parameter(
+        2.5,
+        "Smaller: an edge that jumps inward is sooner taken to be covered and not measured.",
+        minimum=0.5,
+        maximum=20.0,
+        unit="standard deviations",
+        tuned=(1.5, 4.0),
+    )
+    colour_cost: float = parameter(
+        8.0,
+        "Higher: colours count more in deciding which detection is which vehicle; 0: not at all.",
+        minimum=0.0,
+        maximum=100.0,
+        tuned=(0.0, 20.0),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class BirthParameters:
+    """Evidence that a new vehicle needs."""
+
+    matches: int = parameter(
+        3,
+        "More: a new vehicle is reported later, and fewer false ones are.",
+        minimum=1,
+        maximum=100,
+        unit="detections",
+        tuned=(2, 6),
+    )
+    evidence: float = parameter(
+        3.0,
+        "Higher: a new vehicle is reported later, and fewer false ones are.",
+        minimum=0.0,
+        maximum=8.0,
+        unit="log odds",
+        tuned=(1.0, 6.0),
+    )
+    displacement: float = parameter(
+        0.4,
+        "Larger: unless its scores speak for it, a vehicle is reported after a longer way.",
+        minimum=0.0,
+        maximum=10.0,
+        unit="of the width",
+        tuned=(0.1, 1.0),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,3 +141,10 @@ class TrafficParameters:
         maximum=600.0,
         unit="s",
     )
+    pixels: bool = parameter(True, "Off: a vehicle that is not detected is only predicted.")
+    occlusions: bool = parameter(
+        True, "Off: vehicles are followed as if none could hide another; to compare."
+    )
+    motion: RoadMotionParameters = group(RoadMotionParameters)
+    detections: DetectionParameters = group(DetectionParameters)
+    birth: BirthParameters = group(BirthParameters)

@@ -16,11 +16,48 @@
 
 from __future__ import annotations
 
-from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.frame import Frame
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.trackers.traffic.association import GATE, assign, edge_costs
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, likeness
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
+from vehicle_pf_tracker.trackers.traffic.existence import Existence
+from vehicle_pf_tracker.trackers.traffic.measuring import deviations, first_state, measure
+from vehicle_pf_tracker.trackers.traffic.occlusion import cover
+from vehicle_pf_tracker.trackers.traffic.overlaps import areas, clipped, intersections
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
+from vehicle_pf_tracker.trackers.traffic.seen import Seen
+from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge
+
+DEFAULT_PERIOD = 1 / 30
+"""Nominal frame period in s until it is known: that of common cameras."""
+_VEHICLE_WIDTH = 1.8
+"""Width of a car in m, by which speeds and accelerations become widths."""
+_FOCAL = 1.2
+"""Focal length, of the image's width: that of a camera with a field of view of 45 degrees."""
+_RECENT = 4.0
+"""Nominal periods since it was seen, up to which a track chooses first among the detections."""
+_STRONG = -0.4
+"""Log odds from which on a detection is offered to the tracks in the first round."""
+_NESTED = 0.7
+"""Share of a detection inside a detected vehicle from which on it is a part of that vehicle."""
+_HELD_WITHIN = 4.0
+"""Nominal periods since it was seen, up to which pixels can hold a vehicle: later the points lie on
+what hides it."""
+_HELD_SHARE = 0.3
+"""Least share of a vehicle in sight, and in the image, that pixels can hold it by."""
+_LEARNING_SHARE = 0.8
+"""Least share of a vehicle in sight that its colours are learnt from."""
 
 
 class TrafficTracker:
@@ -41,12 +78,19 @@ class TrafficTracker:
 
     def __init__(self, parameters: TrafficParameters | None = None) -> None:
         self.parameters = parameters or TrafficParameters()
-        self.frame_period = 1 / 30
+        self.frame_period = DEFAULT_PERIOD
+        self._restart_random()
+        self._last_identity = 0
+        self._frame: Frame | None = None
+        self._tracks: list[Track] = []
+        self._pixels = PixelHold()
+        self._evidence = DetectionEvidence()
+        self._existence = Existence(self.parameters, self._evidence)
 
     @property
     def seed(self) -> int:
         """Seed in use."""
-        raise NotImplementedError
+        return self._seed
 
     def step(
         self, frame: Frame, detections: Detections | None = None, elapsed: float = 1.0
@@ -67,20 +111,181 @@ class TrafficTracker:
         tuple of TrackEstimate
             One for every vehicle that is followed, by identity.
         """
-        raise NotImplementedError
+        self._look(frame)
+        for track in self._tracks:
+            track.predict(elapsed)
+        self._tracks.sort(key=lambda track: (-track.state.edges[3], track.identity))
+        cover(self._tracks, self._size, self.parameters.occlusions)
+        normals = self._rng.standard_normal((self.parameters.num_particles, 3))
+        if detections is not None:
+            self._take(detections.usable(*self._size), elapsed)
+        if self.parameters.pixels:
+            self._hold(normals)
+        self._tracks = self._existence.survivors(self._tracks, self._size, self.frame_period)
+        self._learn_likeness()
+        ordered = sorted(self._tracks, key=lambda track: track.identity)
+        return tuple(track.estimate() for track in ordered)
 
     def add(self, box: Box, label: str = "") -> int:
-        """Follow the vehicle in `box` of the latest frame from now on, and return its identity."""
-        raise NotImplementedError
+        """Follow the vehicle in `box` of the latest frame from now on, and return its identity.
+
+        Raises
+        ------
+        InputError
+            If the box does not lie in the image.
+        RuntimeError
+            If no frame has been seen.
+        """
+        if self._frame is None:
+            raise RuntimeError("show the tracker a frame before adding a vehicle")
+        check_target(box, *self._size)
+        track = self._begin(np.array([*box.corners[0], *box.corners[2]]), label)
+        track.confirmed, track.log_odds = True, MOST_EVIDENCE
+        track.learn_colours(self._colours.histogram(track.state.edges, track.covers))
+        return track.identity
 
     def remove(self, identity: int) -> bool:
         """Forget a vehicle; False if there is none of this identity."""
-        raise NotImplementedError
+        count = len(self._tracks)
+        self._tracks = [track for track in self._tracks if track.identity != identity]
+        return len(self._tracks) < count
 
     def reset(self) -> None:
         """Forget all vehicles; identities go on from where they were."""
-        raise NotImplementedError
+        self._tracks = []
 
     def reconfigure(self, parameters: TrafficParameters) -> None:
         """Take new parameters between two frames; no vehicle is lost by it."""
-        raise NotImplementedError
+        changed = parameters.seed != self.parameters.seed
+        self.parameters = self._existence.parameters = parameters
+        if changed:
+            self._restart_random()
+
+    def _restart_random(self) -> None:
+        seed = self.parameters.seed
+        self._seed = seed if seed >= 0 else int(np.random.default_rng().integers(2**31))
+        self._rng = np.random.default_rng(self._seed)
+
+    def _look(self, frame: Frame) -> None:
+        """Do once what all vehicles need of a frame."""
+        self._frame = check_frame(frame)
+        self._size = frame_size(frame)
+        grey = np.asarray(cv2.cvtColor(frame, cv2.COLOR_RGB2GRAY), np.uint8)
+        self._pixels.show(grey)
+        self._colours = ColourBins(frame)
+
+    def _take(self, detections: Detections, elapsed: float) -> None:
+        """Give the detections to the tracks; what is left over may be new vehicles."""
+        seen = Seen(detections, self._evidence, self._colours, self._size)
+        recent = [one for one in self._tracks if one.confirmed and one.unseen < _RECENT]
+        strong = np.flatnonzero(seen.log_odds >= _STRONG).tolist()
+        self._match(recent, seen, strong)
+        self._drop_parts(seen)
+        self._match([one for one in self._tracks if one.confirmed], seen, seen.free)
+        self._drop_parts(seen)
+        self._match([one for one in self._tracks if not one.confirmed], seen, seen.free)
+        self._existence.fade(self._tracks, elapsed)
+        for index in seen.free:
+            if self._is_taken(seen.edges[index]):
+                self._evidence.learn(seen.samples[index], False)
+            else:
+                self._begin_from(seen, index)
+
+    def _match(self, tracks: Sequence[Track], seen: Seen, indices: Sequence[int]) -> None:
+        """Pair tracks that have no detection yet with some of the free detections."""
+        tracks = [track for track in tracks if track.undetected > 0]
+        indices = [index for index in indices if index in seen.free]
+        if not tracks or not indices:
+            return
+        settings = self.parameters.detections
+        predicted = np.array([track.state.edges for track in tracks])
+        variances = np.array([np.diag(track.state.edge_covariance) for track in tracks])
+        spread = np.sqrt(variances + deviations(predicted, settings.edge_noise) ** 2)
+        costs = edge_costs(clipped(predicted, self._size), spread, seen.edges[indices])
+        if settings.colour_cost:
+            for row, column in np.argwhere(costs < GATE).tolist():
+                alike = likeness(tracks[row].colours, seen.histogram(indices[column]))
+                costs[row, column] += settings.colour_cost * (1 - alike)
+        for row, column in assign(costs):
+            self._correct(tracks[row], seen, indices[column])
+
+    def _correct(self, track: Track, seen: Seen, index: int) -> None:
+        """Correct a track by its detection."""
+        seen.free.remove(index)
+        settings = self.parameters.detections
+        edges = seen.edges[index]
+        whole = measure(track, edges, settings.edge_noise, settings.covered, self._size)
+        track.score = float(seen.scores[index])
+        track.label = seen.labels[index] or track.label
+        if whole and track.visible > _LEARNING_SHARE:
+            track.learn_colours(seen.histogram(index))
+        self._existence.detected(track, edges, seen.samples[index], float(seen.log_odds[index]))
+
+    def _drop_parts(self, seen: Seen) -> None:
+        """Drop detections inside vehicles that have one: their bonnets, or second boxes."""
+        detected = [one for one in self._tracks if one.confirmed and one.undetected == 0]
+        boxes = np.array([track.state.edges for track in detected]).reshape(-1, 4)
+        for index in tuple(seen.free):
+            edges = seen.edges[index]
+            if (intersections(edges, boxes) > _NESTED * areas(edges)).any():
+                seen.free.remove(index)
+                self._evidence.learn(seen.samples[index], False)
+
+    def _is_taken(self, edges: Array) -> bool:
+        """Whether a vehicle that is followed stands where a new one would begin."""
+        there = [one for one in self._tracks if one.confirmed and one.unseen < _RECENT]
+        boxes = np.array([track.state.edges for track in there]).reshape(-1, 4)
+        smaller = np.minimum(areas(boxes), areas(edges))
+        return bool((intersections(edges, boxes) > _NESTED * smaller).any())
+
+    def _begin_from(self, seen: Seen, index: int) -> None:
+        """Take a detection for a new vehicle, as yet without evidence."""
+        edges = seen.edges[index]
+        track = self._begin(edges, seen.labels[index])
+        track.score = float(seen.scores[index])
+        track.learn_colours(seen.histogram(index))
+        self._existence.detected(track, edges, seen.samples[index], float(seen.log_odds[index]))
+
+    def _begin(self, edges: Array, label: str) -> Track:
+        """Begin a track in a box, with the next identity."""
+        width, height = self._size
+        period, motion = self.frame_period, self.parameters.motion
+        drive = Drive(
+            acceleration=motion.acceleration * period**2 / _VEHICLE_WIDTH,
+            top_speed=motion.top_speed * period / _VEHICLE_WIDTH,
+            focal=_FOCAL * width,
+        )
+        noise, horizon = self.parameters.detections.edge_noise, motion.horizon * height
+        # A horizon below the box would have it drive on the sky.
+        horizon = min(horizon, float(edges[Edge.BOTTOM]) - 1)
+        self._last_identity += 1
+        state = first_state(edges, noise, horizon, drive, self._size)
+        track = Track(self._last_identity, state, label=label)
+        self._tracks.append(track)
+        return track
+
+    def _hold(self, normals: Array) -> None:
+        """Measure by their pixels the vehicles that were not detected."""
+        held = [
+            track
+            for track in self._tracks
+            if track.confirmed
+            and track.undetected > 0
+            and track.unseen < _HELD_WITHIN
+            and min(track.visible, track.inside) > _HELD_SHARE
+        ]
+        for track, hold in zip(
+            held, self._pixels.measure(held, self._colours, normals), strict=True
+        ):
+            if hold is not None:
+                track.unseen = 0.0
+                for edge in Edge:
+                    value, deviation = hold.edges[edge], hold.deviations[edge]
+                    track.state.measure(edge, float(value), float(deviation))
+
+    def _learn_likeness(self) -> None:
+        """Learn how like itself each detected vehicle looks from frame to frame."""
+        for track in self._tracks:
+            if track.confirmed and track.undetected == 0:
+                now = self._colours.histogram(track.state.edges, track.covers)
+                track.learn_likeness(likeness(track.colours, now))

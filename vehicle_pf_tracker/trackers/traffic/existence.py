@@ -1,0 +1,186 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Evidence that tracks are vehicles: what confirms them, what ends them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence, Sample
+from vehicle_pf_tracker.trackers.traffic.overlaps import (
+    areas,
+    inside_image,
+    intersections,
+    unions,
+)
+from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track
+
+_AGREEMENT = 0.7
+"""Log odds that a detection adds by being where a track predicts it."""
+_LEAST, _MOST = -0.6, 2.0
+"""Bounds of the log odds that one detection adds: a few good scores are no proof, and a detector
+that knows little about a vehicle must not hide it for ever."""
+_SCORE_DOUBT = 0.5
+"""Log odds per detection that are taken off, in confirming by scores alone."""
+_PROVEN_BY_SCORES = 4.0
+"""Sum of these from which on no drive is asked for."""
+_STRAIGHT = 0.8
+"""Straightness of the way of a vehicle; of flickering leaves it is below one half."""
+_STRAIGHT_MATCHES = 6
+"""Fewest detections that a straightness is judged by."""
+_MISSED_TENTATIVE = 1.0
+"""Log odds that a detection missed in plain sight takes off a new vehicle, ..."""
+_MISSED_HELD = 0.3
+"""... off one that its pixels hold, ..."""
+_MISSED_HIDDEN = 0.12
+"""... and off one that may be hidden by something unknown."""
+_DOUBLE = 0.3
+"""Log odds that a track without a detection loses while it is one box with a detected one."""
+_SAME = 0.5
+"""Intersection over union from which on two boxes are one."""
+_PART = 0.7
+"""Share of a young track inside a detected one from which on it is taken for a part of it."""
+_YOUNG = 30
+"""Detections from which on a track has shown that it is a vehicle of its own."""
+_PLAIN_SIGHT = 0.5
+"""Share of a vehicle in sight, and in the image, in which it ought to be detected."""
+_TENTATIVE_PERIODS = 5.0
+"""Nominal periods without a detection after which a tentative vehicle is given up."""
+_IMPLAUSIBLE = -2.0
+_REFUTED = -3.0
+"""Log odds below which a tentative, and a confirmed, vehicle is given up."""
+_LEFT, _LEFT_UNSEEN = 0.1, 0.35
+"""Share in the image below which a vehicle has left it, if it is seen and if it is not."""
+
+
+class Existence:
+    """Confirms and ends tracks.
+
+    Parameters
+    ----------
+    parameters : TrafficParameters
+        Parameters.
+    evidence : DetectionEvidence
+        Learns what becomes of detections.
+    """
+
+    def __init__(self, parameters: TrafficParameters, evidence: DetectionEvidence) -> None:
+        self.parameters = parameters
+        self._evidence = evidence
+
+    def detected(self, track: Track, edges: Array, sample: Sample, log_odds: float) -> None:
+        """Add the evidence of a detection (edges in px) to its track."""
+        track.unseen = track.undetected = 0.0
+        track.hidden_by = None
+        track.matches += 1
+        agreement = _AGREEMENT if track.matches > 1 else 0.0
+        gain = min(max(log_odds, _LEAST), _MOST) + agreement
+        track.log_odds = min(track.log_odds + gain, MOST_EVIDENCE)
+        track.strength += min(max(log_odds - _SCORE_DOUBT, _LEAST), _MOST)
+        if track.confirmed:
+            self._evidence.learn(sample, True)
+            return
+        track.samples.append(sample)
+        track.note_place((edges[:2] + edges[2:]) / 2)
+        if self._is_vehicle(track):
+            track.confirmed = True
+            for one in track.samples:
+                self._evidence.learn(one, True)
+            track.samples.clear()
+
+    def _is_vehicle(self, track: Track) -> bool:
+        birth = self.parameters.birth
+        if track.matches < birth.matches or track.log_odds < birth.evidence:
+            return False
+        if track.strength > _PROVEN_BY_SCORES:
+            return True
+        straight = track.matches >= _STRAIGHT_MATCHES and track.straightness > _STRAIGHT
+        return straight and track.way > birth.displacement
+
+    def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
+        """Take off evidence from tracks that a detector has not seen.
+
+        Parameters
+        ----------
+        tracks : sequence of Track
+            All, after detections were given to them.
+        elapsed : float
+            Nominal periods since the last frame.
+        """
+        detected = [one for one in tracks if one.confirmed and one.undetected == 0]
+        boxes = np.array([track.state.edges for track in detected]).reshape(-1, 4)
+        for track in tracks:
+            if track.undetected == 0:
+                continue
+            if track.confirmed and _is_double(track, boxes):
+                track.log_odds -= _DOUBLE * elapsed
+            if min(track.visible, track.inside) > _PLAIN_SIGHT:
+                track.log_odds -= elapsed * self._missed(track)
+
+    @staticmethod
+    def _missed(track: Track) -> float:
+        if not track.confirmed:
+            return _MISSED_TENTATIVE
+        # Pixels are asked later in the frame: they held it if they did in the frame before.
+        return _MISSED_HELD if track.unseen <= 1.0 else _MISSED_HIDDEN
+
+    def survivors(
+        self, tracks: Sequence[Track], size: tuple[int, int], period: float
+    ) -> list[Track]:
+        """Tracks that go on, of which some are LOST.
+
+        Parameters
+        ----------
+        tracks : sequence of Track
+            All.
+        size : (int, int)
+            Width and height of the image.
+        period : float
+            Nominal frame period in s.
+        """
+        kept = []
+        for track in tracks:
+            unseen = track.unseen * period
+            track.lost = unseen > self.parameters.lost_after or track.log_odds < 0
+            if self._goes_on(track, unseen, inside_image(track.state.edges, size)):
+                kept.append(track)
+                continue
+            for sample in track.samples:
+                self._evidence.learn(sample, False)
+        return kept
+
+    def _goes_on(self, track: Track, unseen: float, inside: float) -> bool:
+        if not track.confirmed:
+            waiting = track.undetected <= _TENTATIVE_PERIODS
+            return waiting and track.log_odds >= _IMPLAUSIBLE and inside > 0
+        if inside < (_LEFT if track.unseen == 0 else _LEFT_UNSEEN):
+            return False
+        longest = self.parameters.lost_after + self.parameters.forgotten_after
+        return track.log_odds >= _REFUTED and unseen <= longest
+
+
+def _is_double(track: Track, detected: Array) -> bool:
+    """Whether a track without a detection is the same vehicle as a detected one."""
+    if not len(detected):
+        return False
+    edges = track.state.edges
+    if unions(edges, detected).max() > _SAME:
+        return True
+    share = intersections(edges, detected).max() / areas(edges)
+    return track.matches < _YOUNG and float(share) > _PART

@@ -1,0 +1,134 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Measurement of a vehicle by a detection, edge by edge.
+
+An edge that the border of the image cuts, or that something covers, does not tell where the vehicle
+ends: measured, it would brake the vehicle at an occluder and shrink it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.traffic.association import INWARD
+from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
+
+_PIXEL_NOISE = 0.7
+"""Standard deviation of an edge in px however small the box: a detector's grid."""
+_BORDER = 1.0
+"""Distance in px from the border of the image from which on an edge counts as cut."""
+_OUTWARD = 1.0
+"""Standard deviations that the opposite edge may at most be pushed out by, where an edge is drawn
+in because it is covered. A vehicle that brakes pushes it out."""
+_SETTLED = 4
+"""Detections from which on a box is known well enough to tell that an edge is covered."""
+_ASPECT = 0.8
+"""Height of a vehicle over its width where a border cuts it when it is first seen: that of cars
+from the front. From the side it is half of it, hence the deviation."""
+_ASPECT_DEVIATION = 0.25
+_OPPOSITE = (Edge.RIGHT, Edge.BOTTOM, Edge.LEFT, Edge.TOP)
+
+
+def deviations(edges: Array, noise: float) -> Array:
+    """Estimate the standard deviations (..., 4) of measured edges in px.
+
+    Parameters
+    ----------
+    edges : (..., 4) array
+        Boxes in px.
+    noise : float
+        Of the size.
+    """
+    size = edges[..., 2:] - edges[..., :2]
+    return np.asarray(np.hypot(np.concatenate([size, size], axis=-1) * noise, _PIXEL_NOISE))
+
+
+def first_state(
+    edges: Array, noise: float, horizon: float, drive: Drive, size: tuple[int, int]
+) -> VehicleState:
+    """Make the state of a vehicle from its first detection, which borders of the image may cut.
+
+    Parameters
+    ----------
+    edges : (4,) array
+        Of the detection, px.
+    noise : float
+        Of an edge, of the size.
+    horizon : float
+        Its row in px.
+    drive : Drive
+        Motion of vehicles.
+    size : (int, int)
+        Width and height of the image.
+    """
+    edges, spread = edges.copy(), deviations(edges, noise)
+    cut = _cut(edges, size)
+    width, height = (edges[2:] - edges[:2]).tolist()
+    for low, high, side, usual in (
+        (Edge.TOP, Edge.BOTTOM, height, _ASPECT * width),
+        (Edge.LEFT, Edge.RIGHT, width, height / _ASPECT),
+    ):
+        if side >= usual:
+            continue
+        if cut[low]:
+            edges[low], spread[low] = edges[high] - usual, _ASPECT_DEVIATION * usual
+        elif cut[high]:
+            edges[high], spread[high] = edges[low] + usual, _ASPECT_DEVIATION * usual
+    return VehicleState(edges, spread, horizon, drive)
+
+
+def measure(
+    track: Track, edges: Array, noise: float, covered: float, size: tuple[int, int]
+) -> bool:
+    """Correct a track's state by a detection; True if the whole of the vehicle was measured.
+
+    Parameters
+    ----------
+    track : Track
+        Track, predicted into this frame.
+    edges : (4,) array
+        Edges of the detection, px.
+    noise : float
+        Of an edge, of the size.
+    covered : float
+        Standard deviations inward from which on an edge is taken to be covered.
+    size : (int, int)
+        Width and height of the image.
+    """
+    state = track.state
+    predicted = state.edges
+    spread = deviations(predicted, noise)
+    uncertainty = np.sqrt(np.diag(state.edge_covariance) + spread**2)
+    normal = ((edges - predicted) * INWARD / uncertainty).tolist()
+    cut, beyond = _cut(edges, size), _cut(predicted, size)
+    whole = True
+    for edge in Edge:
+        if cut[edge] and beyond[edge]:
+            continue
+        drawn_in = normal[edge] > covered and normal[_OPPOSITE[edge]] > -_OUTWARD
+        if drawn_in and track.matches >= _SETTLED:
+            whole = False
+            continue
+        state.measure(edge, float(edges[edge]), float(spread[edge]))
+    return whole
+
+
+def _cut(edges: Array, size: tuple[int, int]) -> list[bool]:
+    """Which edges lie on or beyond the border."""
+    left, top, right, bottom = edges.tolist()
+    width, height = size
+    return [left <= _BORDER, top <= _BORDER, right >= width - _BORDER, bottom >= height - _BORDER]

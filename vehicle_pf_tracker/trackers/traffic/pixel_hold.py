@@ -1,0 +1,232 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Pixels that hold a vehicle while no detection does: the flow of points in its box.
+
+Points of all vehicles are followed in one call. Particles over place and size are weighted by how
+well they explain where the points went, and by keeping apart from nearer vehicles (the interaction
+of Khan et al. 2005); their mean and spread are the measurement.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, likeness
+from vehicle_pf_tracker.trackers.traffic.overlaps import areas
+from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import V, X
+
+Grey: TypeAlias = npt.NDArray[np.uint8]
+
+_GRID = 5
+"""Points along each side of a box."""
+_REACH = 0.8
+"""Part of the box that points are placed in; its rim is background."""
+_ROUND_TRIP_PX = 0.7
+"""Largest error of a point that was followed forth and back (Kalal et al. 2010)."""
+_POINT_SIGMA_PX = 0.5
+"""Standard deviation of a point's flow."""
+_FEWEST = 5
+"""Fewest points that a motion is taken from."""
+_OUTLIER = 0.02
+"""Likelihood of a point that went elsewhere."""
+_INDEPENDENT = 6.0
+"""Number of points that count as independent: neighbours err together."""
+_AGREEING = 9.0
+"""Squared standard deviations within which a point agrees with a motion."""
+_LEAST_SHARE = 0.5
+"""Share of the points that must agree."""
+_GROWTH_SIGMA = 0.02
+"""Standard deviation of the change of size in a frame beyond the predicted one."""
+_LARGEST_FALL = 0.15
+"""Fall of the colours' likeness below its usual value from which on it is not the vehicle."""
+_REPULSION = 10.0
+"""Weight of an overlap with nearer vehicles beyond the predicted one, per area of the box."""
+_SLIP, _SLIP_PX = 0.02, 0.3
+"""Standard deviation by which a box slips on its vehicle in a frame, of its size and in px."""
+_CAUTION = 1.5
+"""Factor on the deviations: errors of successive frames go the same way and add up."""
+_CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 10, 0.03)
+_WINDOW = (9, 9)
+_LEVELS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Hold:
+    """Measurement of a box by its pixels: edges and their standard deviations (4,), px."""
+
+    edges: Array
+    deviations: Array
+
+
+class PixelHold:
+    """Flow between two frames, of points in boxes."""
+
+    def __init__(self) -> None:
+        self._before: Grey | None = None
+        self._present: Grey | None = None
+
+    def show(self, grey: Grey) -> None:
+        """Take the next frame."""
+        self._before, self._present = self._present, grey
+
+    def measure(
+        self, tracks: Sequence[Track], colours: ColourBins, normals: Array
+    ) -> list[Hold | None]:
+        """Measure vehicles; None for those that their pixels do not show.
+
+        Parameters
+        ----------
+        tracks : sequence of Track
+            Predicted into this frame.
+        colours : ColourBins
+            Of this frame.
+        normals : (P, 3) array
+            Standard normal numbers that make the particles.
+        """
+        before, present = self._before, self._present
+        if before is None or present is None or before.shape != present.shape or not tracks:
+            return [None] * len(tracks)
+        starts = [_uncovered(_points(track.before), track.covers) for track in tracks]
+        guesses = [_carried(*pair) for pair in zip(starts, tracks, strict=True)]
+        moved = _follow(before, present, np.concatenate(starts), np.concatenate(guesses))
+        parts = np.split(moved, np.cumsum([len(one) for one in starts])[:-1])
+        return [
+            _hold(track, old, new, normals, colours)
+            for track, old, new in zip(tracks, starts, parts, strict=True)
+        ]
+
+
+def _hold(track: Track, old: Array, new: Array, normals: Array, colours: ColourBins) -> Hold | None:
+    """Weight particles by the flow of one vehicle's points."""
+    alive = np.isfinite(new[:, 0])
+    if alive.sum() < _FEWEST:
+        return None
+    before, predicted = track.before, track.state.edges
+    centre, size = (predicted[:2] + predicted[2:]) / 2, predicted[2:] - predicted[:2]
+    relative = (old[alive] - (before[:2] + before[2:]) / 2) * _growth(before, predicted)
+    observed = new[alive] - centre
+    particles = _particles(track, observed - relative, normals)
+    expected = (1 + particles[:, 2])[:, np.newaxis, np.newaxis] * relative
+    expected += particles[:, np.newaxis, :2]
+    squared = ((observed - expected) ** 2).sum(axis=2) / _POINT_SIGMA_PX**2
+    logs = np.log(np.exp(-squared / 2) + _OUTLIER).mean(axis=1)
+    logs *= min(_INDEPENDENT, float(len(relative)))
+    middles = centre + particles[:, :2]
+    halves = size * (1 + particles[:, 2:]) / 2
+    boxes = np.hstack([middles - halves, middles + halves])
+    logs -= _repulsion(boxes, predicted, track.covers)
+    if (squared[int(np.argmax(logs))] < _AGREEING).mean() < _LEAST_SHARE:
+        return None
+    weights = np.exp(logs - logs.max())
+    weights /= weights.sum()
+    edges = weights @ boxes
+    fall = track.usual_likeness - likeness(track.colours, colours.histogram(edges, track.covers))
+    if fall > _LARGEST_FALL:
+        return None
+    spread = np.sqrt(weights @ (boxes - edges) ** 2)
+    sides = np.tile(edges[2:] - edges[:2], 2)
+    return Hold(edges, _CAUTION * (np.hypot(spread, _SLIP * sides) + _SLIP_PX))
+
+
+def _particles(track: Track, motions: Array, normals: Array) -> Array:
+    """Particles (P, 3): displacement of the centre in px and relative growth.
+
+    Half of them are drawn around the prediction, half around the points' median motion: a
+    prediction may be far off.
+    """
+    covariance = track.state.covariance
+    place = np.sqrt([covariance[X, X], covariance[V, V]]) + _POINT_SIGMA_PX
+    spread = np.append(place, _GROWTH_SIGMA)
+    particles = np.asarray(normals * spread)
+    particles[::2, :2] = np.median(motions, axis=0) + normals[::2, :2] * _POINT_SIGMA_PX
+    return particles
+
+
+def _repulsion(boxes: Array, predicted: Array, covers: Array) -> Array:
+    """Cost (P,) of overlaps with nearer vehicles beyond the predicted one."""
+    if not len(covers):
+        return np.zeros(len(boxes))
+    every = np.vstack([boxes, predicted])
+    low = np.maximum(every[:, np.newaxis, :2], covers[:, :2])
+    high = np.minimum(every[:, np.newaxis, 2:], covers[:, 2:])
+    shares = np.maximum(high - low, 0.0).prod(axis=2).sum(axis=1) / areas(every)
+    return np.asarray(_REPULSION * np.maximum(shares[:-1] - shares[-1], 0.0))
+
+
+def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
+    """Places (N, 2) of points in the present frame, NaN where they are not found again."""
+    if not len(old):
+        return np.empty((0, 2))
+    # Pixel 0 is centred at 0.5 here and at 0 in OpenCV.
+    start = (old[:, np.newaxis] - 0.5).astype(np.float32)
+    first = (guess[:, np.newaxis] - 0.5).astype(np.float32)
+    new, found = _flow(before, present, start, first)
+    back, returned = _flow(present, before, new, start.copy())
+    error = np.abs(back - start).reshape(-1, 2).max(axis=1)
+    moved = new.reshape(-1, 2).astype(np.float64) + 0.5
+    moved[(found == 0) | (returned == 0) | (error > _ROUND_TRIP_PX)] = np.nan
+    return np.asarray(moved)
+
+
+def _flow(
+    one: Grey, two: Grey, points: npt.NDArray[np.float32], guess: npt.NDArray[np.float32]
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:
+    moved, found, _ = cv2.calcOpticalFlowPyrLK(
+        one,
+        two,
+        points,
+        guess,
+        winSize=_WINDOW,
+        maxLevel=_LEVELS,
+        criteria=_CRITERIA,
+        flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
+    )
+    return np.asarray(moved, np.float32), np.asarray(found, np.uint8).ravel()
+
+
+def _points(edges: Array) -> Array:
+    places = ((np.arange(_GRID) + 0.5) / _GRID - 0.5) * _REACH
+    x, y = np.meshgrid(places, places)
+    middle, size = (edges[:2] + edges[2:]) / 2, edges[2:] - edges[:2]
+    return np.asarray(np.column_stack([x.ravel(), y.ravel()]) * size + middle)
+
+
+def _uncovered(points: Array, covers: Array) -> Array:
+    """Points that no nearer box covers."""
+    if not len(covers):
+        return points
+    x, y = points[:, :1], points[:, 1:]
+    inside = (x > covers[:, 0]) & (x < covers[:, 2]) & (y > covers[:, 1]) & (y < covers[:, 3])
+    return np.asarray(points[~inside.any(axis=1)])
+
+
+def _carried(points: Array, track: Track) -> Array:
+    """Places of points as the prediction has them."""
+    before, after = track.before, track.state.edges
+    relative = (points - (before[:2] + before[2:]) / 2) * _growth(before, after)
+    return np.asarray(relative + (after[:2] + after[2:]) / 2)
+
+
+def _growth(before: Array, after: Array) -> float:
+    """Growth of a box's sides."""
+    return float(np.sqrt(areas(after) / areas(before)))

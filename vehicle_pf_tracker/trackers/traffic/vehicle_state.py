@@ -1,0 +1,183 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""State of one vehicle on the plane of the road, and its measurement edge by edge.
+
+A box stands on the road where its lower edge is. Its distance from the horizon, v px, is inversely
+proportional to the distance from the camera, so that a vehicle of constant speed on the road has a
+speed and a size in the image that follow from v: (x, v, width, height) in px, and the velocities
+across and along the road, in units in which a place on the road is (x / v, 1 / v). The Gaussian is
+carried exactly where measurements are linear in it (boxes), and by particles where they are not
+(pixels): the Gaussian particle filter of Kotecha and Djuric (2003).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Box
+
+X, V, W, H, ACROSS, ALONG = range(6)
+"""Components of the state: centre and distance from the horizon, size (px), road velocities."""
+
+_NEAREST_HORIZON = 3.0
+"""Least distance of a lower edge from the horizon in px; at zero the road is infinitely far."""
+_FASTEST_APPROACH = 1.3
+"""Largest growth of a box in a nominal frame period. Beyond it the distance is down to the
+camera's own height, where the plane no longer describes what is seen."""
+_SIZE_WALK = 0.002
+"""Change of a vehicle's shape as the camera sees it, of its size per nominal period: a vehicle that
+drives past is seen from behind and then from the side within some 5 s."""
+
+
+class Edge(IntEnum):
+    """Edges of a box, in the order of measurements."""
+
+    LEFT = 0
+    TOP = 1
+    RIGHT = 2
+    BOTTOM = 3
+
+
+OBSERVATION = np.array(
+    [
+        [1.0, 0.0, -0.5, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, -1.0, 0.0, 0.0],
+        [1.0, 0.0, 0.5, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    ]
+)
+"""Edges of the box as linear functions of the state (relative to the horizon)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """What is known of all vehicles' motion.
+
+    Attributes
+    ----------
+    acceleration : float
+        Standard deviation of the change of speed, widths of the vehicle per nominal period squared.
+    top_speed : float
+        Standard deviation of the speed before it is measured, widths per nominal period.
+    focal : float
+        Focal length in px.
+    """
+
+    acceleration: float
+    top_speed: float
+    focal: float
+
+
+class VehicleState:
+    """Gaussian over a vehicle's place, size and velocity.
+
+    Parameters
+    ----------
+    edges : (4,) array
+        First box: left, top, right, bottom in px.
+    deviations : (4,) array
+        Standard deviations of these.
+    horizon : float
+        Row of the horizon in px.
+    drive : Drive
+        Motion of vehicles.
+    """
+
+    def __init__(self, edges: Array, deviations: Array, horizon: float, drive: Drive) -> None:
+        self.horizon = horizon
+        self._drive = drive
+        left, top, right, bottom = edges.tolist()
+        width, height = right - left, bottom - top
+        v = max(bottom - horizon, _NEAREST_HORIZON)
+        self.mean = np.array([(left + right) / 2, v, width, height, 0.0, 0.0])
+        sides = deviations**2
+        speed = drive.top_speed * width / v
+        self.covariance = np.diag(
+            [
+                (sides[Edge.LEFT] + sides[Edge.RIGHT]) / 4,
+                sides[Edge.BOTTOM],
+                sides[Edge.LEFT] + sides[Edge.RIGHT],
+                sides[Edge.TOP] + sides[Edge.BOTTOM],
+                speed**2,
+                (speed / drive.focal) ** 2,
+            ]
+        )
+
+    @property
+    def edges(self) -> Array:
+        """Left, top, right and bottom in px."""
+        edges = np.asarray(OBSERVATION @ self.mean)
+        edges[[Edge.TOP, Edge.BOTTOM]] += self.horizon
+        return edges
+
+    @property
+    def box(self) -> Box:
+        """Box in px."""
+        left, top, right, bottom = self.edges.tolist()
+        return Box(left, top, max(right - left, 1.0), max(bottom - top, 1.0))
+
+    @property
+    def edge_covariance(self) -> Array:
+        """Covariance of the edges, (4, 4) in px²."""
+        return np.asarray(OBSERVATION @ self.covariance @ OBSERVATION.T)
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """Velocity of the box's centre in px per nominal period."""
+        x, v, _, h, across, along = self.mean.tolist()
+        growth = -along * v
+        return x * growth + across * v, (v - h / 2) * growth
+
+    def predict(self, elapsed: float) -> None:
+        """Drive on for `elapsed` nominal periods."""
+        x, v, w, h, across, along = self.mean.tolist()
+        bound = _FASTEST_APPROACH**elapsed
+        growth = 1 / min(max(1 + v * along * elapsed, 1 / bound), bound)
+        by_v, by_along = -along * elapsed * growth**2, -v * elapsed * growth**2
+        driven = x + v * across * elapsed
+        self.mean = np.array([driven * growth, v * growth, w * growth, h * growth, across, along])
+        step = np.eye(6)
+        step[X, X] = step[W, W] = step[H, H] = growth
+        step[X, V] = across * elapsed * growth + driven * by_v
+        step[X, ACROSS] = v * elapsed * growth
+        step[X, ALONG] = driven * by_along
+        step[V, V] = growth + v * by_v
+        step[V, ALONG] = v * by_along
+        step[W, V], step[W, ALONG] = w * by_v, w * by_along
+        step[H, V], step[H, ALONG] = h * by_v, h * by_along
+        push = self._drive.acceleration * w / v
+        self.covariance = step @ self.covariance @ step.T
+        self.covariance[ACROSS, ACROSS] += push**2 * elapsed
+        self.covariance[ALONG, ALONG] += (push / self._drive.focal) ** 2 * elapsed
+        self.covariance[W, W] += (_SIZE_WALK * w) ** 2 * elapsed
+        self.covariance[H, H] += (_SIZE_WALK * h) ** 2 * elapsed
+
+    def measure(self, edge: Edge, value: float, deviation: float) -> None:
+        """Take the measurement of an edge in px, of this standard deviation."""
+        row = OBSERVATION[edge]
+        offset = self.horizon if edge in (Edge.TOP, Edge.BOTTOM) else 0.0
+        self._correct(row, value - offset - float(row @ self.mean), deviation**2)
+
+    def _correct(self, row: Array, residual: float, variance: float) -> None:
+        spread = self.covariance @ row
+        gain = spread / (float(row @ spread) + variance)
+        self.mean = self.mean + gain * residual
+        self.covariance = self.covariance - np.outer(gain, spread)
+        self.mean[V] = max(self.mean[V], _NEAREST_HORIZON)
+        self.mean[W], self.mean[H] = max(self.mean[W], 1.0), max(self.mean[H], 1.0)
