@@ -55,6 +55,7 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
         ),
         "report": ("report", "write the report of an evaluation anew"),
         "replay": ("replay", "feed a recording to ROS nodes"),
+        "set-target": ("set_target", "give a running ROS node its target"),
         "road": ("road", "calibrate the mapping from pixels to metres on the road"),
         "compile": ("compile_kernels", "compile the kernels of the extra numba ahead of time"),
     }
