@@ -21,6 +21,7 @@ from traffic_samples import vehicle
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.continuity import StrayImageError
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 PERIOD_NS = 40_000_000
@@ -50,6 +51,7 @@ class Eye:
 
     def __init__(self):
         Eye.made += 1
+        self.disturbed = self.is_blind = False
         self.tracks = []
 
     def detect(self, frame, tracks=()):
@@ -90,6 +92,61 @@ def test_detections_from_outside_go_before_the_detector():
     assert session.detector.tracks == []
     assert len(session.tracker.seen[0]) == 0
     assert TrafficSession(Steps()).detector is None
+
+
+def test_what_a_blind_detector_does_not_see_is_not_missed():
+    session = TrafficSession(Steps(), Eye)
+    session.detector.is_blind = True
+    session.feed(FRAME, 0)
+    session.detector.disturbed = True
+    session.feed(FRAME, PERIOD_NS)
+    assert session.tracker.seen == [None, None]
+    assert "the camera moves, or the light" in session.events[0]
+
+
+def test_a_camera_that_moves_blinds_the_motion_detector_until_it_has_learnt():
+    detector, rng = MotionDetector(), np.random.default_rng(0)
+    still, other = rng.integers(0, 256, (2, 48, 64, 3), np.uint8)
+    blind = []
+    for frame in [still] * 20 + [other] * 20:
+        detector.detect(frame)
+        blind.append(detector.is_blind)
+    assert blind == [True] * 15 + [False] * 5 + [True] * 16 + [False] * 4
+
+
+def test_a_reset_forgets_vehicles_size_and_time():
+    session = TrafficSession(Steps(), Eye)
+    feed_all(session, [10**12, 10**12 + PERIOD_NS])
+    session.reset()
+    assert (session.size, session.estimates, session.restarts) == (None, (), 1)
+    session.feed(np.zeros((10, 20, 3), np.uint8), 0)
+    assert (session.size, session.events) == ((20, 10), [])
+
+
+def test_a_rate_may_be_set_meanwhile():
+    session = TrafficSession(Steps())
+    feed_all(session, [0, PERIOD_NS])
+    session.reconfigure(frame_rate=50.0, reset_on_time_jump=True)
+    session.feed(FRAME, 2 * PERIOD_NS)
+    assert session.tracker.elapsed[-1] == pytest.approx(2.0)
+
+
+def test_a_stray_that_is_compressed_is_not_decoded():
+    class Coded:
+        size = (5000, 5000)
+        decoded = 0
+
+        def decode(self):
+            Coded.decoded += 1
+            return np.zeros((5000, 5000, 3), np.uint8)
+
+    session = TrafficSession(Steps())
+    session.feed(FRAME, 0)
+    with pytest.raises(StrayImageError):
+        session.feed(Coded(), PERIOD_NS)
+    assert Coded.decoded == 0
+    session.feed(Coded(), 2 * PERIOD_NS)
+    assert Coded.decoded == 1
 
 
 def test_one_odd_image_is_rejected_and_nothing_is_forgotten():

@@ -56,10 +56,14 @@ class MotionDetector:
     disturbed : bool
         True where so much of the latest image differs that nothing was reported: the camera moves,
         or the light was switched. The background is then learnt anew.
+    is_blind : bool
+        True where nothing was looked for in the latest image: it is disturbed, or one of those that
+        the background is learnt from.
     """
 
     def __init__(self) -> None:
         self.disturbed = False
+        self.is_blind = False
         self._blobs = BlobReader()
         self._shape: tuple[int, ...] = ()
         self._restart()
@@ -85,7 +89,8 @@ class MotionDetector:
             self._restart()
         self._count += 1
         self.disturbed = False
-        if self._count <= _WARM_UP:
+        self.is_blind = self._count <= _WARM_UP
+        if self.is_blind:
             self._model.apply(small, None, -1)
             return Detections.none()
         mask = np.asarray(self._model.apply(small, None, 0), np.uint8)
@@ -94,7 +99,7 @@ class MotionDetector:
             self._learn(small, [one for one in followed if one.mode is TrackMode.TRACKING], zoom)
         moving = np.where(mask == _VEHICLE, mask, 0).astype(np.uint8)
         if np.count_nonzero(moving) > _ALL_MOVES * moving.size:
-            self.disturbed = True
+            self.disturbed = self.is_blind = True
             self._restart()
             return Detections.none()
         moving = np.asarray(cv2.medianBlur(moving, 3), np.uint8)

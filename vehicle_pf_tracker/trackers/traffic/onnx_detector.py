@@ -70,6 +70,8 @@ class OnnxDetector:
     ----------
     form : str
         ``YOLOX``, ``YOLOv8`` or ``SSD``.
+    disturbed, is_blind : bool
+        False: it looks at every image.
 
     Raises
     ------
@@ -78,6 +80,7 @@ class OnnxDetector:
     """
 
     def __init__(self, parameters: DetectorParameters) -> None:
+        self.disturbed = self.is_blind = False
         self._parameters = parameters
         self._path = Path(parameters.model)
         self._session = _open(self._path)

@@ -24,17 +24,35 @@ import copy
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
+import numpy as np
+
 from vehicle_pf_tracker.core.clock import StampClock, StampEvent, Tick
-from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.core.frame import CodedFrame, Frame, check_frame, frame_size
 from vehicle_pf_tracker.trackers.base import DEFAULT_PERIOD
 from vehicle_pf_tracker.trackers.continuity import Continuation, Continuity
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
+_DISTURBED = (
+    "most of the image changed at once: the camera moves, or the light was switched; nothing is "
+    "detected until the background is learnt anew"
+)
+
 
 class Detector(Protocol):
-    """Finds vehicles in an image."""
+    """Finds vehicles in an image.
+
+    Attributes
+    ----------
+    disturbed : bool
+        True where the latest image differs too much from those before to look for vehicles in it.
+    is_blind : bool
+        True where it has not looked in the latest image, for this reason or another.
+    """
+
+    disturbed: bool
+    is_blind: bool
 
     def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
         """Find them; `tracks` are the estimates of the frame before."""
@@ -90,15 +108,32 @@ class TrafficSession:
         self._continuity = Continuity()
         self._size: tuple[int, int] | None = None
 
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Width and height in px that images are expected to have; None for any size."""
+        return self._continuity.size
+
+    def reset(self) -> None:
+        """Forget all vehicles, and size and time of the images before."""
+        self._clock = self._clock_before = StampClock(self._frame_rate)
+        self._continuity, self._size = Continuity(), None
+        self._restart()
+
+    def reconfigure(self, *, frame_rate: float, reset_on_time_jump: bool) -> None:
+        """Take new settings between two images; no vehicle is lost by it."""
+        self._frame_rate, self._resets = frame_rate, reset_on_time_jump
+        for clock in (self._clock, self._clock_before):
+            clock.set_frame_rate(frame_rate)
+
     def feed(
-        self, frame: Frame, stamp_ns: int, detections: Detections | None = None
+        self, image: Frame | CodedFrame, stamp_ns: int, detections: Detections | None = None
     ) -> tuple[TrackEstimate, ...]:
         """Take the next image.
 
         Parameters
         ----------
-        frame : Frame
-            RGB image, not written to.
+        image : Frame or CodedFrame
+            RGB image, not written to; a coded one is decoded only if it continues the stream.
         stamp_ns : int
             Its stamp in ns.
         detections : Detections or None
@@ -112,8 +147,9 @@ class TrafficSession:
             If the frame is not usable.
         """
         self.events = []
-        size = frame_size(check_frame(frame))
+        size = frame_size(check_frame(image)) if isinstance(image, np.ndarray) else image.size
         continuation = self._continuity.judge(size, stamp_ns, timed=self._size is not None)
+        frame = image if isinstance(image, np.ndarray) else image.decode()
         if continuation is Continuation.CORRECTS:
             self.events.append("the last image's stamp was ahead")
             self._clock = self._clock_before
@@ -128,9 +164,16 @@ class TrafficSession:
         self._size = size
         self.tracker.frame_period = self._clock.period or DEFAULT_PERIOD
         if detections is None and self.detector is not None:
-            detections = self.detector.detect(frame, self.estimates)
+            detections = self._detected(self.detector, frame)
         self.estimates = self.tracker.step(frame, detections, tick.elapsed)
         return self.estimates
+
+    def _detected(self, detector: Detector, frame: Frame) -> Detections | None:
+        """Return the detections; None where it could not look, so that no vehicle is missed."""
+        found = detector.detect(frame, self.estimates)
+        if detector.disturbed:
+            self.events.append(_DISTURBED)
+        return None if detector.is_blind else found
 
     def _tick(self, stamp_ns: int) -> Tick:
         tick = self._clock.tick(stamp_ns)
