@@ -65,7 +65,7 @@ setup(
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
     package_data={
         NAME: ["py.typed"],
-        f"{NAME}.cli": ["pick.html"],
+        f"{NAME}.cli": ["pick.html", "pick.js"],
         f"{NAME}.evaluation.report": ["templates/*"],
     },
     data_files=[

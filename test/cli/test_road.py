@@ -93,7 +93,6 @@ def test_a_grid_to_read_points_off(bag, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("options", "status", "message"),
     [
-        ([], 2, "--grid to read them off"),
         (words(PAIRS[:3]), 1, "at least 4 pairs"),
         (words(["0,0=0,0", "1,1=1,1", "2,2=2,2", "5,0=5,0"]), 1, "on a line"),
         (words(["0,0"]), 1, "not u,v=x,y"),

@@ -12,21 +12,27 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`pick`: point at vehicles in a frame, and get their boxes as targets."""
+"""`pick`: point at vehicles, or at points of the road, and get their boxes or pixels."""
 
 from __future__ import annotations
 
 import argparse
-import webbrowser
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.picking import FrameStore, PickingServer
+from vehicle_pf_tracker.cli.picking import BOXES, POINTS, ask
+from vehicle_pf_tracker.cli.road_pairs import write_pairs
 from vehicle_pf_tracker.cli.shared_options import positive
 from vehicle_pf_tracker.cli.targets import TargetOption, write_targets
 from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, write_picture
 from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid
 from vehicle_pf_tracker.recordings.source import frame_at, open_source
+from vehicle_pf_tracker.road.calibration import format_pairs
+from vehicle_pf_tracker.road.plane import Pair
+
+PickedT = TypeVar("PickedT")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -39,7 +45,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--frame", type=positive, default=1, metavar="N", help="frame to begin with (default: 1)")
     add(
         "-o", "--output", type=Path, metavar="FILE",
-        help="write the targets to FILE, for run --targets; otherwise they are printed",
+        help="write the targets to FILE, for run --targets, or the points, for road calibrate "
+        "--pairs; otherwise they are printed",
+    )  # fmt: skip
+    add(
+        "--road", action="store_true",
+        help="pick points of the road instead, four or more, with their places in m",
     )  # fmt: skip
     add(
         "--grid", type=Path, metavar="PNG",
@@ -58,22 +69,39 @@ def run(args: argparse.Namespace) -> int:
         return 0
     if args.output is not None:
         make_folder(args.output.parent)
-    with PickingServer(FrameStore(source), args.frame) as server:
-        print(f"open {server.url} in a browser on this machine; Ctrl-C ends this", flush=True)
-        webbrowser.open(server.url)
-        targets = server.pick()
-    if not targets:
-        raise UsageError("nothing was picked")
-    if args.output is not None:
-        with output_errors(args.output):
-            write_targets(args.output, targets)
-        print(f"{len(targets)} targets are in {args.output}; use run --targets {args.output}")
+    if args.road:
+        points = ask(source, POINTS, args.frame)
+        _give(points, args.output, write_pairs, "road calibrate --pairs", _pair_words)
     else:
-        print(" ".join(f"--target {_words(target)}" for target in targets))
+        targets = ask(source, BOXES, args.frame)
+        _give(targets, args.output, write_targets, "run --targets", _target_words)
     return 0
 
 
-def _words(target: TargetOption) -> str:
+def _give(
+    picked: Sequence[PickedT],
+    path: Path | None,
+    write: Callable[[Path, Sequence[PickedT]], None],
+    use: str,
+    words: Callable[[PickedT], str],
+) -> None:
+    """Write what was picked to `path`, or print it as the words of a command."""
+    if not picked:
+        raise UsageError("nothing was picked")
+    if path is None:
+        print(" ".join(words(one) for one in picked))
+        return
+    with output_errors(path):
+        write(path, picked)
+    print(f"what was picked ({len(picked)}) is in {path}; use {use} {path}")
+
+
+def _target_words(target: TargetOption) -> str:
     box = target.box
     place = f"{target.name}@{target.frame}:"
-    return place + ",".join(f"{value:g}" for value in (box.x, box.y, box.width, box.height))
+    numbers = ",".join(f"{value:g}" for value in (box.x, box.y, box.width, box.height))
+    return f"--target {place}{numbers}"
+
+
+def _pair_words(pair: Pair) -> str:
+    return f"--pair {format_pairs((pair,))}"

@@ -12,27 +12,73 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A page on this machine alone, on which a user drags boxes over the frames of a source."""
+"""A page on this machine alone, on which a user drags boxes or clicks points over frames."""
 
 from __future__ import annotations
 
 import json
+import math
 import secrets
+import sys
 import tempfile
-from collections.abc import Iterator
+import threading
+import webbrowser
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, HTTPServer
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib import resources
-from typing import Any
+from typing import Any, Generic, TypeVar
 
+from vehicle_pf_tracker.cli.picture_window import has_display
 from vehicle_pf_tracker.cli.targets import TargetOption
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source
+from vehicle_pf_tracker.road.plane import Pair
 
+AnswerT = TypeVar("AnswerT")
+
+_FILES = {
+    "": ("text/html; charset=utf-8", "pick.html"),
+    "pick.js": ("text/javascript; charset=utf-8", "pick.js"),
+}
+"""Kind and file of the page and of its script, by their path."""
 _LONGEST = 1 << 20
 """Bytes of an answer: ten thousand boxes, and no more memory than that for a stray request."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tool(Generic[AnswerT]):
+    """A way to pick: its name in `pick.js`, and what reads an entry of the page's answer."""
+
+    name: str
+    read: Callable[[dict[str, Any]], AnswerT]
+
+
+def _numbers(values: Any) -> list[float]:
+    numbers = [float(value) for value in values]
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError(values)
+    return numbers
+
+
+def _target(entry: dict[str, Any]) -> TargetOption:
+    x, y, width, height = _numbers(entry["box"])
+    name = "".join(
+        c for c in str(entry.get("name", "")) if c.isascii() and (c.isalnum() or c in "_-")
+    )
+    return TargetOption(Box(x, y, width, height), name, int(entry["frame"]))
+
+
+def _pair(entry: dict[str, Any]) -> Pair:
+    (u, v), (x, y) = _numbers(entry["pixel"]), _numbers(entry["road"])
+    return Pair((u, v), (x, y))
+
+
+BOXES = Tool("boxes", _target)
+POINTS = Tool("points", _pair)
 
 
 class FrameStore:
@@ -51,9 +97,14 @@ class FrameStore:
         self._frames: Iterator[StampedFrame] = source.frames()
         self._file = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the store
         self._ends = [0]
+        self._lock = threading.Lock()
 
     def jpeg(self, number: int) -> bytes | None:
         """Return frame `number`, from 1, as a JPEG file; None if there is none that can be read."""
+        with self._lock:
+            return self._jpeg(number)
+
+    def _jpeg(self, number: int) -> bytes | None:
         while len(self._ends) <= number:
             found = next(self._frames, None)
             if found is None:
@@ -68,22 +119,30 @@ class FrameStore:
         return self._file.read(end - begin) or None
 
 
-class PickingServer(HTTPServer):
+class PickingServer(ThreadingHTTPServer, Generic[AnswerT]):
     """Serves the page to who knows its URL, and ends with the user's answer.
+
+    Each connection has a thread: browsers open some ahead and leave them idle.
 
     Parameters
     ----------
     frames : FrameStore
         The frames to pick in.
+    tool : Tool
+        What is picked.
     first : int
         Number of the frame shown first.
     """
 
-    def __init__(self, frames: FrameStore, first: int = 1) -> None:
+    daemon_threads = True
+    block_on_close = False
+
+    def __init__(self, frames: FrameStore, tool: Tool[AnswerT], first: int = 1) -> None:
         super().__init__(("127.0.0.1", 0), _Handler)
         self.frames = frames
+        self.tool = tool
         self.first = first
-        self.targets: list[TargetOption] | None = None
+        self._picked: Sequence[AnswerT] | None = None
         self._token = secrets.token_urlsafe(16)
 
     @property
@@ -96,44 +155,67 @@ class PickingServer(HTTPServer):
         """Address of the page."""
         return f"http://127.0.0.1:{self.server_port}{self.base}"
 
-    def pick(self) -> list[TargetOption]:
+    def pick(self) -> Sequence[AnswerT]:
         """Serve until the user is done; empty if they cancel."""
-        while self.targets is None:
-            self.handle_request()
-        return self.targets
+        self.serve_forever(poll_interval=0.1)
+        return self._picked or ()
+
+    def read(self, text: bytes) -> Sequence[AnswerT]:
+        """Read the page's answer; raises as `json` and `Tool.read` do."""
+        return [self.tool.read(entry) for entry in json.loads(text) or ()]
+
+    def finish(self, answer: Sequence[AnswerT]) -> None:
+        """End `pick`, from another thread."""
+        self._picked = answer
+        self.shutdown()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Pass over browsers that hang up, as they do when another frame is asked for."""
+        if not isinstance(sys.exc_info()[1], ConnectionError):
+            super().handle_error(request, client_address)
+
+
+def ask(source: Source, tool: Tool[AnswerT], first: int) -> Sequence[AnswerT]:
+    """Let the user pick in the frames of `source`; empty if they cancel."""
+    with PickingServer(FrameStore(source), tool, first) as server:
+        print(f"open {server.url} in a browser on this machine; Ctrl-C ends this", flush=True)
+        if has_display():  # without one, a text browser would take the terminal
+            webbrowser.open(server.url)
+        return server.pick()
 
 
 class _Handler(BaseHTTPRequestHandler):
-    server: PickingServer
+    server: PickingServer[Any]
 
     def do_GET(self) -> None:
         """Answer with the page, a frame, or what there is to know."""
-        what = self._asked()
-        if what == "":
-            page = resources.files(__package__).joinpath("pick.html").read_bytes()
-            self._answer("text/html; charset=utf-8", page)
+        what, frames = self._asked(), self.server.frames
+        if what in _FILES:
+            kind, name = _FILES[what]
+            self._answer(kind, resources.files(__package__).joinpath(name).read_bytes())
         elif what == "info":
-            found = {"frames": self.server.frames.count, "frame": self.server.first}
+            tool, first = self.server.tool.name, self.server.first
+            found = {"frames": frames.count, "frame": first, "tool": tool}
             self._answer("application/json", json.dumps(found).encode())
         elif what is not None and what.startswith("frame/") and what[6:].isdecimal():
             number = int(what[6:][:9])
-            coded = self.server.frames.jpeg(number) if number else None
-            self._answer("image/jpeg", coded)
+            self._answer("image/jpeg", frames.jpeg(number) if number else None)
         else:
             self._answer("", None)
 
     def do_POST(self) -> None:
-        """Take the boxes."""
+        """Take the user's answer."""
         length = self.headers.get("Content-Length", "")
         if self._asked() != "done" or not length.isdecimal() or int(length) > _LONGEST:
             self._answer("", None)
             return
         try:
-            self.server.targets = [_target(one) for one in json.loads(self.rfile.read(int(length)))]
-        except (ValueError, KeyError, TypeError, RecursionError):
+            answer = self.server.read(self.rfile.read(int(length)))
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
             self._answer("", None)
             return
         self._answer("text/plain", b"finished")
+        self.server.finish(answer)
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - the base's name
         """Say nothing: the terminal is the user's."""
@@ -153,12 +235,3 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_header("Cache-Control", "no-store")
         self.end_headers()
         self.wfile.write(content)
-
-
-def _target(entry: dict[str, Any]) -> TargetOption:
-    x, y, width, height = map(float, entry["box"])
-    box = Box(x, y, width, height)
-    name = "".join(
-        c for c in str(entry.get("name", "")) if c.isascii() and (c.isalnum() or c in "_-")
-    )
-    return TargetOption(box, name, int(entry["frame"]))

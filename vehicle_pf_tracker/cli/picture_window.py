@@ -24,6 +24,13 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 
 
+def has_display() -> bool:
+    """Return whether windows can be shown."""
+    return os.name != "posix" or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
+
+
 class PictureWindow:
     """Shows one frame after the other.
 
@@ -40,10 +47,9 @@ class PictureWindow:
 
     def __init__(self, title: str) -> None:
         self._title = title
-        has_display = bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
         try:
             # Without a display, Qt would end the program instead of raising.
-            if os.name == "posix" and not has_display:
+            if not has_display():
                 raise InputError("--show needs a display, and there is none; use --video FILE")
             cv2.namedWindow(title, cv2.WINDOW_NORMAL)
         except cv2.error:

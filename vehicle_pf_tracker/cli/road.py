@@ -19,14 +19,13 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import yaml
 
 from vehicle_pf_tracker.cli.console import UsageError
+from vehicle_pf_tracker.cli.picking import POINTS, ask
+from vehicle_pf_tracker.cli.road_pairs import FORM, read_pairs
 from vehicle_pf_tracker.cli.shared_options import positive
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.output_files import write_picture, write_text
 from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid, draw_road_grid
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
@@ -38,7 +37,6 @@ from vehicle_pf_tracker.road.calibration import format_pairs, parse_pairs
 from vehicle_pf_tracker.road.lens import MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
 
-_FORM = "pairs: [{pixel: [u, v], road: [x, y]}, …]"
 _TITLE = "Road. Written by `vehicle-pf-tracker road calibrate`."
 
 
@@ -54,30 +52,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--frame", type=positive, default=1, metavar="N", help="image to use (default: 1)")
     add(
         "--pair", action="append", default=[], metavar="U,V=X,Y", dest="pairs",
-        help="a pixel and the point of the road that it shows, px and m; repeatable",
+        help="a pixel and the point of the road that it shows, px and m; repeatable; without pairs "
+        "a page is served on which to click them",
     )  # fmt: skip
-    add("--pairs", type=Path, metavar="FILE", dest="file", help=f"YAML file with {_FORM}")
+    add("--pairs", type=Path, metavar="FILE", dest="file", help=f"YAML file with {FORM}")
     add("--intrinsics", default="", metavar="FX,FY,CX,CY", help="as in CameraInfo")
     add("--distortion-model", default="none", choices=MODELS)
     add("--distortion", default="", metavar="K1,K2,…", help="as in CameraInfo")
     add("--frame-id", default="road", help="frame of the road (default: road)")
     add(
         "--grid", type=Path, metavar="PNG",
-        help="picture with pixel coordinates to read points off; with pairs, with the road's lines",
+        help="picture with the road's lines; without pairs and -o, with pixel coordinates to read "
+        "points off instead of a page",
     )  # fmt: skip
     add("-o", "--output", type=Path, metavar="YAML", help="parameter file for nodes and `run`")
 
 
 def run(args: argparse.Namespace) -> int:
     """Fit, print the residuals, and write parameters and picture."""
-    pairs = (*parse_pairs(";".join(args.pairs)), *(_read_pairs(args.file) if args.file else ()))
-    if not pairs and args.grid is None:
-        raise UsageError("give pairs of points with --pair or --pairs, or --grid to read them off")
-    frame = frame_at(open_source(args.source, topic=args.topic), args.frame)
-    if not pairs:
+    pairs = (*parse_pairs(";".join(args.pairs)), *(read_pairs(args.file) if args.file else ()))
+    source = open_source(args.source, topic=args.topic)
+    frame = frame_at(source, args.frame)
+    if not pairs and args.grid is not None and args.output is None:
         write_picture(args.grid, draw_pixel_grid(frame))
         print(f"{args.grid}: read off pixels of points whose place on the road you know")
         return 0
+    pairs = pairs or tuple(ask(source, POINTS, args.frame))
+    if not pairs:
+        raise UsageError("nothing was picked")
     road = _road(args, pairs)
     plane = road.plane(road.lens, None)
     print(_table(plane, pairs), end="")
@@ -87,29 +89,6 @@ def run(args: argparse.Namespace) -> int:
         _write_parameters(args.output, road)
         print(f"{args.output}: use it with --params, or as params_file of a node")
     return 0
-
-
-def _read_pairs(path: Path) -> tuple[Pair, ...]:
-    """Read pairs from a YAML file.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or is not of the form that the help says.
-    """
-    try:
-        document: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
-        words = [
-            ",".join(str(float(one)) for one in row["pixel"])
-            + "="
-            + ",".join(str(float(one)) for one in row["road"])
-            for row in document["pairs"]
-        ]
-    except OSError as error:
-        raise InputError(f"cannot read the pairs {path}: {error.strerror}") from None
-    except (yaml.YAMLError, ValueError, TypeError, KeyError, RecursionError):
-        raise InputError(f"the file {path} has no pairs of the form {_FORM}") from None
-    return parse_pairs(";".join(words))
 
 
 def _road(args: argparse.Namespace, pairs: tuple[Pair, ...]) -> RoadParameters:
