@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import signal
 import time
+from pathlib import Path
 
 import pytest
 
@@ -33,6 +34,8 @@ from tracker_rig import TARGET, header, road, values_of
 from vehicle_pf_tracker.ros.messages import NOT_READY, image_message
 
 pytestmark = pytest.mark.ros
+
+BENCHMARK = Path(__file__).parents[3] / "benchmarks" / "cold_start.py"
 
 
 @pytest.fixture
@@ -75,3 +78,11 @@ def test_signals_are_obeyed_while_it_compiles(cold, number):
     cold.send(number)
     assert cold.wait(10.0) == 0
     assert "Traceback" not in cold.output
+
+
+def test_the_time_to_the_first_answer_can_be_measured(start_process):
+    process = start_process(str(BENCHMARK), "pf", "--repeats", "1")
+    assert process.wait(120.0) == 0, process.output
+    rows = [line.split(" | ") for line in process.output.splitlines() if line.startswith("| `pf`")]
+    assert [row[1] for row in rows] == ["cold", "warm", "opencv", "empty"]
+    assert all(float(row[3]) > 0.05 for row in rows)  # Python alone takes that long
