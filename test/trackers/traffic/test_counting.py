@@ -22,6 +22,7 @@ from traffic_samples import MODES, vehicle
 
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, CountingZone
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
+from vehicle_pf_tracker.scenes.road import RoadSceneParameters, camera_of, road
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
@@ -210,6 +211,26 @@ def test_speed_on_the_road_is_exact_in_perspective():
             found += counter.update([vehicle(1, x, bottom)], LATE + index * PERIOD_NS)
     (crossing,) = found
     assert crossing.speed_kmh == pytest.approx(72.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("speed", [30.0, 70.0, 120.0])
+@pytest.mark.parametrize("heading", ["coming", "going"])
+def test_speed_on_a_rendered_road_is_that_of_the_scene(speed, heading):
+    """With the true boxes; they are as tight as the picture, not as the vehicle's wheels."""
+    for seed in range(3):
+        parameters = RoadSceneParameters(speed=speed, heading=heading)
+        scene, plane = road(parameters, seed), camera_of(parameters, seed).plane
+        level = plane.to_image(np.array([[-3.0, 30.0], [3.0, 30.0]]))[:, 1].mean()
+        line = CountingLine("line", (0.0, level), (float(scene.width), level))
+        counter = Counter(CountingPlan(lines=(line,)), plane)
+        found = []
+        for index, truth in enumerate(scene.truths()):
+            x, y, size = truth.box.x, truth.box.y, (truth.box.width, truth.box.height)
+            estimate = vehicle(1, x + size[0] / 2, y + size[1], size=size)
+            found += counter.update([estimate], scene.stamp_ns(index))
+        (crossing,) = found
+        assert crossing.direction == ("in" if heading == "coming" else "out")
+        assert crossing.speed_kmh == pytest.approx(speed, rel=0.01)
 
 
 def test_speed_outside_the_calibrated_area_is_not_given():
