@@ -20,7 +20,7 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle_pf_tracker.cli import report, stress, system_options
+from vehicle_pf_tracker.cli import report, stress, system_options, traffic_evaluation
 from vehicle_pf_tracker.cli.console import print_table, tell_error, tell_notices
 from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers, natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
@@ -68,6 +68,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     report.add_report_options(parser)
     _add_robustness(parser)
     stress.add_arguments(parser)
+    traffic_evaluation.add_arguments(parser)
 
 
 def _add_timing(parser: argparse.ArgumentParser) -> None:
@@ -100,6 +101,9 @@ def _add_robustness(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the missing cells, write the report, and print the table."""
+    traffic_evaluation.check(args)
+    if args.traffic:
+        return traffic_evaluation.run(args)
     stress.check(args)
     try:
         return stress.run(args) if args.stress else _run_grid(args)

@@ -48,6 +48,8 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
     typical,
 )
 from vehicle_pf_tracker.evaluation.report.svg import SvgMaker
+from vehicle_pf_tracker.evaluation.report.traffic import stored_sections
+from vehicle_pf_tracker.evaluation.traffic.comparison_report import RULES
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +111,8 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
             for entry in evaluation.recordings
         ],
         robustness=robustness_sections(evaluation.folder, aggregates.order, slots),
+        traffic=stored_sections(evaluation.folder.path),
+        traffic_about=RULES,
         speed=speed_table(evaluation.folder.timings(), aggregates.order, slots),
         speed_note=speed_note(evaluation.folder.timings()),
         systems=system_sections(evaluation.systems),

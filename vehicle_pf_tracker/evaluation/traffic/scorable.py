@@ -33,6 +33,7 @@ _MOST_INSIDE = 0.5
 def scorable(sequence: TrafficSequence, tracks: Array) -> tuple[Array, Array]:
     """Leave out what cannot be scored.
 
+    Truth ends at the image's borders, and so boxes are cut there; those outside are left out.
     Totally hidden vehicles are not scored. A track's box that belongs to no vehicle in sight is
     left out where it belongs to a hidden one, or where most of it lies in a region without truth.
 
@@ -48,11 +49,20 @@ def scorable(sequence: TrafficSequence, tracks: Array) -> tuple[Array, Array]:
     truth, tracks : array, shape (M, 6)
         Boxes to be scored.
     """
+    tracks = _cut(tracks[:, :6], sequence.size)
     left = np.ones(len(tracks), dtype=np.bool_)
     for frame in range(1, sequence.frame_count + 1):
         rows = np.flatnonzero(tracks[:, 0] == frame)
         left[rows] = _counts(sequence, frame, tracks[rows, 2:6])
-    return sequence.truth[~sequence.hidden], tracks[left, :6]
+    return sequence.truth[~sequence.hidden], tracks[left]
+
+
+def _cut(tracks: Array, size: tuple[int, int]) -> Array:
+    low = np.maximum(tracks[:, 2:4], 0)
+    high = np.minimum(tracks[:, 2:4] + tracks[:, 4:6], size)
+    inside = (high > low).all(axis=1)
+    cut: Array = np.hstack([tracks[:, :2], low, high - low])[inside]
+    return cut
 
 
 def _counts(sequence: TrafficSequence, frame: int, boxes: Array) -> npt.NDArray[np.bool_]:

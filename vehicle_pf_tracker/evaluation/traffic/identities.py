@@ -1,0 +1,149 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Identities kept through total occlusions, and vehicles counted."""
+
+from __future__ import annotations
+
+from collections import Counter as Tally
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.evaluation.traffic.scorable import matches
+from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
+from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+
+_WINDOW = 30
+"""Frames before and after an occlusion in which the identity is looked for: about a second."""
+_GLIMPSE = 5
+"""Frames in sight below which two occlusions are one."""
+_LEAST = 10
+"""Frames in sight before an occlusion from which a tracker can know the vehicle."""
+
+
+def kept_identities(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]:
+    """Count total occlusions after which a vehicle has the identity that it had before.
+
+    Before is the identity of the last box on the vehicle within `_WINDOW` frames, after is the one
+    that most boxes on it have within as many. A vehicle that is not followed before or after has
+    not kept its identity.
+
+    Returns
+    -------
+    kept, judged : int
+        Occlusions of vehicles that were in sight for `_LEAST` frames before.
+    """
+    followed = _followed(sequence, tracks)
+    kept = judged = 0
+    for vehicle in np.unique(sequence.truth[:, 1]).tolist():
+        rows = sequence.truth[:, 1] == vehicle
+        seen = sequence.truth[rows & ~sequence.hidden, 0].astype(int).tolist()
+        hidden = set(sequence.truth[rows & sequence.hidden, 0].astype(int).tolist())
+        spells = list(_spells(seen, hidden))
+        for before, after in pairwise(spells):
+            if len(before) >= _LEAST:
+                judged += 1
+                kept += _is_kept(before, after, int(vehicle), followed)
+    return kept, judged
+
+
+def _spells(seen: list[int], hidden: set[int]) -> Iterator[list[int]]:
+    """Divide frames in sight at total occlusions; glimpses between two are left out."""
+    spell: list[int] = []
+    for frame, before in zip(seen, [None, *seen], strict=False):
+        if before is not None and any(number in hidden for number in range(before + 1, frame)):
+            if len(spell) >= _GLIMPSE:
+                yield spell
+            spell = []
+        spell.append(frame)
+    if len(spell) >= _GLIMPSE:
+        yield spell
+
+
+def _is_kept(
+    before: list[int], after: list[int], vehicle: int, followed: dict[tuple[int, int], int]
+) -> bool:
+    first = [
+        followed[frame, vehicle] for frame in before[-_WINDOW:] if (frame, vehicle) in followed
+    ]
+    then = Tally(
+        followed[frame, vehicle] for frame in after[:_WINDOW] if (frame, vehicle) in followed
+    )
+    return bool(first and then) and then.most_common(1)[0][0] == first[-1]
+
+
+def _followed(sequence: TrafficSequence, tracks: Array) -> dict[tuple[int, int], int]:
+    """Identity of the track on each vehicle in sight, by frame and vehicle."""
+    found: dict[tuple[int, int], int] = {}
+    for frame in range(1, sequence.frame_count + 1):
+        truth = sequence.truth[(sequence.truth[:, 0] == frame) & ~sequence.hidden]
+        boxes = tracks[tracks[:, 0] == frame]
+        for row, column in zip(*matches(truth[:, 2:], boxes[:, 2:6]), strict=True):
+            found[frame, int(truth[row, 1])] = int(boxes[column, 1])
+    return found
+
+
+def counts(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]:
+    """Count crossings of a line through the middle of the image, across the traffic.
+
+    Returns
+    -------
+    counted, true : int
+        Crossings of the tracks and of the true boxes, in both directions.
+    """
+    line = _line(sequence)
+    return _crossings(sequence, tracks, line), _crossings(sequence, sequence.truth, line)
+
+
+def _line(sequence: TrafficSequence) -> CountingLine:
+    """Return the line through the middle that most of the true motion crosses."""
+    width, height = map(float, sequence.size)
+    moved = np.zeros(2)
+    for vehicle in np.unique(sequence.truth[:, 1]):
+        boxes = sequence.truth[sequence.truth[:, 1] == vehicle, 2:]
+        moved += np.abs(boxes[-1, :2] - boxes[0, :2])
+    if moved[0] > moved[1]:
+        return CountingLine("middle", (width / 2, 0.0), (width / 2, height))
+    return CountingLine("middle", (0.0, height / 2), (width, height / 2))
+
+
+def _crossings(sequence: TrafficSequence, tracks: Array, line: CountingLine) -> int:
+    counter = Counter(CountingPlan(lines=(line,)))
+    order = np.argsort(tracks[:, 1], kind="stable")
+    rows = tracks[order]
+    for frame in range(1, sequence.frame_count + 1):
+        now = rows[rows[:, 0] == frame]
+        estimates = [_estimate(row) for row in now.tolist()]
+        counter.update(estimates, round(frame * 1e9 / sequence.frame_rate))
+    return sum(counter.totals.values())
+
+
+def _estimate(row: list[float]) -> TrackEstimate:
+    return TrackEstimate(
+        identity=int(row[1]),
+        box=Box(*row[2:6]),
+        velocity=(0.0, 0.0),
+        mode=TrackMode.TRACKING,
+        confidence=1.0,
+        label="",
+        score=1.0,
+        age=1.0,
+        hidden_by=None,
+    )
