@@ -35,7 +35,7 @@ SEEDS = 1
 """Seeds of a run: differences between scenes are larger than those between seeds."""
 _GRID_ONLY = (
     "params", "without_defaults", "baseline_model", "scheduler", "timing", "shifted_starts",
-    "start_frames", "restarts", "max_rmse", "stress", "topic", "workers", "video", "recordings",
+    "start_frames", "restarts", "max_rmse", "stress", "topic", "video", "recordings",
     "trajectories", "figures",
 )  # fmt: skip
 """Options of the grid and of the battery that do not apply."""
@@ -127,7 +127,7 @@ def _perturbations(args: argparse.Namespace) -> list[str]:
         return list(PERTURBATIONS)
     if args.perturbations == "none":
         return [UNCHANGED]
-    return [UNCHANGED, *_names(args.perturbations, set(PERTURBATIONS), "perturbation")]
+    return [UNCHANGED, *_names(args.perturbations, set(PERTURBATIONS), "perturbations")]
 
 
 def _names(text: str, known: set[str], what: str) -> list[str]:

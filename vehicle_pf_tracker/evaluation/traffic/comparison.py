@@ -142,13 +142,13 @@ def compare(
     """
     total, done = sum(case.sequence.frame_count for case in cases), 0
     for case in cases:
-        detections: Array | None = None
+        given: list[Array] = []
         for seed in seeds:
-            tracks, found, seconds = follow(case, replace(parameters, seed=seed), make)
-            detections = found if detections is None else detections
+            tracks, detections, seconds = follow(case, replace(parameters, seed=seed), make)
+            given.append(detections)
             yield judge(case, worker, OURS, seed, (tracks, seconds))
-        for name in baselines if detections is not None else ():
-            yield judge(case, worker, name, None, worker.track(name, case.sequence, detections))
+        for name in baselines if given else ():
+            yield judge(case, worker, name, None, worker.track(name, case.sequence, given[0]))
         done += case.sequence.frame_count
         on_progress(done, total)
 

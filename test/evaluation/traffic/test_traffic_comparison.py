@@ -1,0 +1,172 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The comparison of `traffic` with other trackers, its files and its page."""
+
+import json
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.report.traffic import (
+    stored_sections,
+    traffic_page,
+    traffic_sections,
+)
+from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION, cases_of, compare, follow
+from vehicle_pf_tracker.evaluation.traffic.comparison_report import (
+    main_table,
+    perturbed_table,
+    write_traffic_report,
+)
+from vehicle_pf_tracker.evaluation.traffic.perturbation import PERTURBATIONS
+from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
+from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
+from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+
+SETTINGS = {"frames": 12, "vehicles": 4}
+
+
+@pytest.fixture(scope="module")
+def sequence(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("mot") / "few"
+    write_mot_folder(make_traffic_scene("traffic-lanes", settings=SETTINGS), folder, 0)
+    for path in (folder / "det").glob("*.txt"):
+        if path.stem not in {"good", "misses"}:
+            path.unlink()
+    return read_sequence(folder)
+
+
+class Echo:
+    """A tracker that gives every detection its place in the list as its identity."""
+
+    def __init__(self, parameters):
+        self.seed = parameters.seed
+        self.frame_period = 1.0
+
+    def step(self, frame, detections, elapsed):
+        assert frame.shape == (360, 640, 3)
+        modes = (TrackMode.TRACKING, TrackMode.OCCLUDED, TrackMode.TENTATIVE, TrackMode.LOST)
+        return tuple(
+            TrackEstimate(i + 1, Box(*box), (0, 0), modes[i % 4], 1.0, "", 1.0, 1.0, None)
+            for i, box in enumerate(detections.boxes.tolist())
+        )
+
+
+class Worker:
+    """Scores tracks by their number, and tracks nothing."""
+
+    def score(self, sequence, tracks):
+        names = ("HOTA", "DetA", "AssA", "LocA", "IDF1", "MOTA")
+        return {**dict.fromkeys(names, float(len(tracks))), "IDSW": 3, "Frag": 1, "FP": 0, "FN": 0}
+
+    def track(self, name, sequence, detections):
+        self.asked = name, len(detections)
+        return np.empty((0, 6)), 0.001
+
+
+def test_cases_are_all_sources_and_files_are_perturbed(sequence):
+    found = [(case.source, case.perturbation) for case in cases_of([sequence])]
+    files = [(name, kind) for name in ("good", "misses") for kind in PERTURBATIONS]
+    assert found == [*files, (MOTION, "unchanged")]
+    few = cases_of([sequence], ["misses"], ["unchanged"])
+    assert [(case.source, case.perturbation) for case in few] == [("misses", "unchanged")]
+
+
+def test_tracked_and_occluded_vehicles_are_the_tracks(sequence):
+    (case,) = cases_of([sequence], ["good"], ["unchanged"])
+    tracks, detections, seconds = follow(case, TrafficParameters(), Echo)
+    assert (detections == sequence.detections["good"]).all()
+    assert set(tracks[:, 1]) == {1, 2}
+    first = detections[detections[:, 0] == 12][:2]
+    assert tracks[tracks[:, 0] == 12][:, 2:].tolist() == first[:, 1:5].tolist()
+    assert seconds > 0
+
+
+def test_the_tracker_runs_on_what_moves_and_passes_it_on(sequence):
+    (case,) = cases_of([sequence], [MOTION])
+    tracks, detections, _ = follow(case, TrafficParameters())
+    assert tracks.shape[1:] == detections.shape[1:] == (6,)
+    assert set(detections[:, 0]) <= set(range(1, 13))
+    again = follow(case, TrafficParameters())
+    assert (again[0] == tracks).all()
+    assert (again[1] == detections).all()
+
+
+@pytest.fixture(scope="module")
+def results(sequence):
+    worker = Worker()
+    cases = cases_of([sequence], ["good"], ["unchanged", "halved"])
+    progress = []
+    found = list(
+        compare(
+            cases, worker, TrafficParameters(), range(2), baselines=["sort"], make=Echo,
+            on_progress=lambda *counts: progress.append(counts),
+        )
+    )  # fmt: skip
+    assert progress == [(12, 24), (24, 24)]
+    assert worker.asked == ("sort", len(sequence.detections["good"]))
+    return found
+
+
+def test_seeds_are_ours_and_baselines_run_once(results):
+    assert [(one.perturbation, one.system, one.seed) for one in results] == [
+        (kind, system, seed)
+        for kind in ("unchanged", "halved")
+        for system, seed in (("traffic", 0), ("traffic", 1), ("sort", None))
+    ]
+
+
+def test_files_hold_means_over_seeds(results, tmp_path):
+    lines = write_traffic_report(results, tmp_path, {"command": ["evaluate"]})
+    header, rows = main_table(lines)
+    assert header[:3] == ["system", "HOTA", "DetA"]
+    assert [row[0] for row in rows] == ["`traffic`", "`sort`"]
+    assert rows[0][header.index("switches")] == "3"
+    assert rows[1][header.index("ms")] == "1.0"
+    header, rows = perturbed_table(lines)
+    assert header == ["HOTA / IDF1 / switches", "unchanged", "halved"]
+    assert rows[1] == ["`sort`", "0.0 / 0.0 / 3", "0.0 / 0.0 / 3"]
+    text = (tmp_path / "traffic.md").read_text()
+    assert "## few, good" in text
+    assert (tmp_path / "traffic.csv").read_text().count("\n") == 5
+    document = json.loads((tmp_path / "traffic.json").read_text())
+    assert len(document["results"]) == 6
+    assert document["lines"][0]["runs"] == 2
+
+
+def test_pages_show_the_tables_and_mark_the_best(results, tmp_path):
+    lines = write_traffic_report(results, tmp_path, {})
+    sections = traffic_sections(lines)
+    assert stored_sections(tmp_path) == sections
+    (section,) = sections
+    assert section.title == "few, good"
+    (_, table), (_, perturbed) = section.tables
+    hota = [row.cells[0] for row in table.rows]
+    assert [cell.best for cell in hota] == [True, False]
+    assert [header.span for header in perturbed.groups] == [3, 3]
+    page = traffic_page(lines, "evaluate <few>")
+    assert "evaluate &lt;few&gt;" in page
+    assert f"<strong>{hota[0].text}</strong>" in page
+
+
+def test_a_folder_without_a_comparison_has_no_section(tmp_path):
+    assert stored_sections(tmp_path) == []
+    (tmp_path / "traffic.json").write_text("{}")
+    with pytest.raises(InputError, match="is not the result of evaluate --traffic"):
+        stored_sections(tmp_path)

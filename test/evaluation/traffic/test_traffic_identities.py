@@ -1,0 +1,131 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Identities kept, vehicles counted, and detections made worse."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
+from vehicle_pf_tracker.evaluation.traffic.perturbation import PERTURBATIONS
+from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
+
+FRAMES = 100
+
+
+def scene(hidden=(), size=(400, 100)):
+    """One vehicle that drives to the right, totally hidden in these frames."""
+    rows = [[f, 7, 4.0 * (f - 1), 40, 20, 12] for f in range(1, FRAMES + 1)]
+    return TrafficSequence(
+        folder=Path("scene"),
+        frame_count=FRAMES,
+        frame_rate=30,
+        size=size,
+        truth=np.array(rows, dtype=float),
+        hidden=np.isin(range(1, FRAMES + 1), list(hidden)),
+        ignored=np.empty((0, 5)),
+        detections={},
+    )
+
+
+def tracks(*spans):
+    """The true boxes as tracks, each span (first, last, identity)."""
+    rows = [
+        [f, identity, 4.0 * (f - 1), 40, 20, 12]
+        for first, last, identity in spans
+        for f in range(first, last + 1)
+    ]
+    return np.array(rows, dtype=float).reshape(-1, 6)
+
+
+BRIDGE = range(41, 61)
+
+
+@pytest.mark.parametrize(
+    ("spans", "kept"),
+    [
+        ([(1, 40, 1), (61, 100, 1)], 1),
+        ([(1, 100, 1)], 1),  # predicted meanwhile
+        ([(1, 40, 1), (61, 100, 2)], 0),
+        ([(1, 40, 1), (61, 63, 2), (64, 100, 1)], 1),  # soon right again
+        ([(1, 20, 3), (21, 40, 1), (61, 100, 1)], 1),  # the last one before counts
+        ([(1, 38, 1), (39, 40, 2), (61, 100, 1)], 0),
+        ([(1, 5, 1), (61, 100, 1)], 0),  # lost long before
+        ([(1, 40, 1)], 0),
+        ([], 0),
+    ],
+)
+def test_an_identity_is_kept_if_it_is_the_same_before_and_after(spans, kept):
+    assert kept_identities(scene(BRIDGE), tracks(*spans)) == (kept, 1)
+
+
+def test_glimpses_do_not_divide_an_occlusion():
+    glimpse = set(BRIDGE) - {50, 51, 52}
+    assert kept_identities(scene(glimpse), tracks((1, 100, 1))) == (1, 1)
+    twice = set(BRIDGE) - set(range(48, 54))
+    assert kept_identities(scene(twice), tracks((1, 100, 1)))[1] == 1  # 6 frames are too few before
+
+
+def test_who_is_seen_for_too_short_before_is_not_judged():
+    assert kept_identities(scene(range(8, 30)), tracks((1, 100, 1))) == (0, 0)
+    assert kept_identities(scene(range(60, 101)), tracks((1, 100, 1))) == (0, 0)
+
+
+def test_crossings_of_the_middle_are_counted_once_per_identity():
+    assert counts(scene(), tracks((1, 100, 1))) == (1, 1)
+    assert counts(scene(), tracks((1, 40, 1))) == (0, 1)
+    both = np.vstack([tracks((1, 100, 1)), tracks((1, 100, 2))])
+    assert counts(scene(), both) == (2, 1)
+
+
+def test_traffic_that_goes_down_is_counted_at_a_level_line():
+    sideways = scene(size=(100, 400))
+    turned = sideways.truth[:, [0, 1, 3, 2, 5, 4]]
+    down = TrafficSequence(
+        **{
+            name: getattr(sideways, name)
+            for name in ("folder", "frame_count", "frame_rate", "size", "hidden", "ignored",
+                         "detections")
+        },
+        truth=turned,
+    )  # fmt: skip
+    assert counts(down, turned) == (1, 1)
+    assert counts(down, tracks((1, 100, 1))) == (0, 1)
+
+
+def rows():
+    numbers = np.arange(1, 821, dtype=float)
+    return np.column_stack([np.repeat(numbers, 5), np.ones((4100, 4)), np.full(4100, 0.6)])
+
+
+def test_a_fifth_is_dropped_and_always_the_same():
+    kept = PERTURBATIONS["dropped"](rows())
+    assert len(kept) / 4100 == pytest.approx(0.8, abs=0.02)
+    assert (PERTURBATIONS["dropped"](rows()) == kept).all()
+
+
+@pytest.mark.parametrize(("name", "length"), [("gap20", 20), ("gap40", 40)])
+def test_gaps_begin_every_two_hundred_frames(name, length):
+    missing = sorted(set(range(1, 821)) - set(PERTURBATIONS[name](rows())[:, 0].astype(int)))
+    starts = (100, 300, 500, 700)
+    assert missing == [frame for start in starts for frame in range(start, start + length)]
+
+
+def test_scores_are_squared_or_halved_and_boxes_stay():
+    assert (PERTURBATIONS["squared"](rows())[:, 5] == 0.6**2).all()
+    halved = PERTURBATIONS["halved"](rows())
+    assert (halved[:, 5] == 0.3).all()
+    assert (halved[:, :5] == rows()[:, :5]).all()
