@@ -15,9 +15,16 @@
 """Each mistake gives one clear sentence and a status that is not 0, and never a traceback."""
 
 import os
+from pathlib import Path
 
 import pytest
-from small_recordings import TARGET, record, record_two_cameras, record_without_images
+from small_recordings import (
+    TARGET,
+    frame_folder,
+    record,
+    record_two_cameras,
+    record_without_images,
+)
 
 from vehicle_pf_tracker.cli.main import main
 
@@ -290,3 +297,33 @@ def test_a_file_for_another_variant_is_named_as_such(run_fails, bag, tmp_path):
     line = run_fails(bag, "--params", path)
     assert "there is no parameter 'sigma'" in line
     assert "it is a file for pf" in line
+
+
+NOWHERE = "/proc/nowhere"
+"""A place where nothing can be made, not even by root."""
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="Linux has such a place")
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("run", "BAG", "--variant", "pf", "-o", f"{NOWHERE}/out"),
+        ("run", "BAG", "--variant", "pf", "-o", "OUT", "--video", f"{NOWHERE}/out.mp4"),
+        ("run", "BAG", "--variant", "pf", "-o", "OUT", "--recording", f"{NOWHERE}/out"),
+        ("import", "FRAMES", f"{NOWHERE}/out"),
+        ("synth", "bar", f"{NOWHERE}/out"),
+        ("synth", "bar", f"{NOWHERE}/out.mp4"),
+        ("pick", "BAG", "--grid", f"{NOWHERE}/out.png"),
+        ("evaluate", "BAG", "--variants", "pf", "-o", f"{NOWHERE}/out"),
+        ("demo", "-o", f"{NOWHERE}/out"),
+    ],
+    ids=" ".join,
+)
+def test_an_output_where_nothing_can_be_made(bag, tmp_path, capsys, words):
+    places = {"BAG": bag, "FRAMES": frame_folder(tmp_path / "frames"), "OUT": tmp_path / "out"}
+    assert main([str(places.get(word, word)) for word in words]) == 1
+    *_, line = capsys.readouterr().err.splitlines()
+    assert line.startswith("vehicle-pf-tracker: error: ")
+    assert "cannot write" in line
+    assert NOWHERE in line
+    assert not places["OUT"].exists() or not list(places["OUT"].iterdir())

@@ -22,6 +22,7 @@ import pytest
 
 from vehicle_pf_tracker.cli import demo, demo_runs
 from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import Recording
 
 
@@ -71,6 +72,24 @@ def test_ros_is_looked_for_before_anything_is_rendered(tmp_path, without_ros, mo
     note, error = capsys.readouterr().err.splitlines()
     assert "no Python module rclpy" in note
     assert "is a file" in error
+
+
+@pytest.mark.parametrize("long", [True, False])
+def test_kernels_are_ready_before_nodes_start(tmp_path, monkeypatch, capsys, long):
+    order = []
+    monkeypatch.setattr(demo, "takes_long", lambda _choice: long)
+    monkeypatch.setattr(demo, "load_kernels", order.append)
+    monkeypatch.setattr(demo, "absence_of_ros", lambda: "")
+    monkeypatch.setattr(demo, "_record", lambda _path: None)
+
+    def through_ros(_recording):
+        order.append("nodes")
+        raise InputError("enough")
+
+    monkeypatch.setattr(demo, "track_through_ros", through_ros)
+    assert main(["demo", "-o", str(tmp_path)]) == 1
+    assert order == (["auto", "nodes"] if long else ["nodes"])
+    assert ("1. kernels" in capsys.readouterr().out) == long
 
 
 def test_a_ros_that_cannot_be_loaded_is_named(monkeypatch):

@@ -42,6 +42,7 @@ from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describ
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
 from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
+from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 
@@ -70,6 +71,10 @@ def run(args: argparse.Namespace) -> int:
     if absence:
         tell_notices([f"{absence}, so the nodes are left out and everything is tracked offline"])
     folder, steps = make_folder(args.output), itertools.count(1)
+    if takes_long("auto"):
+        # Once, and here: the nodes, which start side by side, would each compile all of them.
+        _announce(steps, "kernels: the first start compiles for up to a minute, later ones load")
+        load_kernels("auto")
     _announce(steps, f"a recording of the scene {SCENE!r} with exact truth")
     recording = _record(folder / "recording")
     answers: Mapping[str, Sequence[EstimateRow]] | None = None
