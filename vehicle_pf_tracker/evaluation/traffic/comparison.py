@@ -179,20 +179,20 @@ def judge(
     )
 
 
-class _Recorder:
-    """Passes a detector's boxes on, and keeps them as rows."""
+class _Recorder(MotionDetector):
+    """Keeps what it finds as rows."""
 
     def __init__(self) -> None:
-        self._detector = MotionDetector()
-        self._frame = 0
+        super().__init__()
+        self._number = 0
         self.rows: list[list[float]] = []
 
     def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
         """Find what moves."""
-        found = self._detector.detect(frame, tracks)
-        self._frame += 1
+        found = super().detect(frame, tracks)
+        self._number += 1
         self.rows += [
-            [self._frame, *box, score]
+            [self._number, *box, score]
             for box, score in zip(found.boxes.tolist(), found.scores.tolist(), strict=True)
         ]
         return found
