@@ -131,7 +131,7 @@ def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
         ),
         f"{resampling.SETTING} Processor time of one thread per step, all filters in turns on each "
         f"frame, {len(_timed(size))} seeds.",
-        ("Times differ from run to run and from machine to machine; these are of a busy machine.",),
+        ("Times differ from run to run and from machine to machine.",),
     )
 
 
