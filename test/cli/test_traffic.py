@@ -20,6 +20,7 @@ import math
 import os
 import re
 import signal
+import sys
 from pathlib import Path
 
 import cv2
@@ -274,6 +275,13 @@ def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, sai
     assert said in err
     assert "Traceback" not in err
     assert not out.exists() or not any(out.iterdir())
+
+
+def test_without_scipy_the_extra_is_named(run, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "scipy", None)
+    out = run(status=1)
+    assert "pip install 'vehicle_pf_tracker[traffic]'" in capsys.readouterr().err
+    assert not out.exists()
 
 
 def test_bad_detections_are_named_by_their_row(run, tmp_path, capsys):

@@ -22,7 +22,6 @@ in; and the difference in colour.
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from vehicle_pf_tracker.core.array import Array
 
@@ -64,6 +63,9 @@ def assign(costs: Array) -> list[tuple[int, int]]:
     """Pairs (row, column) of least total cost, each below the gate."""
     if costs.size == 0:
         return []
+    # Not at the top: help and parameters of `traffic` are printed without this library.
+    from scipy.optimize import linear_sum_assignment  # noqa: PLC0415
+
     bounded = np.minimum(costs, GATE)
     rows, columns = linear_sum_assignment(bounded)
     good = bounded[rows, columns] < GATE
