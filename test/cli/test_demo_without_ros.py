@@ -55,7 +55,12 @@ def test_everything_else_is_done_and_said(tmp_path, without_ros, short, capsys):
     assert "same numbers offline" not in out
     assert f"the picture is {tmp_path / 'demo.png'}" in out
     assert f"the video is {tmp_path / 'demo.mp4'}" in out
+    last = out.splitlines()[-1]
+    assert f"the picture of all vehicles is {tmp_path / 'all_vehicles.png'}: " in last
+    assert (tmp_path / "all_vehicles.png").is_file()
+    assert (tmp_path / "traffic" / "tracks.txt").read_text().count("\n") > 10
     frames = Recording(tmp_path / "recording").frame_count
+    assert last.partition(": ")[2].startswith(f"1 vehicle in {frames} frames")
     video = cv2.VideoCapture(str(tmp_path / "demo.mp4"))
     assert video.get(cv2.CAP_PROP_FRAME_COUNT) == frames
     run = json.loads((tmp_path / "pf" / "run.json").read_text())

@@ -30,6 +30,7 @@ from vehicle_pf_tracker.cli.demo_runs import (
     track_offline,
     track_through_ros,
 )
+from vehicle_pf_tracker.cli.demo_traffic import follow_all
 from vehicle_pf_tracker.cli.shared_options import natural
 from vehicle_pf_tracker.cli.synth import record_scene
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
@@ -50,6 +51,7 @@ SCENE, SCENE_SEED = "highway", 0
 IN_VIDEO = ("fusion", "pf")
 """Contestants drawn in the video: a third box would hide the other two."""
 PICTURE, VIDEO, ESTIMATES = "demo.png", "demo.mp4", "with_estimates"
+ALL_VEHICLES = "all_vehicles.png"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -90,6 +92,8 @@ def run(args: argparse.Namespace) -> int:
     scores = {name: score_frames(found, recording.truth()) for name, found in rows.items()}
     _write_runs(folder, recording, runs, scores, args.command, bool(answers))
     _draw(folder, recording, scores, bool(answers))
+    _announce(steps, "every vehicle of the scene, found by motion, and a picture of all paths")
+    found = follow_all(recording, folder / "traffic", folder / ALL_VEHICLES)
     table = _table(scores, same if answers else {}, _recoveries(recording, runs))
     show(table)
     write_text(folder / "summary.md", table.to_markdown())
@@ -97,6 +101,7 @@ def run(args: argparse.Namespace) -> int:
     print(f"the picture is {folder / PICTURE}")
     print(f"the video is {folder / VIDEO}")
     print(f"the recording {folder / ESTIMATES} opens in Foxglove and evo; all else is in {folder}")
+    print(f"the picture of all vehicles is {folder / ALL_VEHICLES}: {found[0]}")
     return 0 if all(same.values()) else 1
 
 

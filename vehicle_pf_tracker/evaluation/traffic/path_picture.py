@@ -63,6 +63,12 @@ class _Path:
         self.last = point
         self.length += 1
 
+    def from_middle(self) -> list[Pixel]:
+        """Return the points, those next to the middle first."""
+        middle = len(self.places) // 2
+        order = sorted(range(len(self.places)), key=lambda index: abs(index - middle))
+        return [self.places[index] for index in order]
+
 
 class PathPicture:
     """Draws the path of every confirmed vehicle over the frame that shows the most of them.
@@ -127,16 +133,19 @@ class PathPicture:
         path.add((x, y))
 
     def _write_numbers(self, picture: Frame) -> None:
-        """Write the number of each path where no other number is, or at its end."""
-        width = line_width(picture)
-        taken = np.zeros(picture.shape[:2], bool)
-        longest = sorted(self._paths, key=lambda one: -self._paths[one].length)[:_MOST_NUMBERS]
-        for identity in longest:
-            words, places = str(identity), self._paths[identity].places
+        """Write each number once: above its box, else on its path where no other number is."""
+        width, taken = line_width(picture), np.zeros(picture.shape[:2], bool)
+        places: dict[int, list[Pixel]] = {}
+        for one in self._on_ground:
+            ((x, y),) = pixels_at(np.array([[one.box.x, one.box.y]]) * self._scale)
+            places[one.identity] = [(max(x, 0), max(y - 3 * width, 14 * width))]
+        longest = sorted(self._paths, key=lambda identity: -self._paths[identity].length)
+        for identity in longest[:_MOST_NUMBERS]:
+            places.setdefault(identity, self._paths[identity].from_middle())
+        for identity, of_path in places.items():
+            words = str(identity)
             size = 9 * width * len(words), 13 * width
-            middle_first = sorted(places, key=lambda at: abs(places.index(at) - len(places) // 2))
-            free = (at for at in middle_first if _is_free(taken, at, size))
-            x, y = next(free, places[-1])
+            x, y = next((at for at in of_path if _is_free(taken, at, size)), of_path[-1])
             taken[max(y - size[1], 0) : max(y, 0), max(x, 0) : max(x + size[0], 0)] = True
             write_words(picture, words, (x, y), identity_colour(identity), width)
 
