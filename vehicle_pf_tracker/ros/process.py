@@ -97,6 +97,8 @@ def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]]
     except InputError as error:
         return _fail(name, str(error))
     except (RCLError, UnknownROSArgsError) as error:
+        if interrupts.left_to_ros and not rclpy.ok():
+            return 0  # a signal took the ground from under a call
         return _fail(name, _first_sentence(error))
     finally:
         rclpy.try_shutdown()

@@ -35,8 +35,8 @@ class Clock:
 
 
 def test_a_file_keeps_its_intervals_and_is_not_early():
-    pace = Pace(Clock(5_000 * MS), threading.Event(), is_live=False)
-    pace.begin()
+    pace = Pace(Clock(5_000 * MS), threading.Event())
+    pace.begin(is_live=False)
     began = time.monotonic()
     stamps = [pace.stamp(ms * MS) for ms in (1000, 1040, 1120)]
     assert stamps == [5_000 * MS, 5_040 * MS, 5_120 * MS]
@@ -44,24 +44,25 @@ def test_a_file_keeps_its_intervals_and_is_not_early():
 
 
 def test_a_new_pass_begins_at_the_clock_and_never_before_the_last_stamp():
-    pace = Pace(Clock(5_000 * MS, 5_500 * MS, 4_000 * MS), threading.Event(), is_live=False)
+    pace = Pace(Clock(5_000 * MS, 5_500 * MS, 4_000 * MS), threading.Event())
     stamps = []
     for _ in range(3):
-        pace.begin()
+        pace.begin(is_live=False)
         stamps.append(pace.stamp(1000 * MS))
     assert stamps == [5_000 * MS, 5_500 * MS, 5_500 * MS + 1]
 
 
 def test_live_images_have_the_clock_but_each_a_time_of_its_own():
-    pace = Pace(Clock(7, 7, 5, 100), threading.Event(), is_live=True)
+    pace = Pace(Clock(7, 7, 5, 100), threading.Event())
+    pace.begin(is_live=True)
     assert [pace.stamp(0) for _ in range(4)] == [7, 8, 9, 100]
 
 
 def test_the_end_of_the_process_ends_waits():
     stop = threading.Event()
     stop.set()
-    pace, back_off = Pace(Clock(0), stop, is_live=False), BackOff(stop, 60.0)
-    pace.begin()
+    pace, back_off = Pace(Clock(0), stop), BackOff(stop, 60.0)
+    pace.begin(is_live=False)
     began = time.monotonic()
     pace.stamp(0)
     pace.stamp(3600 * 1000 * MS)

@@ -18,10 +18,13 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
+import re
 import signal
 import threading
 import time
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -164,7 +167,7 @@ def test_a_signal_ends_it_well(bench, start, folder, number):
     images = bench.collect(Image, "image")
     bench.wait_for(lambda: images)
     process.send(number)
-    assert process.wait(10.0) == 0
+    assert process.wait(10.0) == 0, process.output
     assert "Traceback" not in process.output
 
 
@@ -191,9 +194,12 @@ def test_a_signal_is_obeyed_while_the_source_is_away(bench, start, folder):
 
 
 class Stream:
-    """A network camera of `port`, which can be broken off: JPEG images over HTTP."""
+    """A network camera of `port`, which can be broken off: JPEG images over HTTP.
 
-    def __init__(self, port: int = 0):
+    It falls silent after `most` images.
+    """
+
+    def __init__(self, port: int = 0, most: float = math.inf):
         image = cv2.imencode(".jpg", road(1)[0])[1].tobytes()
         lasts = threading.Event()
         lasts.set()
@@ -204,8 +210,11 @@ class Stream:
                 self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
                 self.end_headers()
                 head = f"--frame\r\nContent-Type: image/jpeg\r\nContent-Length: {len(image)}"
+                sent = 0
                 while lasts.is_set():
-                    self.wfile.write(head.encode() + b"\r\n\r\n" + image + b"\r\n")
+                    if sent < most:
+                        self.wfile.write(head.encode() + b"\r\n\r\n" + image + b"\r\n")
+                        sent += 1
                     time.sleep(0.02)
 
             def log_message(self, *words):
@@ -223,10 +232,13 @@ class Stream:
         self._server.server_close()
 
 
-@pytest.mark.skipif(
+needs_streams = pytest.mark.skipif(
     cv2.CAP_FFMPEG not in cv2.videoio_registry.getStreamBackends(),
     reason="this OpenCV reads no network streams",
 )
+
+
+@needs_streams
 def test_a_stream_that_breaks_is_opened_again(bench, start):
     stream = Stream()
     process = start(f"http://127.0.0.1:{stream.port}/cam.mjpg")
@@ -245,3 +257,35 @@ def test_a_stream_that_breaks_is_opened_again(bench, start):
     process.send(signal.SIGINT)
     assert process.wait(10.0) == 0
     again.end()
+
+
+def shared_memory(process) -> list[Path]:
+    """Files of Fast DDS that a process has mapped."""
+    maps = Path("/proc", str(process.popen.pid), "maps").read_text().splitlines()
+    return [Path(line.split()[-1]) for line in maps if re.search("/fast(rtps|dds)_[0-9a-f]", line)]
+
+
+@needs_streams
+@pytest.mark.parametrize("most", [0, 200])
+def test_a_signal_is_obeyed_while_a_stream_is_silent(bench, start, most):
+    stream = Stream(most=most)
+    process = start(f"http://127.0.0.1:{stream.port}/cam.mjpg")
+    own = bench.wait_for(lambda: shared_memory(process))
+    if most:
+        images = bench.collect(Image, "image", qos_profile_sensor_data)
+        bench.wait_for(lambda: images, 60.0)
+        bench.wait_for(lambda: len(images) == images_after(bench, images), 60.0)
+        own = shared_memory(process)
+    process.send(signal.SIGTERM)
+    assert process.wait(15.0) == 0
+    assert "Traceback" not in process.output
+    assert not [path for path in own if path.exists() and path.name.endswith("_el")]
+    stream.end()
+
+
+def images_after(bench, images) -> int:
+    """Number of images when half a second has passed without a new one."""
+    deadline = time.monotonic() + 0.5
+    while time.monotonic() < deadline:
+        bench.executor.spin_once(timeout_sec=0.05)
+    return len(images)

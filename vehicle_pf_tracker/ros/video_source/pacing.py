@@ -34,18 +34,16 @@ class Pace:
         Returns the present time in ns.
     stop : threading.Event
         Ends every wait.
-    is_live : bool
-        Whether images come by themselves.
     """
 
-    def __init__(self, clock: Callable[[], int], stop: threading.Event, *, is_live: bool) -> None:
-        self._clock, self._stop, self._is_live = clock, stop, is_live
+    def __init__(self, clock: Callable[[], int], stop: threading.Event) -> None:
+        self._clock, self._stop, self._is_live = clock, stop, False
         self._began: tuple[int, int, float] | None = None
         self.last = 0
 
-    def begin(self) -> None:
-        """Begin a pass: the next image is the first."""
-        self._began = None
+    def begin(self, *, is_live: bool) -> None:
+        """Begin a pass, of images that come by themselves where `is_live`."""
+        self._began, self._is_live = None, is_live
 
     def stamp(self, recorded_ns: int) -> int:
         """Return the stamp of an image with the source's own time, once it is due.

@@ -70,21 +70,30 @@ def run_video_source(arguments: Sequence[str]) -> int:
 
 def _serve(source: str = "") -> tuple[int, bool]:
     """Return the exit status, and whether a thread was left behind."""
-    with image_transport(_IMAGE_BYTES, rclpy.get_rmw_implementation_identifier()) as notices:
-        node = VideoSourceNode(source)
-    for notice in notices:
-        node.get_logger().warning(notice)
     executor = SingleThreadedExecutor()
-    executor.add_node(node)
+    node = None
     try:
+        with image_transport(_IMAGE_BYTES, rclpy.get_rmw_implementation_identifier()) as notices:
+            node = VideoSourceNode(source)
+        for notice in notices:
+            node.get_logger().warning(notice)
+        executor.add_node(node)
         while rclpy.ok() and not node.is_done:
             executor.spin_once(timeout_sec=_LOOK_EVERY)
     except ExternalShutdownException:
         pass
-    has_ended = node.stop(_LAST_WAIT)
-    if has_ended:
+    except Exception:
+        if rclpy.ok():
+            raise  # otherwise a signal took the ground from under a call
+    finally:
         executor.shutdown()
-        node.destroy_node()
+    return _end(node) if node is not None else (0, False)
+
+
+def _end(node: VideoSourceNode) -> tuple[int, bool]:
+    """End the node, also beside a thread that waits: else its shared memory would stay."""
+    has_ended = node.stop(_LAST_WAIT)
+    node.destroy_node()
     if node.problem:
         print(f"{_NAME}: {node.problem}", file=sys.stderr)
     return (1 if node.problem else 0), not has_ended

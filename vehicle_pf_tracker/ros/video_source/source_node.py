@@ -53,12 +53,12 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     Attributes
     ----------
     problem : str
-        Reason why it ended; empty where a file was just read to its end.
+        Reason why it ended, as a source that cannot be read; empty at the end of a file.
 
     Raises
     ------
     InputError
-        If the source or the calibration cannot be used.
+        If there is no source, or a parameter or the calibration cannot be used.
     """
 
     def __init__(self, source: str = "", **keywords: Any) -> None:
@@ -74,18 +74,16 @@ class VideoSourceNode(Node):  # type: ignore[misc]
             jpeg_quality=settings.jpeg_quality,
             calibration=read_calibration(url) if url else None,
         )
-        opened = self._open()
-        self._is_live = is_live(opened)
+        self._is_live = False
         self._stop = threading.Event()
-        self._pace = Pace(self._now, self._stop, is_live=self._is_live)
+        self._pace = Pace(self._now, self._stop)
         self._back_off = BackOff(self._stop)
         self._shown = 0
         self._told: set[str] = set()
         self._broke_at: float | None = None
         self.problem = ""
-        self._thread = threading.Thread(
-            target=self._run, args=(opened,), name="images", daemon=True
-        )
+        # It opens the source too, which may wait for a network: signals are heard meanwhile.
+        self._thread = threading.Thread(target=self._run, name="images", daemon=True)
         self._thread.start()
 
     @property
@@ -108,9 +106,9 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
 
-    def _run(self, opened: Footage) -> None:
+    def _run(self) -> None:
         try:
-            self._show_all(opened)
+            self._show_all(self._open())
         except InputError as error:
             self.problem = str(error)
         except Exception as error:
@@ -143,7 +141,8 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         return self._settings.loop
 
     def _show_images(self, source: Footage) -> None:
-        self._pace.begin()
+        self._is_live = is_live(source)
+        self._pace.begin(is_live=self._is_live)
         for picture in source.pictures():
             if self._stop.is_set():
                 return
