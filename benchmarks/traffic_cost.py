@@ -1,0 +1,179 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Time per frame and memory of `traffic` with many vehicles, beside ByteTrack and OC-SORT.
+
+    python -m benchmarks.traffic_cost
+
+One thread. The same 640x360 px images with 10, 20 and 50 vehicles at once are followed in turns:
+`traffic` with given boxes, `traffic` that finds them itself, and the baselines on those boxes.
+Times are processor times; the medians of the rounds are shown.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from functools import partial
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.evaluation.traffic.client import TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
+from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
+from vehicle_pf_tracker.scenes.randomness import stream
+from vehicle_pf_tracker.scenes.roads import Carriageway, countryside
+from vehicle_pf_tracker.scenes.traffic import any_car
+from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
+from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
+from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+
+COUNTS = (10, 20, 50)
+WIDTH, HEIGHT = 640, 360
+FRAMES = 200
+SETTLED = 60
+"""First frames, in which the background is learnt and vehicles are found; not timed."""
+BEYOND = 45
+"""Distance outside of the image from which vehicles come back on the other side, px."""
+BASELINES = ("bytetrack", "ocsort")
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--resident", type=Path, help=argparse.SUPPRESS)
+    args = parser.parse_args()
+    cv2.setNumThreads(1)
+    if args.resident:
+        resident(read_sequence(args.resident))
+        return
+    with tempfile.TemporaryDirectory() as folder, TrafficWorker() as worker:
+        sequences = {count: made(count, Path(folder, str(count))) for count in COUNTS}
+        print(
+            "| vehicles | traffic, boxes given | traffic, motion | bytetrack | ocsort | followed |"
+        )
+        print("|---:|---:|---:|---:|---:|---:|")
+        means = {count: row(count, sequences[count], worker, args.rounds) for count in COUNTS}
+        span = COUNTS[-1] - COUNTS[0]
+        slopes = np.subtract(means[COUNTS[-1]][:2], means[COUNTS[0]][:2]) / span
+        print(f"\nper further vehicle: {slopes[0]:.2f} ms, with motion {slopes[1]:.2f} ms\n")
+        sys.stdout.flush()
+        command = [sys.executable, "-m", "benchmarks.traffic_cost", "--resident"]
+        subprocess.run([*command, str(sequences[COUNTS[-1]].folder)], check=True)
+
+
+def made(count: int, folder: Path) -> TrafficSequence:
+    """Render a scene that shows about `count` vehicles all the time, and read it again."""
+    roads = (
+        Carriageway(60, 4, 7.0, rightward=True),
+        Carriageway(190, 4, 7.0, rightward=False),
+    )
+    rng = stream(0, "cost")
+    vehicles = []
+    ring = WIDTH + 2 * BEYOND
+    total = round(count * ring / WIDTH)
+    for number in range(total):
+        road = roads[number % 2]
+        lane = road.lane(number // 2 % 4)
+        vehicle = any_car(lane, rng)
+        speed = 1.7 + 0.1 * (number % 8)
+        start = ring * (number // 8 + number % 8 / 8) / (total / 8)
+        path = partial(place, vehicle.box(0.0, lane), start, speed if road.rightward else -speed)
+        vehicles.append(vehicle.on(path))
+    scene = TrafficScene(
+        name="cost",
+        width=WIDTH,
+        height=HEIGHT,
+        frame_rate=30.0,
+        frame_count=FRAMES,
+        backdrop=lambda: countryside((HEIGHT, WIDTH), roads, stream(0, "backdrop")),
+        vehicles=tuple(vehicles),
+        obstacles=(),
+        camera=Camera(2.0, 0),
+    )
+    write_mot_folder(scene, folder, 0)
+    return read_sequence(folder)
+
+
+def place(box: Box, start: float, speed: float, frame: float) -> Box:
+    """Drive across the image, and again."""
+    x = (start + speed * frame) % (WIDTH + 2 * BEYOND) - BEYOND
+    return Box(x, box.y, box.width, box.height)
+
+
+def row(
+    count: int, sequence: TrafficSequence, worker: TrafficWorker, rounds: int
+) -> tuple[float, ...]:
+    """Print and return the times for one number of vehicles, ms."""
+    boxes = sequence.detections["good"]
+    found: dict[str, list[float]] = {}
+    followed = 0.0
+    for _ in range(rounds):
+        given, followed = ours(sequence, motion=False)
+        found.setdefault("given", []).append(given)
+        found.setdefault("motion", []).append(ours(sequence, motion=True)[0])
+        for name in BASELINES:
+            found.setdefault(name, []).append(1e3 * worker.track(name, sequence, boxes)[1])
+    times = tuple(statistics.median(values) for values in found.values())
+    print(f"| {count} |", " | ".join(f"{ms:.1f} ms" for ms in times), f"| {followed:.0f} |")
+    return times
+
+
+def ours(sequence: TrafficSequence, *, motion: bool) -> tuple[float, float]:
+    """Return the mean time of a settled frame in ms, and the mean number of vehicles followed."""
+    session = TrafficSession(
+        TrafficTracker(TrafficParameters()), MotionDetector if motion else None, frame_rate=30.0
+    )
+    rows = sequence.detections["good"]
+    seconds, followed = [], []
+    for number, frame in enumerate(sequence.frames(), start=1):
+        now = rows[rows[:, 0] == number]
+        detections = None if motion else Detections.make(now[:, 1:5], now[:, 5])
+        before = time.process_time()
+        estimates = session.feed(frame, round(number * 1e9 / 30), detections)
+        seconds.append(time.process_time() - before)
+        followed.append(sum(one.mode is TrackMode.TRACKING for one in estimates))
+    return 1e3 * statistics.fmean(seconds[SETTLED:]), statistics.fmean(followed[SETTLED:])
+
+
+def resident(sequence: TrafficSequence) -> None:
+    """Print the memory of this process before and after following what moves."""
+    before = resident_mb()
+    ours(sequence, motion=True)
+    print(
+        f"memory with {COUNTS[-1]} vehicles: {resident_mb():.0f} MB, of which imports {before:.0f}"
+    )
+
+
+def resident_mb() -> float:
+    """Memory that this process holds, MB."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * 4096 / 1e6
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,67 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Benchmarks of many vehicles: which identity is whose, and the scenes that are timed."""
+
+import numpy as np
+import pytest
+
+from benchmarks.traffic_clips import Row, read_truth, report
+from benchmarks.traffic_cost import made, place
+from vehicle_pf_tracker.core.box import Box
+
+
+@pytest.fixture
+def truth(tmp_path):
+    folder = tmp_path / "van"
+    folder.mkdir()
+    rows = [
+        f"{n},{10 * n},20,30,15,1,{2 if 4 <= n <= 6 else 1 if n == 3 else 0}" for n in range(1, 11)
+    ]
+    path = folder / "groundtruth.csv"
+    path.write_text("frame,x,y,w,h,visible,occ\n" + "\n".join(rows) + "\n")
+    return path
+
+
+def test_truth_is_placed_in_the_clip_and_hidden_where_it_is_most(truth):
+    rows = read_truth(truth, 408)
+    assert rows[0] == Row(408, (10, 20, 30, 15), hidden=False)
+    assert [row.frame for row in rows if row.hidden] == [411, 412, 413]
+
+
+@pytest.mark.parametrize(("late", "kept"), [(5, "yes"), (8, "no"), (None, "no")])
+def test_an_identity_is_that_of_the_track_under_the_true_box(truth, capsys, late, kept):
+    tracks = [np.empty((0, 5)) for _ in range(30)]
+    for row in read_truth(truth, 10):
+        number = 5 if row.frame < 14 else late
+        if number is not None:
+            left, *rest = row.box
+            tracks[row.frame] = np.array([[number, left + 3, *rest], [99, 300, 20, 30, 15]])
+    report(truth, 0, read_truth(truth, 10), tracks)
+    after = late or "–"
+    assert f"| van | 0 | 13 to 15 | 5 | {after} | {kept} |" in capsys.readouterr().out
+
+
+def test_vehicles_come_again_on_the_other_side():
+    box = Box(0, 10, 30, 15)
+    assert place(box, 0.0, 2.0, 100) == Box(155, 10, 30, 15)
+    assert place(box, 700.0, 2.0, 60) == Box(45, 10, 30, 15)
+    assert place(box, 10.0, -2.0, 10) == Box(675, 10, 30, 15)
+
+
+def test_the_timed_scene_has_as_many_vehicles_as_said(tmp_path, monkeypatch):
+    monkeypatch.setattr("benchmarks.traffic_cost.FRAMES", 3)
+    sequence = made(20, tmp_path / "cost")
+    shown = [np.count_nonzero(sequence.truth[:, 0] == frame) for frame in (1, 2, 3)]
+    assert all(18 <= count <= 22 for count in shown)
