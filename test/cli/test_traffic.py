@@ -84,8 +84,14 @@ class Follower:
 
 
 @pytest.fixture(autouse=True)
-def _tracker(monkeypatch):
-    monkeypatch.setattr(traffic, "TrafficTracker", Follower)
+def _tracker(monkeypatch, request):
+    if "real" not in request.fixturenames:
+        monkeypatch.setattr(traffic, "TrafficTracker", Follower)
+
+
+@pytest.fixture
+def real():
+    """Ask for the package's own tracker."""
 
 
 @pytest.fixture
@@ -199,6 +205,36 @@ def test_a_part_of_the_source_keeps_its_numbers(run):
     assert {row["frame"] for row in rows} == set("56789")
     # Detections belong to the frames' numbers in the source.
     assert float(rows[0]["y"]) == 3 * 4 + 10 + 6
+
+
+def test_the_package_s_own_tracker_counts_both_vehicles_and_repeats_itself(run, tmp_path, real):
+    words = ["--lines", tmp_path / "lines.yaml", "--seed", 5]
+    out = run(*words)
+    names = ("tracks.csv", "tracks.txt", "counts.csv")
+    first = [(out / name).read_bytes() for name in names]
+    downs = [row["id"] for row in table(out / "counts.csv") if row["direction"] == "down"]
+    assert len(downs) == len(set(downs)) == 2
+    hidden = [row for row in table(out / "tracks.csv") if row["frame"] in set(map(str, HIDDEN))]
+    assert len({row["id"] for row in hidden}) == 2
+    run(*words, "--overwrite")
+    assert [(out / name).read_bytes() for name in names] == first
+
+
+def test_motion_is_found_without_any_detections(tmp_path, real, capsys):
+    rng = np.random.default_rng(0)
+    ground, paint = (rng.integers(low, low + 30, (120, 160, 3)) for low in (90, 180))
+    with RecordingWriter(tmp_path / "bag") as writer:
+        for index in range(100):
+            frame = ground + rng.integers(0, 5, ground.shape)
+            left = 2 * (index - 60)  # the road is empty at first
+            if left >= 0:
+                frame[60:84, left : left + 36] = paint[:24, :36]
+            writer.write_image(1_000_000_000 + index * 40_000_000, frame.astype(np.uint8))
+    out = tmp_path / "out"
+    assert main(["traffic", str(tmp_path / "bag"), "-o", str(out)]) == 0
+    assert capsys.readouterr().out.startswith("1 vehicle in 100 frames")
+    last = table(out / "tracks.csv")[-1]
+    assert float(last["x"]) == pytest.approx(2 * 39 + 18, abs=4)
 
 
 def test_two_runs_are_equal(run):
