@@ -47,7 +47,7 @@ without re-starts; made by
 `csrt`, `kcf` and `mil` are OpenCV's deterministic trackers, run once; where one gives a frame up,
 its last box is scored. Each cell is the mean over the seeds, with the least and the largest value
 where they differ. The values of `apf`'s occlusion rule and of `mfpf` were tuned on nine of these
-sequences, and `fusion` was developed with all of them in sight, so these numbers are not held-out
+sequences, and `fusion` was developed on all of them, so these numbers are not held-out
 results: for `fusion` on cameras left out see [fusion.md](fusion.md).
 """
 ON_TARGET = "Share of visible frames with an error below half the true box's diagonal:"

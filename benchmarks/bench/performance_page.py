@@ -89,7 +89,7 @@ def page(results: Results) -> str:
     parts = [
         _HEAD,
         _environment(results),
-        "## What is wanted, and what came out\n\n" + _targets(results, TARGETS),
+        "## Targets and results\n\n" + _targets(results, TARGETS),
         _KERNELS,
         f"![Times faster than naive, by particles]({IMAGES}/kernels.svg)\n",
         _cases(results, "kernel"),
@@ -126,7 +126,7 @@ def _targets(results: Results, targets: Iterable[Target]) -> str:
         value = target.value(results)
         told = "" if value is None else f"{value:.4g}{target.unit}"
         rows.append((f"`{target.case}`", target.words, told, verdicts[target.is_met(results)]))
-    return table(("case", "wanted", "measured", "verdict"), rows)
+    return table(("case", "target", "measured", "verdict"), rows)
 
 
 def _cases(results: Results, *prefixes: str) -> str:

@@ -33,7 +33,7 @@ def line(text, words):
 
 
 def verdict(text, case):
-    section = text.partition("## What is wanted")[2].partition("\n## ")[0]
+    section = text.partition("## Targets and results")[2].partition("\n## ")[0]
     return line(section, f"`{case}`")
 
 
