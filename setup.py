@@ -6,7 +6,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # pip's isolated builds leave it out
-from vehicle_pf_tracker.trackers.registry import VARIANTS  # needs no library
+from vehicle_pf_tracker.trackers.registry import NODES  # needs no library
 
 NAME = "vehicle_pf_tracker"
 JAZZY_WHEELS = "sys_platform == 'linux' and platform_machine == 'x86_64'"
@@ -95,7 +95,7 @@ setup(
             f"vehicle-pf-tracker = {NAME}.cli.main:main",
             f"bag_replay = {NAME}.cli.main:bag_replay",
             f"video_source = {NAME}.ros.executables:video_source",
-            *(f"{one.executable} = {NAME}.ros.executables:main" for one in VARIANTS.values()),
+            *(f"{one.executable} = {NAME}.ros.executables:main" for one in NODES.values()),
         ],
     },
 )

@@ -28,7 +28,7 @@ from pathlib import Path
 from tools import rooms
 from tools.sros2_policy import policy
 from vehicle_pf_tracker.cli.params import all_markdown, default_yaml
-from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
+from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -56,9 +56,9 @@ TABLES: Mapping[str, Mapping[str, Column]] = {
 
 def generated_files(root: Path = ROOT) -> dict[Path, str]:
     """Return the text of every generated file; pages keep what stands outside the markers."""
-    variants = VARIANTS.values()
-    files = {root / "config" / f"{one.name}.yaml": default_yaml(one) for one in variants}
-    files[root / "config" / "sros2_policy.xml"] = policy(variants)
+    variants, nodes = VARIANTS.values(), NODES.values()
+    files = {root / "config" / f"{one.name}.yaml": default_yaml(one) for one in nodes}
+    files[root / "config" / "sros2_policy.xml"] = policy(nodes)
     files[root / "docs" / "parameters.md"] = all_markdown()
     for page, columns in TABLES.items():
         text = (root / page).read_text(encoding="utf-8")

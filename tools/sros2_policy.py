@@ -18,9 +18,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.trackers.registry import TRAFFIC, Variant
 
-PERMISSIONS: Mapping[str, tuple[str, ...]] = {
+_Permissions = Mapping[str, tuple[str, ...]]
+
+PERMISSIONS: _Permissions = {
     'topics publish="ALLOW"': (
         "~/box",
         "~/detection",
@@ -67,6 +69,38 @@ PERMISSIONS: Mapping[str, tuple[str, ...]] = {
 }
 """Everything that a tracker node has; a test compares it with the ROS graph of running nodes."""
 
+_PUBLISHED, _HEARD, _ANSWERED = PERMISSIONS
+
+TRAFFIC_PERMISSIONS: _Permissions = {
+    _PUBLISHED: (
+        "~/box",
+        "~/counts",
+        "~/detections",
+        "~/markers",
+        "~/mode",
+        "~/modes",
+        "~/overlay",
+        "~/position",
+        "~/tracks",
+        "~/transition_event",
+        "~/velocity",
+        "/diagnostics",
+        "/parameter_events",
+        "/rosout",
+    ),
+    _HEARD: (
+        "~/add_target",
+        "~/clicked_point",
+        "~/select",
+        "/clock",
+        "detections",
+        "image",
+        "image/compressed",
+    ),
+    _ANSWERED: tuple(sorted([*PERMISSIONS[_ANSWERED], "~/remove_selected"])),
+}
+"""The same of the node that follows many vehicles."""
+
 _POLICY = """<?xml version="1.0" encoding="UTF-8"?>
 <!-- Permissions that each node needs under SROS 2, and no more; docs/ros_interface.md explains its
      use. Give remapped topics by their new names. `make config` writes this file. -->
@@ -86,16 +120,17 @@ _ENCLAVE = """    <enclave path="/vehicle_pf_tracker/{name}">
 
 def policy(variants: Iterable[Variant]) -> str:
     """Write the policy of the nodes of `variants`."""
-    groups = "".join(map(_group, PERMISSIONS))
-    enclaves = (
-        _ENCLAVE.format(name=one.name, node=one.executable, groups=groups) for one in variants
-    )
-    return _POLICY.format(enclaves="".join(enclaves))
+    return _POLICY.format(enclaves="".join(map(_enclave, variants)))
 
 
-def _group(permission: str) -> str:
+def _enclave(variant: Variant) -> str:
+    permissions = TRAFFIC_PERMISSIONS if variant is TRAFFIC else PERMISSIONS
+    groups = "".join(_group(permission, names) for permission, names in permissions.items())
+    return _ENCLAVE.format(name=variant.name, node=variant.executable, groups=groups)
+
+
+def _group(permission: str, names: Iterable[str]) -> str:
     plural = permission.partition(" ")[0]
     entry = plural.removesuffix("s")
-    names = PERMISSIONS[permission]
     lines = "".join(f"            <{entry}>{name}</{entry}>\n" for name in names)
     return f"          <{permission}>\n{lines}          </{plural}>\n"

@@ -12,6 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
+import re
 from pathlib import Path
 
 import pytest
@@ -19,25 +20,36 @@ import pytest
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import read_yaml
-from vehicle_pf_tracker.trackers.registry import VARIANTS
+from vehicle_pf_tracker.trackers.registry import NODES, TRAFFIC, VARIANTS
 
 
 def test_the_document_names_every_parameter_of_every_variant(capsys):
     assert main(["params", "all", "--markdown"]) == 0
     _, *sections = capsys.readouterr().out.split("\n## ")
     texts = {section.partition("\n")[0]: section for section in sections}
-    assert list(texts) == ["Every node", *VARIANTS]
+    assert list(texts) == ["Every node", *NODES]
     for name, variant in VARIANTS.items():
         for one in Configuration.of(variant).specs():
             assert (f"| `{one}` |" in texts[name]) != (f"| `{one}` |" in texts["Every node"])
 
 
-@pytest.mark.parametrize("name", VARIANTS)
+def test_the_document_says_how_traffic_differs_from_every_node(capsys):
+    assert main(["params", "all", "--markdown"]) == 0
+    _, every, *_, last = capsys.readouterr().out.split("\n## ")
+    present = Configuration.of(TRAFFIC).specs()
+    for name, spec in present.items():
+        row = f"| `{name}` | {str(spec.default).lower() if spec.kind is bool else spec.default} |"
+        assert (row in last) or (row in every), name
+    lacking = set(re.findall(r"`([\w.]+)`", last.partition("\n\n|")[0]))
+    assert lacking == set(re.findall(r"^\| `([\w.]+)`", every, re.M)) - set(present)
+
+
+@pytest.mark.parametrize("name", NODES)
 def test_the_printed_file_is_the_defaults(tmp_path, capsys, name):
     assert main(["params", name]) == 0
     path = tmp_path / "printed.yaml"
     path.write_text(capsys.readouterr().out)
-    assert read_yaml(path, f"{name}_tracker") == Configuration.of(VARIANTS[name]).to_mapping()
+    assert read_yaml(path, f"{name}_tracker") == Configuration.of(NODES[name]).to_mapping()
 
 
 def test_path_is_that_of_the_installed_file(capsys):

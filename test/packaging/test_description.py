@@ -26,7 +26,7 @@ import setuptools
 import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.main import EVALUATION_MODULES
 from vehicle_pf_tracker.ros import executables
-from vehicle_pf_tracker.trackers.registry import VARIANTS
+from vehicle_pf_tracker.trackers.registry import NODES
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -67,11 +67,11 @@ def test_name_version_and_licence_are_the_same_everywhere(setup, package):
     assert "Apache License" in (ROOT / package.find("license").get("file")).read_text()
 
 
-def test_every_registered_variant_has_an_executable(setup):
+def test_every_registered_node_has_an_executable(setup):
     scripts = dict(line.split(" = ") for line in setup["entry_points"]["console_scripts"])
     nodes = {name: target for name, target in scripts.items() if name.endswith("_tracker")}
     assert nodes == {
-        f"{variant}_tracker": "vehicle_pf_tracker.ros.executables:main" for variant in VARIANTS
+        f"{variant}_tracker": "vehicle_pf_tracker.ros.executables:main" for variant in NODES
     }
     assert callable(executables.main)
 

@@ -22,9 +22,9 @@ from pathlib import Path
 
 import pytest
 
-from vehicle_pf_tracker.trackers.registry import VARIANTS
+from vehicle_pf_tracker.trackers.registry import NODES
 
-ROS_NODES = ["video_source", *(variant.executable for variant in VARIANTS.values())]
+ROS_NODES = ["video_source", *(variant.executable for variant in NODES.values())]
 
 
 def executable(name):

@@ -25,14 +25,14 @@ from pathlib import Path
 import pytest
 import setuptools
 
-from vehicle_pf_tracker.trackers.registry import VARIANTS
+from vehicle_pf_tracker.trackers.registry import NODES
 
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARE = Path("share", "vehicle_pf_tracker")
 EXECUTABLES = {
-    "vehicle-pf-tracker", "bag_replay", "video_source", *(f"{name}_tracker" for name in VARIANTS),
+    "vehicle-pf-tracker", "bag_replay", "video_source", *(f"{name}_tracker" for name in NODES),
 }  # fmt: skip
 ASK = """
 import vehicle_pf_tracker

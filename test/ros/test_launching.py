@@ -63,6 +63,19 @@ def test_compressed_images_of_any_name_are_published_where_a_node_listens():
     )  # fmt: skip
 
 
+def test_a_camera_may_have_the_node_of_many_vehicles(tmp_path):
+    path = tmp_path / "cameras.yaml"
+    path.write_text(
+        "cameras:\n  gate:\n    topic: /gate/image_raw\n    variant: traffic\n"
+        "    parameters: {detector: {kind: topic, max_wait: 1}, lines: gate.yaml}\n"
+    )
+    (camera,) = read_cameras(str(path))
+    assert camera.variant == "traffic"
+    assert dict(camera.values) == {
+        "detector.kind": "topic", "detector.max_wait": 1.0, "lines": "gate.yaml",
+    }  # fmt: skip
+
+
 def test_the_parameter_file_of_the_variant_is_the_default(tmp_path):
     (tmp_path / "config").mkdir()
     (tmp_path / "config" / "pf.yaml").write_text("a: 1")

@@ -22,7 +22,7 @@ from collections.abc import Iterable
 from vehicle_pf_tracker.cli.config_files import config_path
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec
-from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
+from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant, find_node
 
 ALL = "all"
 
@@ -54,9 +54,7 @@ def run(args: argparse.Namespace) -> int:
     if args.markdown and args.variant == ALL:
         print(all_markdown(), end="")
         return 0
-    from vehicle_pf_tracker.trackers.traffic.variant import TRAFFIC
-
-    variant = TRAFFIC if args.variant == TRAFFIC.name else find_variant(args.variant)
+    variant = find_node(args.variant)
     if args.path:
         print(config_path(variant.name))
     elif args.markdown:
@@ -86,17 +84,24 @@ def all_markdown() -> str:
     """Write docs/parameters.md: what every node has, then what each variant has besides."""
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
-    tables = {name: Configuration.of(variant).specs() for name, variant in VARIANTS.items()}
-    first, *others = tables.values()
+    tables = {name: Configuration.of(variant).specs() for name, variant in NODES.items()}
+    first, *others = (tables[name] for name in VARIANTS)
     common = {
         name: spec for name, spec in first.items() if all(one.get(name) == spec for one in others)
     }
     effects = "".join(f"- *{name}*: {words}.\n" for name, words in EFFECTS.items())
     parts = [_PREFACE, effects, "\n## Every node\n\n", _table(common.values())]
     for name, table in tables.items():
-        own = [spec for spec in table.values() if spec.name not in common]
-        parts += [f"\n## {name}\n\n{VARIANTS[name].summary}.\n\n", _table(own)]
+        own = [spec for spec in table.values() if spec != common.get(spec.name)]
+        words = f"{NODES[name].summary}.{_lacking(table, common)}"
+        parts += [f"\n## {name}\n\n{words}\n\n", _table(own)]
     return "".join(parts)
+
+
+def _lacking(table: Iterable[str], common: Iterable[str]) -> str:
+    """Name the parameters of every node that this one does not have: `traffic` lacks some."""
+    names = sorted(set(common).difference(table))
+    return f" It does not have {', '.join(f'`{name}`' for name in names)}." if names else ""
 
 
 def _table(table: Iterable[ParameterSpec]) -> str:

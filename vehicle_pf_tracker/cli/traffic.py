@@ -47,12 +47,12 @@ from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.recordings.source import Source, open_source
 from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.detector_choice import detector_maker
-from vehicle_pf_tracker.trackers.traffic.detector_parameters import MODEL, MOTION, NONE
+from vehicle_pf_tracker.trackers.traffic.detector_parameters import MODEL, MOTION, NONE, TOPIC
 from vehicle_pf_tracker.trackers.traffic.session import Detector, TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
-from vehicle_pf_tracker.trackers.traffic.variant import TRAFFIC
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
@@ -172,7 +172,7 @@ class _Setup:
             )
         return cls(
             configuration,
-            read_counting_plan(args.lines) if args.lines else None,
+            read_counting_plan(lines) if (lines := args.lines or _lines(configuration)) else None,
             _plane(configuration.session.road),
             DetectionFile(args.detections) if args.detections else None,
             detector_maker(configuration.tracker.detector),
@@ -222,7 +222,13 @@ def _configuration(args: argparse.Namespace) -> Configuration:
         return configuration.updated({"detector.kind": MODEL, "detector.model": args.model})
     if args.detector:
         return configuration.updated({"detector.kind": args.detector})
+    if configuration.tracker.detector.kind == TOPIC:
+        raise InputError("detector.kind topic is for nodes; offline, give --detections FILE")
     return configuration
+
+
+def _lines(configuration: Configuration) -> Path | None:
+    return Path(configuration.tracker.lines) if configuration.tracker.lines else None
 
 
 def _plane(road: RoadParameters) -> RoadPlane | None:

@@ -16,19 +16,28 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 from std_msgs.msg import Header
 
-from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.ros.messages import Located
 
 try:
-    from vision_msgs.msg import Detection2D, ObjectHypothesisWithPose
+    from vision_msgs.msg import Detection2D, Detection2DArray, ObjectHypothesisWithPose
 except ImportError:  # an optional package: the nodes work without its topics
-    Detection2D = ObjectHypothesisWithPose = None
+    Detection2D = Detection2DArray = ObjectHypothesisWithPose = None
 
 CLASS = "vehicle"
 """Class of a detection that goes out."""
+
+
+class Judged(Located, Protocol):
+    """Estimate with a confidence."""
+
+    @property
+    def confidence(self) -> float:
+        """From 0 to 1."""
+        ...
 
 
 def detection_type() -> Any:
@@ -36,15 +45,20 @@ def detection_type() -> Any:
     return Detection2D
 
 
-def detection_message(header: Header, estimate: Estimate, identity: str) -> Any:
-    """Make the detection: box in px, confidence as score, and the id of the track."""
+def detections_type() -> Any:
+    """Return the message type of several; None where vision_msgs is not installed."""
+    return Detection2DArray
+
+
+def detection_message(header: Header, estimate: Judged, identity: str, label: str = CLASS) -> Any:
+    """Make the detection: box in px, confidence as score, class, and the id of the track."""
     message = Detection2D(header=header, id=identity)
     x, y = estimate.box.centre
     message.bbox.center.position.x, message.bbox.center.position.y = float(x), float(y)
     message.bbox.size_x = float(estimate.box.width)
     message.bbox.size_y = float(estimate.box.height)
     result = ObjectHypothesisWithPose()
-    result.hypothesis.class_id = CLASS
+    result.hypothesis.class_id = label
     result.hypothesis.score = float(estimate.confidence)
     message.results = [result]
     return message

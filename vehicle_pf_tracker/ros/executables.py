@@ -31,7 +31,7 @@ _NO_ROS = (
 
 
 def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
-    """Run the node of a variant.
+    """Run the node of a variant, or of `traffic`.
 
     Parameters
     ----------
@@ -48,10 +48,16 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
     name = variant or Path(sys.argv[0]).stem.removesuffix("_tracker")
 
     def run() -> int:
-        from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
-        from vehicle_pf_tracker.trackers.registry import find_variant  # noqa: PLC0415
+        from vehicle_pf_tracker.trackers.registry import TRAFFIC, find_node  # noqa: PLC0415
 
-        return run_node(find_variant(name), sys.argv[1:] if args is None else args)
+        found, words = find_node(name), sys.argv[1:] if args is None else args
+        if found is TRAFFIC:
+            from vehicle_pf_tracker.ros.traffic.process import run_traffic  # noqa: PLC0415
+
+            return run_traffic(words)
+        from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
+
+        return run_node(found, words)
 
     return _status(f"{name}_tracker", run)
 

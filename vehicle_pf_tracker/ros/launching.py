@@ -33,7 +33,7 @@ from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.parameters.table import unknown_name
 from vehicle_pf_tracker.parameters.yaml_text import check_yaml_file, read_yaml_file
 from vehicle_pf_tracker.ros.transport import profile
-from vehicle_pf_tracker.trackers.registry import find_variant
+from vehicle_pf_tracker.trackers.registry import find_node
 
 _SEGMENT = 64 * 2**20
 """Bytes of shared memory for `large_images`: ten raw images of 1080p, or two of 4K."""
@@ -50,7 +50,7 @@ def parameter_file(given: str, variant: str, share: str) -> str:
     InputError
         If there is no such file or variant, or a key is twice in the file.
     """
-    path = Path(given) if given else Path(share, "config", f"{find_variant(variant).name}.yaml")
+    path = Path(given) if given else Path(share, "config", f"{find_node(variant).name}.yaml")
     check_yaml_file(path, "parameter file")
     return str(path)
 
@@ -140,7 +140,7 @@ def _check_entry(name: str, entry: Any) -> None:
 
 def _camera(name: str, entry: dict[str, Any], folder: Path) -> Camera:
     variant = str(entry.get("variant", "fusion"))
-    configuration = Configuration.of(find_variant(variant))
+    configuration = Configuration.of(find_node(variant))
     known = configuration.specs()
     values: dict[str, object] = {}
     if "params_file" in entry:

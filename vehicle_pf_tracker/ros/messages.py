@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import array
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +27,7 @@ from geometry_msgs.msg import Point32, PointStamped, PolygonStamped, Vector3Stam
 from sensor_msgs.msg import Image, PointCloud2, PointField
 from std_msgs.msg import Header
 
+from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
@@ -39,7 +40,11 @@ NOT_READY = "loading kernels"
 REJECTED = "REJECTED"
 """Message of `~/mode` for an image that could not be used."""
 
+TENTATIVE = "TENTATIVE"
+"""Message of `~/mode` for one of many vehicles, as long as there is too little evidence of it."""
+
 LEVELS: Mapping[str, bytes] = {
+    TENTATIVE: DiagnosticStatus.WARN,
     Mode.TRACKING.value: DiagnosticStatus.OK,
     Mode.OCCLUDED.value: DiagnosticStatus.WARN,
     Mode.LOST.value: DiagnosticStatus.ERROR,
@@ -51,6 +56,25 @@ _PARTICLE_FIELDS = [
     PointField(name=name, offset=4 * index, datatype=PointField.FLOAT32, count=1)
     for index, name in enumerate(("x", "y", "z", "weight"))
 ]
+
+
+class Located(Protocol):
+    """Estimate of a vehicle: of the only one, or of one of many."""
+
+    @property
+    def position(self) -> Position:
+        """Centre in px."""
+        ...
+
+    @property
+    def box(self) -> Box:
+        """Box in px."""
+        ...
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """Velocity in px per nominal frame period."""
+        ...
 
 
 def stamp_ns(header: Header) -> int:
@@ -95,7 +119,7 @@ def mode_message(
 
 
 def position_message(
-    header: Header, estimate: Estimate, kept: PointStamped | None = None
+    header: Header, estimate: Located, kept: PointStamped | None = None
 ) -> PointStamped:
     """Make the position, px; reuses the message `kept` if there is one."""
     message = PointStamped() if kept is None else kept
@@ -104,14 +128,14 @@ def position_message(
     return message
 
 
-def box_message(header: Header, estimate: Estimate) -> PolygonStamped:
+def box_message(header: Header, estimate: Located) -> PolygonStamped:
     """Make the four corners, in px, clockwise in the image from the top left."""
     message = PolygonStamped(header=header)
     message.polygon.points = [Point32(x=float(x), y=float(y)) for x, y in estimate.box.corners]
     return message
 
 
-def velocity_message(header: Header, estimate: Estimate, frame_period: float) -> Vector3Stamped:
+def velocity_message(header: Header, estimate: Located, frame_period: float) -> Vector3Stamped:
     """Make the velocity in px/s, with the nominal frame period in s."""
     message = Vector3Stamped(header=header)
     message.vector.x = float(estimate.velocity[0] / frame_period)
@@ -133,7 +157,7 @@ def particles_message(header: Header, estimate: Estimate) -> PointCloud2:
         is_bigendian=False,
         point_step=16,
         row_step=16 * count,
-        data=_bytes(points),
+        data=packed(points),
         is_dense=True,
     )
 
@@ -148,11 +172,12 @@ def image_message(header: Header, frame: Frame) -> Image:
         encoding="rgb8",
         is_bigendian=0,
         step=3 * width,
-        data=_bytes(frame),
+        data=packed(frame),
     )
 
 
-def _bytes(values: npt.NDArray[Any]) -> array.array[int]:
+def packed(values: npt.NDArray[Any]) -> array.array[int]:
+    """Return the bytes of a contiguous array for a message's `data`."""
     # The one quick way: rclpy checks every element of anything else, 126 ms for 640x480.
     data = array.array("B")
     data.frombytes(values.data.cast("B"))

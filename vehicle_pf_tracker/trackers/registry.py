@@ -162,6 +162,18 @@ _ENTRIES = (
 VARIANTS: Mapping[str, Variant] = MappingProxyType({entry.name: entry for entry in _ENTRIES})
 """Every variant by name."""
 
+TRAFFIC = Variant(
+    "traffic",
+    "traffic.variant:Traffic",
+    "every vehicle in view, with identities (this package)",
+    "many vehicles at once, counts at lines and in zones",
+)
+"""Tracker of many vehicles. It has parameters and a node as variants do, but takes no target and
+gives no `Estimate`, so that what runs variants cannot run it."""
+
+NODES: Mapping[str, Variant] = MappingProxyType({**VARIANTS, TRAFFIC.name: TRAFFIC})
+"""Everything that has a node, by name."""
+
 
 def find_variant(name: str) -> Variant:
     """Look up a variant.
@@ -171,10 +183,25 @@ def find_variant(name: str) -> Variant:
     InputError
         If there is none of this name.
     """
-    if name not in VARIANTS:
-        hint = suggestion(name.removesuffix("_tracker"), VARIANTS)
-        raise InputError(f"there is no variant {name!r}{hint}; choose one of {', '.join(VARIANTS)}")
-    return VARIANTS[name]
+    return _find(name, VARIANTS)
+
+
+def find_node(name: str) -> Variant:
+    """Look up a variant, or `TRAFFIC`.
+
+    Raises
+    ------
+    InputError
+        If there is no node of this name.
+    """
+    return _find(name, NODES)
+
+
+def _find(name: str, known: Mapping[str, Variant]) -> Variant:
+    if name not in known:
+        hint = suggestion(name.removesuffix("_tracker"), known)
+        raise InputError(f"there is no variant {name!r}{hint}; choose one of {', '.join(known)}")
+    return known[name]
 
 
 def make_tracker(variant: str = "fusion", **parameters: Any) -> BaseTracker[Any]:

@@ -29,7 +29,8 @@ from rclpy.parameter import Parameter
 from tracker_rig import TrackerNode, overrides
 
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
+from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
+from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, find_variant
 
 pytestmark = pytest.mark.ros
 
@@ -43,6 +44,8 @@ MISSING = {
     topic for package, topics in OPTIONAL.items() if not find_spec(package) for topic in topics
 }
 """Topics of messages that are not installed here."""
+AT_START_UP = {"lines", "detector.model"}
+"""Parameters that name files, which whoever starts the node chooses."""
 METHODS = {"system", "popen", "unsafe_load", "full_load", "Unpickler"}
 
 
@@ -84,6 +87,30 @@ def test_the_policy_allows_what_a_node_has_and_no_more(bench, variant, transport
     assert node.get_client_names_and_types_by_node(own, "/") == []
 
 
+def test_the_policy_allows_what_the_node_of_many_vehicles_has_and_no_more(bench):
+    policy = ElementTree.parse(ROOT / "config" / "sros2_policy.xml").getroot()
+    (profile,) = policy.findall(".//enclave[@path='/vehicle_pf_tracker/traffic']//profile")
+    node = bench.add(
+        TrafficNode(
+            context=bench.context, parameter_overrides=[Parameter("use_sim_time", value=True)]
+        )
+    )
+    own = node.get_name()
+    assert (profile.get("ns"), profile.get("node")) == ("/", own)
+    without = set() if find_spec("vision_msgs") else {"~/detections"}
+    for kind, access, found, besides in (
+        ("topics", "publish", node.get_publisher_names_and_types_by_node, without),
+        # `detections` are listened to with `detector.kind: topic` only.
+        (
+            "topics", "subscribe", node.get_subscriber_names_and_types_by_node,
+            {"image/compressed", "detections"},
+        ),
+        ("services", "reply", node.get_service_names_and_types_by_node, set()),
+    ):  # fmt: skip
+        names = {absolute(one, own) for one in allowed(profile, kind, access) - besides}
+        bench.wait_for(lambda: {one for one, _ in found(own, "/")} == names)  # noqa: B023
+
+
 def test_nothing_evaluates_input():
     calls = []
     for path in sorted((ROOT / "vehicle_pf_tracker").rglob("*.py")):
@@ -99,6 +126,7 @@ def test_nothing_evaluates_input():
 
 def test_no_parameter_is_a_path():
     """What may be set over the network neither opens nor writes files."""
-    for variant in VARIANTS.values():
-        for name in Configuration.of(variant).specs():
+    for variant in NODES.values():
+        for name, spec in Configuration.of(variant).specs().items():
+            assert spec.read_only or name not in AT_START_UP
             assert not any(word in name for word in ("path", "file", "folder", "directory"))

@@ -20,7 +20,8 @@ import sys
 import time
 import traceback
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 
 import rclpy
 from rclpy.executors import Executor, ExternalShutdownException
@@ -60,11 +61,15 @@ def run_node(variant: Variant, arguments: Sequence[str]) -> int:
     int
         Exit status: 0 ended by a signal, 1 a user's mistake (printed on stderr), 2 usage.
     """
-    name = f"{variant.name}_tracker"
+    return run_node_of(variant.executable, partial(TrackerNode, variant), arguments)
+
+
+def run_node_of(name: str, make_node: Callable[[], Node], arguments: Sequence[str]) -> int:
+    """Run the node that `make_node` makes; see `run_node`."""
     keep_image_memory()
 
     def serve(others: list[str]) -> int:
-        return _usage(name, others) if others else _serve(variant)
+        return _usage(name, others) if others else _serve(make_node)
 
     status = run_process(name, arguments, serve)
     if is_loading():  # a thread in LLVM would be left behind
@@ -72,13 +77,13 @@ def run_node(variant: Variant, arguments: Sequence[str]) -> int:
     return status
 
 
-def _serve(variant: Variant) -> int:
+def _serve(make_node: Callable[[], Node]) -> int:
     executor = node_executor()
     node = None
     try:
         # For ~/overlay; whether the frames come through is decided by the camera's segment.
         with image_transport(_OVERLAY_BYTES, rclpy.get_rmw_implementation_identifier()):
-            node = TrackerNode(variant)
+            node = make_node()
         executor.add_node(node)
         return _spin(executor, node)
     except Exception:

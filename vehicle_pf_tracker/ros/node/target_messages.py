@@ -51,7 +51,7 @@ def box_of_polygon(message: PolygonStamped, image_frame: str | None, suffix: str
     InputError
         If there are too few corners, one is not finite, or they are given in another frame.
     """
-    _check_frame_id("~/set_box", message.header, image_frame, suffix)
+    check_frame_id("~/set_box", message.header, image_frame, suffix)
     corners = [(point.x, point.y) for point in message.polygon.points]
     if len(corners) < 2:
         raise InputError(
@@ -84,7 +84,7 @@ def box_of_point(
     InputError
         If the point is not finite or in another frame, or there is no box whose size to take.
     """
-    _check_frame_id("~/clicked_point", message.header, image_frame, suffix)
+    check_frame_id("~/clicked_point", message.header, image_frame, suffix)
     _check_finite("~/clicked_point", message.point.x, message.point.y)
     if like is None:
         raise InputError(
@@ -116,7 +116,7 @@ def box_of_detection(message: Any, image_frame: str | None, suffix: str = "") ->
         If a number is not finite, the box is turned, or it is given in another frame.
     """
     topic, box = "~/set_detection", message.bbox
-    _check_frame_id(topic, message.header, image_frame, suffix)
+    check_frame_id(topic, message.header, image_frame, suffix)
     centre = box.center.position.x, box.center.position.y
     _check_finite(topic, *centre, box.center.theta, box.size_x, box.size_y)
     if abs(box.center.theta) > _UPRIGHT:
@@ -126,7 +126,14 @@ def box_of_detection(message: Any, image_frame: str | None, suffix: str = "") ->
     return Box.around(centre, float(box.size_x), float(box.size_y))
 
 
-def _check_frame_id(topic: str, header: Header, image_frame: str | None, suffix: str) -> None:
+def check_frame_id(topic: str, header: Header, image_frame: str | None, suffix: str) -> None:
+    """Refuse a position in another frame than that of the images.
+
+    Raises
+    ------
+    InputError
+        If it is.
+    """
     if image_frame is not None and header.frame_id not in ("", image_frame, image_frame + suffix):
         raise InputError(
             f"{topic} got a target in the frame {header.frame_id!r}; give it in pixels of the "

@@ -22,7 +22,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
-MOTION, MODEL, NONE = "motion", "model", "none"
+MOTION, MODEL, TOPIC, NONE = "motion", "model", "topic", "none"
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,9 +31,9 @@ class DetectorParameters:
 
     kind: str = parameter(
         MOTION,
-        "Source of detections: what moves before a standing camera, a network of yours, or none "
-        "(targets given by hand).",
-        choices=(MOTION, MODEL, NONE),
+        "Source of detections: what moves before a standing camera, a network of yours, a topic "
+        "(of a node), or none (targets given by hand).",
+        choices=(MOTION, MODEL, TOPIC, NONE),
         read_only=True,
     )
     model: str = parameter(
@@ -77,6 +77,22 @@ class DetectorParameters:
         read_only=True,
     )
 
+    max_wait: float = parameter(
+        0.5,
+        "Longer: an image waits longer for its detections from a topic, and a detector that has "
+        "stopped delays everything for longer.",
+        minimum=0.0,
+        maximum=60.0,
+        unit="s",
+    )
+    every: int = parameter(
+        1,
+        "Above 1: the detector of a topic answers every k-th image, and the others do not wait.",
+        minimum=1,
+        maximum=1000,
+        unit="images",
+    )
+
     def validate(self) -> None:
         """Refuse a network without its file."""
         if self.kind == MODEL and not self.model:
@@ -94,6 +110,11 @@ class TrafficRunParameters(TrafficParameters):
         minimum=0.0,
         maximum=1000.0,
         unit="1/s",
+    )
+    lines: str = parameter(
+        "",
+        "YAML of lines and zones to count at; empty: nothing is counted.",
+        read_only=True,
     )
     detector: DetectorParameters = group(DetectorParameters)
 

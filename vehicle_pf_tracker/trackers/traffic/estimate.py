@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.box import Box, Position
 
 SCENE = "scene"
 """Occluder of a track that nothing followed hides: a sign, a bridge, the unknown."""
@@ -73,3 +73,8 @@ class TrackEstimate:
     score: float
     age: float
     hidden_by: int | str | None
+
+    @property
+    def position(self) -> Position:
+        """Centre of the box in px."""
+        return self.box.centre

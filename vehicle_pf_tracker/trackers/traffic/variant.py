@@ -12,21 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Entry of `traffic`, beside the registry: it follows all vehicles where variants follow one."""
+"""Tracker and parameters of `traffic`, as the registry names them."""
 
 from __future__ import annotations
 
-from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.traffic.detector_parameters import (
     TrafficRunParameters as TrafficParameters,
 )
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
-__all__ = ["TRAFFIC", "TrafficParameters", "TrafficTracker"]
-
-TRAFFIC = Variant(
-    "traffic",
-    "traffic.variant:Traffic",
-    "every vehicle in view, with identities (this package)",
-    "many vehicles at once, counts at lines and in zones",
-)
+__all__ = ["TrafficParameters", "TrafficTracker"]

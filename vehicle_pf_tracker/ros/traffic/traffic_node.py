@@ -1,0 +1,250 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The node that follows many vehicles: images and detections in, tracks out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from geometry_msgs.msg import PointStamped
+from rclpy.clock import Clock, ClockType
+from rclpy.qos import QoSProfile
+from rclpy.subscription import Subscription
+from sensor_msgs.msg import RegionOfInterest
+from std_msgs.msg import Int64
+from std_srvs.srv import Trigger
+
+from vehicle_pf_tracker.core.box import check_target
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.ros.detections import detections_type
+from vehicle_pf_tracker.ros.messages import stamp_ns
+from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
+from vehicle_pf_tracker.ros.node.image_input import ImageInput, image_topic
+from vehicle_pf_tracker.ros.node.managed_node import ManagedNode
+from vehicle_pf_tracker.ros.node.parameters import ParameterTable, unknown_overrides
+from vehicle_pf_tracker.ros.node.target_messages import box_of_region, check_frame_id
+from vehicle_pf_tracker.ros.rclpy_internals import missing
+from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
+from vehicle_pf_tracker.ros.traffic.stream import TrafficStream
+from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles, plane_of
+from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
+from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.traffic.detector_parameters import TOPIC
+
+_LOOK_EVERY = 0.02
+"""Interval in s in which images that wait for detections are looked at."""
+
+
+class TrafficNode(ManagedNode):
+    """Managed node `traffic_tracker`; active at once unless the parameter `autostart` is false.
+
+    Parameters
+    ----------
+    **options
+        Passed on to `rclpy.node.Node`.
+
+    Raises
+    ------
+    InputError
+        If a parameter or a QoS override does not fit.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(TRAFFIC.executable, **options)
+        self._stream: TrafficStream | None = None
+        self._outputs: TrafficOutputs | None = None
+        self._inputs: list[Subscription] = []
+        try:
+            defaults = Configuration.of(TRAFFIC)
+            self._table = ParameterTable(self, defaults, self._check, self._reconfigure)
+            self._diagnostics = Diagnostics(self)
+            for loss in missing(self):
+                words = f"this release of rclpy is not one of those tried: {loss}"
+                self.get_logger().warning(words)
+            self._warn_of(unknown_overrides(self, qos=False))
+            if self._table.configuration.node.autostart:
+                self.start()
+        except InputError:
+            self.destroy_node()
+            raise
+
+    def configure(self) -> None:
+        """Make session, detector and outputs."""
+        configuration = self._table.configuration
+        plane_of(configuration.session.road)
+        if configuration.tracker.detector.kind == TOPIC and detections_type() is None:
+            raise InputError(
+                "detector.kind is topic, and vision_msgs, which detections come in, is not "
+                "installed (apt: ros-<release>-vision-msgs)"
+            )
+        topic = image_topic(self, configuration.node.image_transport)
+        self._outputs = TrafficOutputs(self, topic)
+        health = self._diagnostics.begin()
+        try:
+            self._stream = TrafficStream(self, configuration, self._outputs, health)
+        except InputError:
+            self._outputs.close()
+            self._outputs = None
+            raise
+        self._tell_drawn_seed()
+        self._diagnostics.facts = {"variant": TRAFFIC.name, **self._stream.facts}
+        # Steady, because simulated time may stand still while an image waits.
+        clock = Clock(clock_type=ClockType.STEADY_TIME)
+        self._look_timer = self.create_timer(_LOOK_EVERY, self._look, clock=clock)
+        self._look_timer.cancel()
+        self._requests = [
+            self.create_service(Trigger, "~/reset", self._on_reset),
+            self.create_service(Trigger, "~/remove_selected", self._on_remove),
+        ]
+
+    def activate(self) -> None:
+        """Open the inputs."""
+        configuration = self._table.configuration
+        own = configuration.node
+        source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
+        self._warn_of(unknown_overrides(self, qos=True))
+        self._diagnostics.listen_to(source)
+        self._inputs += [
+            self.create_subscription(RegionOfInterest, "~/add_target", self._on_region, 10),
+            self.create_subscription(PointStamped, "~/clicked_point", self._on_point, 10),
+            self.create_subscription(Int64, "~/select", self._on_select, 10),
+        ]
+        detector = configuration.tracker.detector.kind
+        if detector == TOPIC:
+            # As many as images may wait: a detector may answer several at once.
+            qos = QoSProfile(depth=MOST_WAITING)
+            listen = self.create_subscription
+            self._inputs.append(listen(detections_type(), "detections", self._on_detections, qos))
+        self.get_logger().info(f"ready: images on {source}, detections: {detector}")
+
+    def deactivate(self) -> None:
+        """Close the inputs: an inactive node pays nothing for images."""
+        self._diagnostics.cease()
+        while self._inputs:
+            self.destroy_subscription(self._inputs.pop())
+        if self._stream is not None:
+            self._stream.drop_waiting()
+
+    def cleanup(self) -> None:
+        """Release session and outputs."""
+        if self._outputs is not None:
+            self._outputs.close()
+            self.destroy_timer(self._look_timer)
+            for service in self._requests:
+                self.destroy_service(service)
+        self._outputs = self._stream = None
+
+    def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
+        if self._stream is None or self._diagnostics.source is None:
+            return  # taken just before the node was deactivated
+        age = self.get_clock().now().nanoseconds - stamp_ns(message.header)
+        self._diagnostics.arrived(info, age * 1e-9)
+        self._stream.take(message)
+        self._after_step(self._stream)
+
+    def _on_detections(self, message: Any) -> None:
+        if self._stream is not None:
+            self._stream.take_detections(message)
+            self._after_step(self._stream)
+
+    def _look(self) -> None:
+        if self._stream is not None:
+            self._stream.go_on()
+            self._after_step(self._stream)
+
+    def _after_step(self, stream: TrafficStream) -> None:
+        self._diagnostics.facts.update(stream.facts)
+        if not stream.is_waiting:
+            self._look_timer.cancel()
+        elif self._look_timer.is_canceled():
+            self._look_timer.reset()
+
+    def _on_region(self, message: RegionOfInterest) -> None:
+        def add(vehicles: Vehicles) -> None:
+            identity = vehicles.add(box_of_region(message))
+            if identity is not None:
+                self.get_logger().info(f"following {box_of_region(message)} as {identity}")
+
+        self._ask("target", add)
+
+    def _on_point(self, message: PointStamped) -> None:
+        def choose(vehicles: Vehicles) -> None:
+            assert self._stream is not None
+            suffix = self._table.configuration.node.output_frame_suffix
+            check_frame_id("~/clicked_point", message.header, self._stream.frame_id, suffix)
+            point = message.point.x, message.point.y
+            if not all(map(math.isfinite, point)):
+                raise InputError("~/clicked_point got a number that is not finite; give pixels")
+            vehicles.selection.choose_at(point, vehicles.estimates)
+
+        self._ask("selection", choose)
+
+    def _on_select(self, message: Int64) -> None:
+        self._ask("selection", lambda it: it.selection.choose(message.data, it.estimates))
+
+    def _ask(self, what: str, change: Callable[[Vehicles], None]) -> None:
+        if self._stream is None:
+            return
+        try:
+            change(self._stream.vehicles)
+        except InputError as error:
+            self._stream.refuse(what, str(error))
+
+    def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        assert self._stream is not None
+        self._stream.vehicles.reset()
+        response.success, response.message = True, "all vehicles are forgotten"
+        return response
+
+    def _on_remove(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        assert self._stream is not None
+        try:
+            identity = self._stream.vehicles.remove_selected()
+        except InputError as error:
+            response.success, response.message = False, str(error)
+        else:
+            response.success, response.message = True, f"vehicle {identity} is forgotten"
+        return response
+
+    def _check(self, configuration: Configuration) -> None:
+        plane_of(configuration.session.road)
+        box = configuration.session.target.box
+        size = self._stream.vehicles.session.size if self._stream is not None else None
+        if box is not None and size is not None and box != self._target:
+            check_target(box, *size)
+
+    @property
+    def _target(self) -> object:
+        return self._table.configuration.session.target.box
+
+    def _reconfigure(self, configuration: Configuration) -> None:
+        if self._stream is not None:
+            before = self._stream.vehicles.session.tracker.seed
+            self._stream.reconfigure(configuration)
+            if self._stream.vehicles.session.tracker.seed != before:
+                self._tell_drawn_seed()
+            self._diagnostics.facts.update(self._stream.facts)
+
+    def _tell_drawn_seed(self) -> None:
+        if self._stream is not None and self._table.configuration.tracker.seed < 0:
+            seed = self._stream.vehicles.session.tracker.seed
+            self.get_logger().info(f"drew the seed {seed}; set it to repeat this run")
+
+    def _warn_of(self, sentences: list[str]) -> None:
+        for sentence in sentences:
+            self.get_logger().warning(f"ignored: {sentence}")

@@ -1,0 +1,226 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Everything that a node knows of the vehicles: session, counts, selection, targets."""
+
+from __future__ import annotations
+
+from collections import Counter as Tally
+from pathlib import Path
+
+from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import CodedFrame, Frame
+from vehicle_pf_tracker.image.encodings import MAX_SIDE
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
+from vehicle_pf_tracker.parameters.road import RoadParameters
+from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.ros.traffic.selection import NONE, Selection
+from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.detector_choice import detector_maker
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+
+_MOST_TARGETS = 100
+"""Targets that may wait for the first image: more are a mistake of a program."""
+
+
+class Vehicles:
+    """The vehicles of one stream of images.
+
+    Parameters
+    ----------
+    configuration : Configuration
+        Of `TRAFFIC`.
+
+    Attributes
+    ----------
+    session : TrafficSession
+        Drives the tracker.
+    counter : Counter or None
+        Counts; None without lines and zones.
+    latest : dict of str to Crossing
+        Last crossing of each place.
+    selection : Selection
+        The vehicle that is reported like that of a single tracker.
+
+    Raises
+    ------
+    InputError
+        If the network, or the file of lines and zones, cannot be used.
+    """
+
+    def __init__(self, configuration: Configuration) -> None:
+        parameters = configuration.tracker
+        self._configuration = configuration
+        self.session = TrafficSession(
+            TrafficTracker(parameters),
+            detector_maker(parameters.detector),
+            frame_rate=parameters.frame_rate,
+            reset_on_time_jump=configuration.session.reset_on_time_jump,
+        )
+        self.counter = self._counter()
+        self.latest: dict[str, Crossing] = {}
+        self.selection = Selection()
+        self._restarts = 0
+        self._is_shown = False
+        self._waiting: list[Box] = []
+        self._configured: Box | None = configuration.session.target.box
+
+    @property
+    def estimates(self) -> tuple[TrackEstimate, ...]:
+        """Estimates of the last image."""
+        return self.session.estimates
+
+    @property
+    def selected(self) -> TrackEstimate | None:
+        """Estimate of the selected vehicle."""
+        return self.selection.of(self.estimates)
+
+    def feed(
+        self, image: Frame | CodedFrame, stamp_ns: int, detections: Detections | None
+    ) -> list[str]:
+        """Take the next image; returns what is to be told of it, a sentence each.
+
+        Raises
+        ------
+        InputError
+            If the image cannot be used; all vehicles are kept.
+        """
+        self.session.feed(image, stamp_ns, detections)
+        if self.session.restarts != self._restarts:
+            self._begin_anew()
+        if self.counter is not None:
+            for crossing in self.counter.update(self.estimates, stamp_ns):
+                self.latest[crossing.place] = crossing
+        self._is_shown = True
+        return [*self.session.events, *self._add_waiting()]
+
+    def add(self, box: Box) -> int | None:
+        """Follow the vehicle in `box` of the last image; returns its number.
+
+        Before the first image it waits for that, and has no number yet.
+
+        Raises
+        ------
+        InputError
+            If it cannot be followed there.
+        """
+        if self._is_shown:
+            return self.session.tracker.add(box)
+        check_target(box, MAX_SIDE, MAX_SIDE)
+        if len(self._waiting) == _MOST_TARGETS:
+            raise InputError(f"{_MOST_TARGETS} targets wait for the first image already")
+        self._waiting.append(box)
+        return None
+
+    def remove_selected(self) -> int:
+        """Forget the selected vehicle, and return its number.
+
+        Raises
+        ------
+        InputError
+            If none is selected, or it is followed no more.
+        """
+        identity = self.selection.identity
+        if not identity:
+            raise InputError("no vehicle is selected")
+        self.selection.clear()
+        if not self.session.tracker.remove(identity):
+            raise InputError(f"the vehicle {identity} is not followed any more")
+        return identity
+
+    def reset(self) -> None:
+        """Forget vehicles, counts and the images before; begin on the configured target."""
+        self.session.reset()
+        self._begin_anew()
+        self._is_shown = False
+        self._waiting.clear()
+        self.latest.clear()
+        if self.counter is not None:
+            self.counter.reset()
+
+    def reconfigure(self, configuration: Configuration) -> None:
+        """Take new parameters between two images; no vehicle is lost by it."""
+        before, self._configuration = self._configuration.session, configuration
+        if configuration.session.target != before.target:
+            self._configured = configuration.session.target.box
+        self.session.tracker.reconfigure(configuration.tracker)
+        self.session.reconfigure(
+            frame_rate=configuration.tracker.frame_rate,
+            reset_on_time_jump=configuration.session.reset_on_time_jump,
+        )
+        if configuration.session.road != before.road and self.counter is not None:
+            totals = self.counter.totals
+            self.counter = self._counter()
+            assert self.counter is not None
+            self.counter.totals.update(totals)
+
+    def summary(self) -> dict[str, object]:
+        """Count the vehicles by what is claimed of them."""
+        modes = Tally(one.mode for one in self.estimates)
+        counts = {f"vehicles {mode.value}": modes[mode] for mode in TrackMode}
+        return {"vehicles": len(self.estimates), **counts}
+
+    def _counter(self) -> Counter | None:
+        lines = self._configuration.tracker.lines
+        if not lines:
+            return None
+        return Counter(read_counting_plan(Path(lines)), plane_of(self._configuration.session.road))
+
+    def _begin_anew(self) -> None:
+        """Note that the session has forgotten all vehicles."""
+        self._restarts = self.session.restarts
+        self.selection.clear()
+        self._configured = self._configuration.session.target.box
+        if self.counter is not None:
+            self.counter.forget_vehicles()
+
+    def _add_waiting(self) -> list[str]:
+        """Follow the targets that waited for an image, and select the configured one."""
+        problems: list[str] = []
+        boxes, self._waiting = self._waiting, []
+        configured, self._configured = self._configured, None
+        for box in boxes:
+            self._try_to_add(box, problems)
+        if configured is not None:
+            self.selection.identity = self._try_to_add(configured, problems)
+        return problems
+
+    def _try_to_add(self, box: Box, problems: list[str]) -> int:
+        """Return the number of the vehicle in `box`, or `NONE` with a problem."""
+        try:
+            return self.session.tracker.add(box)
+        except InputError as error:
+            problems.append(f"target refused: {error}")
+            return NONE
+
+
+def plane_of(road: RoadParameters) -> RoadPlane | None:
+    """Return the road that speeds are measured on; its lens and pose cannot come from topics.
+
+    Raises
+    ------
+    InputError
+        If they should.
+    """
+    if road.from_camera_info or road.from_tf:
+        raise InputError(
+            "traffic_tracker takes no road from topics; instead of road.from_camera_info and "
+            "road.from_tf give road.intrinsics, road.distortion and road.camera_pose"
+        )
+    return road.plane(road.lens, road.pose) if road.is_set else None
