@@ -143,7 +143,7 @@ def _names(text: str, known: set[str], what: str) -> list[str]:
 
 def _parameters(args: argparse.Namespace) -> TrafficParameters:
     from vehicle_pf_tracker.parameters.configuration import Configuration
-    from vehicle_pf_tracker.trackers.traffic.variant import TRAFFIC
+    from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
     table = specs(TRAFFIC.parameters)
     configuration = Configuration.of(TRAFFIC).updated(parse_assignments(table, args.assignments))
