@@ -70,7 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "-o", "--output", type=Path, metavar="DIR",
         help="folder for tracks.csv, tracks.txt, counts.csv, run.json and summary.png "
-        "(default: results/ and the source's name)",
+        "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
     add("--overwrite", action="store_true", help="replace the results that are in DIR")
     add("--topic", help="the image topic, if a recording has several")
@@ -244,7 +244,7 @@ def _plane(road: RoadParameters) -> RoadPlane | None:
 
 
 def _folder(args: argparse.Namespace) -> Path:
-    path: Path = args.output or Path("results", Path(args.source).stem or "traffic")
+    path: Path = args.output or Path("results", f"{Path(args.source).stem or 'run'}_traffic")
     if (path / TRACKS).exists() and not args.overwrite:
         raise InputError(f"{path} has results already; name another folder, or give --overwrite")
     return make_folder(path)

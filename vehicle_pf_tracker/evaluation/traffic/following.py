@@ -88,6 +88,7 @@ class TrafficRun:
         self.paths = PathPicture()
         self._notices: list[str] = []
         self._more_notices = 0
+        self._last_events: list[str] = []
         self._detections_of = detections_of
         self._targets = targets
         self._by_name: dict[str, int] = {}
@@ -143,7 +144,9 @@ class TrafficRun:
             self._note(f"frame {number} was rejected: {error}")
             return None
         for event in self.session.events:
-            self._note(f"frame {number}: {event}")
+            if event not in self._last_events:  # one that lasts is told once
+                self._note(f"frame {number}: {event}")
+        self._last_events = list(self.session.events)
         if self.counter is not None and self.session.restarts != self._restarts:
             self._restarts = self.session.restarts
             self.counter.forget_vehicles()
