@@ -42,7 +42,7 @@ _PROVEN_BY_SCORES = 4.0
 """Sum of these from which on no drive is asked for."""
 _STRAIGHT = 0.8
 """Straightness of the way of a vehicle; of flickering leaves it is below one half."""
-_STRAIGHT_MATCHES = 6
+_STRAIGHT_MATCHES = 15
 """Fewest detections that a straightness is judged by."""
 _MISSED_TENTATIVE = 1.0
 """Log odds that a detection missed in plain sight takes off a new vehicle, ..."""

@@ -34,12 +34,17 @@ _BORDER = 1.0
 _OUTWARD = 1.0
 """Standard deviations that the opposite edge may at most be pushed out by, where an edge is drawn
 in because it is covered. A vehicle that brakes pushes it out."""
+_WHOLE = 0.85
+"""Share of the predicted width or height, below which one of the two edges is covered: at the rim of
+an occluder the edge does not jump, it creeps, and would brake the vehicle."""
 _SETTLED = 4
 """Detections from which on a box is known well enough to tell that an edge is covered."""
 _ASPECT = 0.8
 """Height of a vehicle over its width where a border cuts it when it is first seen: that of cars
 from the front. From the side it is half of it, hence the deviation."""
 _ASPECT_DEVIATION = 0.25
+_IMPLAUSIBLE = 0.6
+"""Side of a first box, of the usual one, below which something hides a part: its edges may grow."""
 _OPPOSITE = (Edge.RIGHT, Edge.BOTTOM, Edge.LEFT, Edge.TOP)
 
 
@@ -84,6 +89,8 @@ def first_state(
     ):
         if side >= usual:
             continue
+        if side < _IMPLAUSIBLE * usual:
+            spread[low] = spread[high] = _ASPECT_DEVIATION * usual
         if cut[low]:
             edges[low], spread[low] = edges[high] - usual, _ASPECT_DEVIATION * usual
         elif cut[high]:
@@ -115,12 +122,15 @@ def measure(
     uncertainty = np.sqrt(np.diag(state.edge_covariance) + spread**2)
     normal = ((edges - predicted) * INWARD / uncertainty).tolist()
     cut, beyond = _cut(edges, size), _cut(predicted, size)
+    shrunk = (edges[2:] - edges[:2]) < _WHOLE * (predicted[2:] - predicted[:2])
     whole = True
     for edge in Edge:
         if cut[edge] and beyond[edge]:
             continue
-        drawn_in = normal[edge] > covered and normal[_OPPOSITE[edge]] > -_OUTWARD
-        if drawn_in and track.matches >= _SETTLED:
+        own, opposite = normal[edge], normal[_OPPOSITE[edge]]
+        jumped = own > covered and opposite > -_OUTWARD
+        crept = bool(shrunk[edge % 2]) and own > max(opposite, 0.0)
+        if (jumped or crept) and track.matches >= _SETTLED:
             whole = False
             continue
         state.measure(edge, float(edges[edge]), float(spread[edge]))
