@@ -35,8 +35,8 @@ _OUTWARD = 1.0
 """Standard deviations that the opposite edge may at most be pushed out by, where an edge is drawn
 in because it is covered. A vehicle that brakes pushes it out."""
 _WHOLE = 0.85
-"""Share of the predicted width or height, below which one of the two edges is covered: at the rim of
-an occluder the edge does not jump, it creeps, and would brake the vehicle."""
+"""Share of the predicted width or height below which one of the two edges is covered: at the rim
+of an occluder the edge does not jump, it creeps, and would brake the vehicle."""
 _SETTLED = 4
 """Detections from which on a box is known well enough to tell that an edge is covered."""
 _ASPECT = 0.8
