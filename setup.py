@@ -5,8 +5,15 @@ from pathlib import Path
 
 from setuptools import find_packages, setup
 
+PYTHON = (3, 10)
+if sys.version_info < PYTHON:  # before an import fails on what older ones lack
+    sys.exit(
+        "vehicle_pf_tracker needs Python {}.{} or newer, and this is {}.{}: use the pip of a newer "
+        "one".format(*PYTHON, *sys.version_info[:2])
+    )
+
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # pip's isolated builds leave it out
-from vehicle_pf_tracker.trackers.registry import NODES  # needs no library
+from vehicle_pf_tracker.trackers.registry import NODES  # noqa: E402 - needs no library
 
 NAME = "vehicle_pf_tracker"
 JAZZY_WHEELS = "sys_platform == 'linux' and platform_machine == 'x86_64'"
@@ -61,7 +68,7 @@ setup(
     license="Apache-2.0",
     maintainer="vehicle_pf_tracker maintainers",
     maintainer_email="maintainers@vehicle-pf-tracker.invalid",
-    python_requires=">=3.10",
+    python_requires=">={}.{}".format(*PYTHON),
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
     package_data={
         NAME: ["py.typed"],

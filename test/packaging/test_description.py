@@ -67,6 +67,12 @@ def test_name_version_and_licence_are_the_same_everywhere(setup, package):
     assert "Apache License" in (ROOT / package.find("license").get("file")).read_text()
 
 
+def test_an_older_python_gets_one_sentence(monkeypatch):
+    monkeypatch.setattr(sys, "version_info", (3, 9, 18, "final", 0))
+    with pytest.raises(SystemExit, match=r"needs Python 3\.10 or newer, and this is 3\.9: use "):
+        described(monkeypatch, "egg_info")
+
+
 def test_every_registered_node_has_an_executable(setup):
     scripts = dict(line.split(" = ") for line in setup["entry_points"]["console_scripts"])
     nodes = {name: target for name, target in scripts.items() if name.endswith("_tracker")}

@@ -65,3 +65,16 @@ def test_none_at_all_is_told_with_the_remedy(find):
     assert done.stderr.count("\n") == 1
     assert "3.12 3.13 3.11 3.10" in done.stderr
     assert "make PYTHON=" in done.stderr
+
+
+@pytest.mark.parametrize("version", ["3.9", "3.14", "2.7"])
+def test_an_interpreter_of_another_version_is_refused_before_anything_is_made(tmp_path, version):
+    python = tmp_path / "python"
+    python.write_text(f"#!/bin/sh\necho {version}\n")
+    python.chmod(0o755)
+    command = ["/bin/sh", FIND.with_name("make-venv"), tmp_path / "made", "lock.txt", python]
+    done = subprocess.run(command, text=True, capture_output=True, check=False)
+    assert done.returncode == 1
+    assert f"is Python {version}, and the locked versions are for 3.10 to 3.13" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "made").exists()
