@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from small_recordings import COUNT, box_of, frame_folder, frame_of
 
+from vehicle_pf_tracker.cli.console import megabytes
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
@@ -35,15 +36,27 @@ def test_a_frame_folder_becomes_a_recording(tmp_path, capsys):
     assert recording.image_type == "sensor_msgs/msg/CompressedImage"
     assert recording.frame_count == COUNT
     assert recording.truth()[3].box == box_of(3)
-    out = capsys.readouterr().out
-    assert out.endswith("bag: 12 frames of 96x64 px at 25 frames/s, 12 with truth\n")
+    expected, told = capsys.readouterr().out.splitlines()
+    assert "bag: 12 frames of 96x64 px at 25 frames/s, 12 with truth; " in told
+    written = sum(path.stat().st_size for path in (tmp_path / "bag").iterdir()) / 1e6
+    assert float(told.split()[-2]) == pytest.approx(written, rel=0.05)
+    images = sum(path.stat().st_size for path in (source / "img").iterdir()) / 1e6
+    assert expected.startswith(f"{tmp_path / 'bag'} will take about ")
+    assert float(expected.split()[-2]) == pytest.approx(images, rel=0.1)
+
+
+def test_the_size_of_raw_images_is_a_bound(tmp_path, capsys):
+    source = frame_folder(tmp_path / "source")
+    call("import", source, tmp_path / "bag", "--format", "raw")
+    pixels = 12 * 96 * 64 * 3 / 1e6
+    assert f"will take up to {pixels:.2g} MB\n" in capsys.readouterr().out
 
 
 def test_the_format_can_be_chosen_and_a_recording_replaced(tmp_path, capsys):
     source = frame_folder(tmp_path / "source")
     call("import", source, tmp_path / "bag")
     assert main(["import", str(source), str(tmp_path / "bag")]) == 1
-    assert "is not empty" in capsys.readouterr().err
+    assert "is not empty; give --overwrite to" in capsys.readouterr().err
     call("import", source, tmp_path / "bag", "--format", "raw", "--overwrite")
     assert Recording(tmp_path / "bag").image_type == "sensor_msgs/msg/Image"
 
@@ -150,3 +163,12 @@ def test_the_list_names_traffic(capsys):
     assert "traffic-pair: a car overtakes behind a lorry, which hides it\n" in out
     assert "  the settings of traffic with vehicles=2, directions=1, " in out
     assert "  vehicles=20 [from 2 to 80]: more vehicles in both directions together" in out
+
+
+@pytest.mark.parametrize(
+    ("count", "text"),
+    [(0, "0 MB"), (1234, "0.0012 MB"), (56_789, "0.057 MB"), (9_960_000, "10 MB"),
+     (25_600_000, "26 MB"), (420_400_000, "420 MB"), (12_345_600_000, "12346 MB")],
+)  # fmt: skip
+def test_sizes_are_printed_with_two_digits(count, text):
+    assert megabytes(count) == text

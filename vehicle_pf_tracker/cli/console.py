@@ -60,3 +60,9 @@ def print_table(table: RichTable) -> None:
     if not console.is_terminal:
         console = Console(width=_WIDE)
     console.print(table)
+
+
+def megabytes(count: int) -> str:
+    """Return a number of bytes for people: two digits, and more above 100 MB."""
+    size = count / 1e6
+    return f"{size:.0f} MB" if size >= 100 else f"{float(f'{size:.2g}'):g} MB"

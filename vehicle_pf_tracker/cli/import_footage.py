@@ -19,9 +19,14 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import tell_notices
+from vehicle_pf_tracker.cli.console import megabytes, tell_notices
 from vehicle_pf_tracker.cli.progress import counting
-from vehicle_pf_tracker.recordings.importing import FORMATS, import_recording
+from vehicle_pf_tracker.recordings.importing import (
+    FORMATS,
+    ExpectedSize,
+    expected_size,
+    import_recording,
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -47,6 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Import the footage, and print a summary of the recording."""
+    expected = expected_size(args.source, fps=args.fps, format=args.format)
+    if expected is not None:
+        print(f"{args.out} will take {_words(expected)}", flush=True)
     with counting("imported") as progress:
         made = import_recording(
             args.source,
@@ -60,6 +68,13 @@ def run(args: argparse.Namespace) -> int:
     tell_notices(made.notices)
     print(
         f"{made.path}: {made.frames} frames of {made.width}x{made.height} px "
-        f"at {made.fps:g} frames/s, {made.truths} with truth"
+        f"at {made.fps:g} frames/s, {made.truths} with truth; {megabytes(made.size)}"
     )
     return 0
+
+
+def _words(expected: ExpectedSize) -> str:
+    about = "up to" if expected.is_raw else "about"
+    if expected.images is None:
+        return f"{about} {megabytes(expected.image)} for each image"
+    return f"{about} {megabytes(expected.image * expected.images)}"

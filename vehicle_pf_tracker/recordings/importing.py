@@ -48,6 +48,8 @@ class ImportSummary:
         Frame rate of the source in 1/s.
     width, height : int
         Size of the images in px.
+    size : int
+        Size of the recording, bytes.
     notices : tuple of str
         Irregularities, a sentence each.
     """
@@ -58,7 +60,48 @@ class ImportSummary:
     fps: float
     width: int
     height: int
+    size: int
     notices: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ExpectedSize:
+    """Size that a recording will have, judged by its first image.
+
+    Attributes
+    ----------
+    image : int
+        Size of an image, bytes.
+    images : int or None
+        Number of images; None where it is unknown.
+    is_raw : bool
+        True for pixels, which the recording's compression makes smaller by what they show.
+    """
+
+    image: int
+    images: int | None
+    is_raw: bool
+
+
+def expected_size(
+    source: Path,
+    *,
+    fps: float | None = None,
+    format: str | None = None,  # noqa: A002
+) -> ExpectedSize | None:
+    """Judge the size before an import; None if there is no image. See `import_recording`."""
+    _check_format(format)
+    footage = _open(source, None, fps)
+    first = next(footage.pictures(), None)
+    if first is None:
+        return None
+    stored = _stored(first, format)
+    return ExpectedSize(stored.size, footage.total, not stored.kind)
+
+
+def _check_format(name: str | None) -> None:
+    if name is not None and name not in FORMATS:
+        raise InputError(f"the format {name!r} is unknown; choose from {', '.join(FORMATS)}")
 
 
 def import_recording(
@@ -96,21 +139,21 @@ def import_recording(
     InputError
         For every fault of the source, and if `out` cannot be written.
     """
-    if format is not None and format not in FORMATS:
-        raise InputError(f"the format {format!r} is unknown; choose from {', '.join(FORMATS)}")
+    _check_format(format)
     footage = _open(source, truth, fps)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
         for picture in footage.pictures():
             size = _check_size(picture, size if frames else frame_size(picture.frame))
-            _write_picture(writer, picture, format)
+            _write_picture(writer, picture, _stored(picture, format))
             if picture.truth is not None:
                 writer.write_truth(picture.truth)
                 truths += 1
             frames += 1
             if progress is not None:
                 progress(frames, footage.total)
-    return ImportSummary(out, frames, truths, footage.fps, *size, tuple(footage.notices()))
+    notices = tuple(footage.notices())
+    return ImportSummary(out, frames, truths, footage.fps, *size, folder_size(out), notices)
 
 
 def _open(source: Path, truth: Path | None, fps: float | None) -> Footage:
@@ -140,13 +183,33 @@ def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:
     return size
 
 
-def _write_picture(writer: RecordingWriter, picture: Picture, wanted: str | None) -> None:
+@dataclass(frozen=True, slots=True)
+class _Stored:
+    """A picture as it is stored: the kind and bytes of its file, or neither for its pixels."""
+
+    kind: str
+    coded: bytes
+    size: int
+
+
+def _stored(picture: Picture, wanted: str | None) -> _Stored:
     if wanted == "raw" or (wanted is None and picture.coded_format == "png"):
-        writer.write_image(picture.stamp_ns, picture.frame)
-    elif picture.coded_format is not None:
-        writer.write_compressed(picture.stamp_ns, picture.coded_format, picture.coded)
+        return _Stored("", b"", picture.frame.nbytes)
+    kind = picture.coded_format or "jpeg"
+    coded = picture.coded if picture.coded_format else jpeg(picture.frame)
+    return _Stored(kind, coded, len(coded))
+
+
+def _write_picture(writer: RecordingWriter, picture: Picture, stored: _Stored) -> None:
+    if stored.kind:
+        writer.write_compressed(picture.stamp_ns, stored.kind, stored.coded)
     else:
-        writer.write_compressed(picture.stamp_ns, "jpeg", jpeg(picture.frame))
+        writer.write_image(picture.stamp_ns, picture.frame)
+
+
+def folder_size(folder: Path) -> int:
+    """Return the size of the files in `folder`, bytes."""
+    return sum(path.stat().st_size for path in folder.iterdir())
 
 
 def jpeg(frame: Frame) -> bytes:

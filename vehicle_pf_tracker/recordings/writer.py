@@ -102,7 +102,10 @@ def _check_replaceable(target: Path, overwrite: bool) -> None:
     if not names:
         return
     if not overwrite:
-        raise InputError(f"the output folder {target} is not empty; give --overwrite to replace the recording in it, or name another")
+        raise InputError(
+            f"the output folder {target} is not empty; give --overwrite to replace the recording "
+            "in it, or name another"
+        )
     if any(name != "metadata.yaml" and not name.endswith(".mcap") for name in names):
         raise InputError(f"the output folder {target} holds more than a recording; choose another")
 
