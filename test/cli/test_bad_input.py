@@ -284,6 +284,8 @@ def test_import_of_what_is_no_video(fails, tmp_path):
         (("runn", "x"), "there is no verb 'runn' (did you mean 'run'?); the verbs are demo", 2),
         (("dance",), "there is no verb 'dance'; the verbs are demo", 2),
         (("synth", "bars2", "out"), "no scene 'bars2' (did you mean 'bars'?)", 1),
+        (("synth", "trafic-pair", "out"), "'trafic-pair' (did you mean 'traffic-pair'?)", 1),
+        (("synth", "bar", "out", "--set", "widht=3"), "setting 'widht' (did you mean 'width'?)", 1),
         (("params", "mfps"), "no variant 'mfps' (did you mean 'mfpf'?)", 1),
     ],
 )

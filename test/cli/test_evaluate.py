@@ -122,6 +122,7 @@ def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
         (["--variants", ","], 2, "--variants names none"),
         (["--variants", "baseline:boost"], 1, "unknown baseline 'boost'"),
         (["--variants", "ms,peer:csrt"], 2, "peer:csrt is now called baseline:csrt"),
+        (["--variants", "baseline:csrtt"], 1, "'csrtt' (did you mean 'csrt'?); the baselines are"),
         (["--variants", "peers"], 2, "peers is now called baselines"),
         (["--peers-python", "python3"], 2, "--peers-python is now called --baselines-python"),
         (["--peer-model", "vit:net=v"], 2, "--peer-model is now called --baseline-model"),

@@ -15,6 +15,7 @@
 import importlib
 import os
 import re
+import resource
 import subprocess
 import sys
 
@@ -98,9 +99,33 @@ def test_errors_become_one_line_and_a_status(capsys, failing, error, status, lin
     assert capsys.readouterr().err == line
 
 
-def test_a_missing_library_is_named(capsys, failing):
-    assert failing(ModuleNotFoundError("no", name="rclpy")) == 1
-    assert "the Python module rclpy is not there" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("module", "words"),
+    [
+        ("rclpy", "pip install 'vehicle_pf_tracker[ros]'"),
+        ("sensor_msgs.msg", "module sensor_msgs is not there: source ROS's setup.bash"),
+        ("onnxruntime", "install the extra [onnx], pip install 'vehicle_pf_tracker[onnx]'"),
+        ("av", "pip install 'vehicle_pf_tracker[video]'"),
+        ("mcap.writer", "the Python module mcap is not there: it belongs to every installation"),
+    ],
+)
+def test_a_missing_library_is_named_with_what_brings_it(capsys, failing, module, words):
+    assert failing(ModuleNotFoundError("no", name=module)) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line
+
+
+def test_help_takes_less_than_a_quarter_of_a_second():
+    def seconds():
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run(
+            [sys.executable, "-c", CALL, "--help"], stdout=subprocess.DEVNULL, check=True
+        )
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+    # Of processor time, and the best of five, since other work on the machine is not meant.
+    assert min(seconds() for _ in range(5)) < 0.25
 
 
 def test_a_fault_of_the_program_is_not_hidden(failing):

@@ -25,6 +25,7 @@ import setuptools
 
 import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.main import EVALUATION_MODULES
+from vehicle_pf_tracker.cli.missing_modules import EXTRAS
 from vehicle_pf_tracker.ros import executables
 from vehicle_pf_tracker.trackers.registry import NODES
 
@@ -71,6 +72,12 @@ def test_an_older_python_gets_one_sentence(monkeypatch):
     monkeypatch.setattr(sys, "version_info", (3, 9, 18, "final", 0))
     with pytest.raises(SystemExit, match=r"needs Python 3\.10 or newer, and this is 3\.9: use "):
         described(monkeypatch, "egg_info")
+
+
+def test_modules_that_may_be_missing_name_an_extra_that_brings_them(setup):
+    for module, extra in EXTRAS.items():
+        names = {re.match(r"[\w.-]+", one)[0] for one in setup["extras_require"][extra]}
+        assert module in names
 
 
 def test_every_registered_node_has_an_executable(setup):

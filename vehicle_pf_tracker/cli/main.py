@@ -35,6 +35,7 @@ from vehicle_pf_tracker.cli.console import (
     UsageError,
     tell_error,
 )
+from vehicle_pf_tracker.cli.missing_modules import remedy
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
 from vehicle_pf_tracker.core.address_space import check_address_space
 from vehicle_pf_tracker.core.errors import InputError, suggestion
@@ -68,6 +69,14 @@ EVALUATING = frozenset({"demo", "evaluate", "tune", "report"})
 EVALUATION_MODULES = ("matplotlib", "scipy", "jinja2")
 """Modules that the extra `evaluation` brings."""
 
+_COMPLETION: Mapping[str, str] = MappingProxyType(
+    {
+        "--install-completion": "write the completion for bash or zsh (default: that of $SHELL)",
+        "--print-completion": "print it",
+    }
+)
+"""Options that come alone, with their help."""
+
 _REPRODUCE = (
     "the papers' experiments are not part of the installed package: run `python -m reproduction "
     "FIGURE…` or `make reproduce` in the repository"
@@ -97,7 +106,7 @@ def exit_status(action: Callable[[], int], program: str = PROGRAM) -> int:
     except ModuleNotFoundError as error:
         if (error.name or "").startswith(__package__.partition(".")[0]):
             raise  # a fault of ours, not something that is left to install
-        tell_error(_missing(error), program)
+        tell_error(remedy(error.name or "of an unknown name"), program)
         return FAILED
     except KeyboardInterrupt:
         return INTERRUPTED
@@ -119,6 +128,10 @@ def bag_replay(argv: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str]) -> int:
     check_address_space()
+    if words and words[0] in _COMPLETION:
+        from vehicle_pf_tracker.cli import completion
+
+        return completion.run(words, VERBS)
     try:
         args = _parser(words).parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
@@ -142,6 +155,8 @@ def _parser(words: list[str]) -> argparse.ArgumentParser:
         )
     parser = argparse.ArgumentParser(prog=PROGRAM, description=_summary)
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {__version__}")
+    for name, line in _COMPLETION.items():
+        parser.add_argument(name, metavar="SHELL", help=line)
     verbs = parser.add_subparsers(metavar="VERB", required=True)
     for name, (module_name, line) in VERBS.items():
         description = f"{line[0].upper()}{line[1:]}."
@@ -163,10 +178,3 @@ def _check_extra(verb: str) -> None:
                 "pip install 'vehicle_pf_tracker[evaluation]', or with apt python3-matplotlib "
                 "python3-scipy python3-jinja2"
             )
-
-
-def _missing(error: ModuleNotFoundError) -> str:
-    return (
-        f"the Python module {error.name} is not there: for ROS, source its setup.bash or install "
-        "the extra [ros]; for recordings, `pip install mcap rosbags`"
-    )

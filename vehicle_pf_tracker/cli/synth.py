@@ -24,7 +24,7 @@ from typing import Any
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.output_files import write_text
 from vehicle_pf_tracker.evaluation.video_writer import (
@@ -78,6 +78,12 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError("synth needs SCENE and OUT; `synth --list` shows the scenes")
     if args.scene in TRAFFIC_SCENES:
         return _run_traffic(args)
+    if args.scene not in SCENES:
+        names = (*SCENES, *TRAFFIC_SCENES)
+        raise InputError(
+            f"there is no scene {args.scene!r}{suggestion(args.scene, names)}; choose one of "
+            f"{', '.join(names)}"
+        )
     scene = make_scene(args.scene, seed=args.seed, settings=args.settings)
     facts = (
         f"{args.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.cli.parameter_sets import (
     settable,
 )
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Baseline
+from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Baseline, unknown_baseline
 from vehicle_pf_tracker.evaluation.grid.systems import (
     BASELINE,
     BaselineSystem,
@@ -205,7 +205,7 @@ def _baseline_system(
     name: str, python: Path | None, models: dict[str, dict[str, str]], notes: list[str]
 ) -> BaselineSystem:
     if name not in MODELS:
-        raise InputError(f"unknown baseline {name!r}; the baselines are {', '.join(MODELS)}")
+        raise unknown_baseline(name, MODELS)
     own = models.get(name, {})
     files = {key: Path(path) for key, path in own.items()}
     build = ""

@@ -29,6 +29,14 @@ class InputError(ValueError):
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """Return the known name that a mistyped one is like, in brackets; empty if there is none."""
-    close = get_close_matches(name, list(known), n=1)
+    """Return the known name that a mistyped one is like, in brackets; empty if there is none.
+
+    Of dotted names the last part counts where no whole name is like it: ``sigm`` may be meant for
+    ``motion.sigma``.
+    """
+    names = list(known)
+    close = get_close_matches(name, names, n=1)
+    if not close:
+        by_part = {one.rpartition(".")[2]: one for one in reversed(names)}
+        close = [by_part[part] for part in get_close_matches(name.rpartition(".")[2], by_part, n=1)]
     return f" (did you mean {close[0]!r}?)" if close else ""

@@ -148,6 +148,7 @@ def _check_names(scene: str, kind: SceneKind, names: Iterable[str]) -> None:
     unknown = [name for name in names if name not in known]
     if unknown:
         raise InputError(
-            f"the scene {scene} has no setting {', '.join(map(repr, unknown))}; "
+            f"the scene {scene} has no setting {', '.join(map(repr, unknown))}"
+            f"{suggestion(unknown[0], known)}; "
             f"it has {', '.join(known) or 'none'}"
         )

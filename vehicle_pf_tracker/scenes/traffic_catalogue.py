@@ -201,7 +201,8 @@ def _check_names(scene: str, names: Mapping[str, object] | Sequence[str]) -> Non
     unknown = [name for name in names if name not in known]
     if unknown:
         raise InputError(
-            f"the scene {scene} has no setting {', '.join(map(repr, unknown))}; "
+            f"the scene {scene} has no setting {', '.join(map(repr, unknown))}"
+            f"{suggestion(unknown[0], known)}; "
             f"it has {', '.join(known)}"
         )
 

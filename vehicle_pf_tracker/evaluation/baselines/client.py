@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
@@ -231,9 +231,17 @@ class Baseline:
         )
 
 
+def unknown_baseline(name: str, known: Iterable[str]) -> InputError:
+    """Make the error about a baseline that there is not."""
+    names = list(known)
+    return InputError(
+        f"unknown baseline {name!r}{suggestion(name, names)}; the baselines are {', '.join(names)}"
+    )
+
+
 def _checked_models(name: str, models: Mapping[str, Path]) -> dict[str, Path]:
     if name not in MODELS:
-        raise InputError(f"unknown baseline {name!r}; the baselines are {', '.join(MODELS)}")
+        raise unknown_baseline(name, MODELS)
     required = MODELS[name]
     if set(models) != set(required):
         words = f"these model files: {', '.join(required)}" if required else "no model files"

@@ -29,7 +29,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baselines.client import baseline_python
+from vehicle_pf_tracker.evaluation.baselines.client import baseline_python, unknown_baseline
 from vehicle_pf_tracker.evaluation.processes import wait_or_kill
 from vehicle_pf_tracker.evaluation.traffic.scorable import scorable
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
@@ -129,9 +129,7 @@ class TrafficWorker:
             Processor time per frame, s.
         """
         if name not in TRAFFIC_BASELINES:
-            raise InputError(
-                f"unknown baseline {name!r}; the baselines are {', '.join(TRAFFIC_BASELINES)}"
-            )
+            raise unknown_baseline(name, TRAFFIC_BASELINES)
         tracker, options = TRAFFIC_BASELINES[name]
         content = {
             "tracker": tracker,
