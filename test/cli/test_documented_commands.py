@@ -27,6 +27,7 @@ import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.main import _parser, main
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.scenes.catalogue import make_scene
+from vehicle_pf_tracker.trackers.registry import NODES
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
@@ -130,6 +131,15 @@ def test_the_launch_file_declares_what_is_given(words):
     for argument in arguments:
         name = argument.partition(":=")[0]
         assert re.search(rf"""["']{name}["']""", text), name
+
+
+def test_the_executables_on_pages_are_installed():
+    text = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
+    named = set(re.findall(r"ros2 run vehicle_pf_tracker (\w+)", text))
+    named |= set(re.findall(r"^\s*(\w+_tracker|video_source|bag_replay) ", text, re.MULTILINE))
+    installed = {one.executable for one in NODES.values()}
+    installed |= set(re.findall(r'f"([\w-]+) = ', (ROOT / "setup.py").read_text()))
+    assert {"fusion_tracker", "video_source"} <= named <= installed
 
 
 @pytest.fixture(scope="module")

@@ -59,11 +59,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "-o", "--output", type=Path, default=Path("results/demo"), metavar="DIR",
-        help="folder for recordings, results, picture and video (default: results/demo)",
+        help="folder for recordings, results, pictures and video (default: results/demo)",
     )  # fmt: skip
     add(
-        "--seeds", type=natural, default=10, metavar="N",
-        help="how many more seeds to run offline (default: 10)",
+        "--seeds", type=natural, default=5, metavar="N",
+        help="how many more seeds to run offline (default: 5)",
     )  # fmt: skip
 
 
