@@ -43,6 +43,7 @@ VISION = {
         "std_msgs/Header header\nObjectHypothesisWithPose[] results\n"
         "BoundingBox2D bbox\nstring id\n"
     ),
+    "Detection2DArray": "std_msgs/Header header\nDetection2D[] detections\n",
 }
 TF2 = {"TFMessage": "geometry_msgs/TransformStamped[] transforms\n"}
 

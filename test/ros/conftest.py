@@ -26,9 +26,12 @@ import subprocess
 import sys
 import tempfile
 import time
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from built_messages import TF2, VISION, build, missing
 
 try:
     import rclpy
@@ -237,3 +240,17 @@ def start_node(start_process):
         return start_process("-c", code, *words, **environment)
 
     return start
+
+
+@pytest.fixture(scope="module")
+def messages(tmp_path_factory):
+    """Return a function that imports one of the packages' modules of messages."""
+    folder = tmp_path_factory.mktemp("messages")
+    before = list(sys.path)
+    for package, definitions in (("vision_msgs", VISION), ("tf2_msgs", TF2)):
+        if find_spec(package) is None:
+            if reason := missing():
+                pytest.skip(f"{package} is not installed, and cannot be built: {reason}")
+            sys.path.append(str(build(package, definitions, folder)))
+    yield lambda package: import_module(f"{package}.msg")
+    sys.path[:] = before

@@ -16,15 +16,10 @@
 
 from __future__ import annotations
 
-import sys
-from importlib import import_module
-from importlib.util import find_spec
-
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
-from built_messages import TF2, VISION, build, missing
 from geometry_msgs.msg import TransformStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from tracker_rig import HEIGHT, TARGET, WIDTH, Rig, overrides, road, values_of
@@ -35,20 +30,6 @@ from vehicle_pf_tracker.ros.node import camera_inputs
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 NODE = "/apf_tracker"
-
-
-@pytest.fixture(scope="module")
-def messages(tmp_path_factory):
-    """Return a function that imports one of the packages' modules of messages."""
-    folder = tmp_path_factory.mktemp("messages")
-    before = list(sys.path)
-    for package, definitions in (("vision_msgs", VISION), ("tf2_msgs", TF2)):
-        if find_spec(package) is None:
-            if reason := missing():
-                pytest.skip(f"{package} is not installed, and cannot be built: {reason}")
-            sys.path.append(str(build(package, definitions, folder)))
-    yield lambda package: import_module(f"{package}.msg")
-    sys.path[:] = before
 
 
 def test_a_detection_starts_a_node_and_comes_back(bench, messages, monkeypatch):

@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
+
 import cv2
 import numpy as np
 import pytest
@@ -435,3 +437,9 @@ def test_the_node_can_be_deactivated_and_cleaned_up(rig):
     rig.bench.publish_until(
         lambda: len(rig.modes) > 3, rig.camera, image_message(header(3), frames[0])
     )
+
+
+@pytest.mark.skipif(find_spec("vision_msgs") is not None, reason="vision_msgs is installed")
+def test_a_detector_on_a_topic_needs_vision_msgs(bench):
+    with pytest.raises(InputError, match="vision_msgs, which detections come in, is not installed"):
+        TrafficRig(bench, overrides(detector__kind="topic"))

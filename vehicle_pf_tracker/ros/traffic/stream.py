@@ -32,7 +32,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.health import Health
 from vehicle_pf_tracker.ros.node.images import read_image
-from vehicle_pf_tracker.ros.traffic.detection_messages import read_detections
+from vehicle_pf_tracker.ros.traffic.detection_messages import read_serialized_detections, read_stamp
 from vehicle_pf_tracker.ros.traffic.notices import Notices
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.track_messages import scalars
@@ -114,17 +114,18 @@ class TrafficStream:
         self._waiting.add_image(message, stamp_ns(message.header), max_wait)
         self.go_on()
 
-    def take_detections(self, message: Any) -> None:
-        """Take a vision_msgs/Detection2DArray."""
+    def take_detections(self, message: bytes) -> None:
+        """Take a serialized vision_msgs/Detection2DArray."""
         if self._waiting is None:
             return
-        count = len(message.detections)
-        if count > MOST_DETECTIONS:
-            words = f"a message has {count} detections, of which the {MOST_DETECTIONS} highest"
-            self._notices.say("flood", f"{words} scores are used; is the detector in order?")
         every = self._configuration.tracker.detector.every
         late, unmatched = self._waiting.late, self._waiting.unmatched
-        self._waiting.add_detections(stamp_ns(message.header), read_detections(message), every)
+        try:
+            stamp = read_stamp(message)
+        except InputError as error:
+            self._notices.say("flood", str(error))
+            return
+        self._waiting.add_detections(stamp, self._read(message), every)
         if self._waiting.late > late:
             words = "detections came after their image had waited for detector.max_wait s"
             self._notices.say("late", f"{words}, {self._waiting.late} times; they are not used")
@@ -132,6 +133,17 @@ class TrafficStream:
             words = f"{self._waiting.unmatched} messages of detections have the stamp of no image"
             self._notices.say("unmatched", f"{words}; the detector must copy the image's header")
         self.go_on()
+
+    def _read(self, message: bytes) -> Detections | None:
+        try:
+            detections = read_serialized_detections(message)
+        except InputError as error:
+            self._notices.say("flood", f"{error}; vehicles are followed by their pixels meanwhile")
+            return None
+        if len(detections) > MOST_DETECTIONS:
+            words = f"a message has {len(detections)} detections, of which the {MOST_DETECTIONS}"
+            self._notices.say("flood", f"{words} of the highest scores are used")
+        return detections
 
     def go_on(self) -> None:
         """Process the images that need not wait any longer."""

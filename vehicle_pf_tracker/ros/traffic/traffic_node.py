@@ -128,8 +128,10 @@ class TrafficNode(ManagedNode):
         if detector == TOPIC:
             # As many as images may wait: a detector may answer several at once.
             qos = QoSProfile(depth=MOST_WAITING)
-            listen = self.create_subscription
-            self._inputs.append(listen(detections_type(), "detections", self._on_detections, qos))
+            detections = self.create_subscription(
+                detections_type(), "detections", self._on_detections, qos, raw=True
+            )
+            self._inputs.append(detections)
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
 
     def deactivate(self) -> None:
@@ -157,7 +159,7 @@ class TrafficNode(ManagedNode):
         self._stream.take(message)
         self._after_step(self._stream)
 
-    def _on_detections(self, message: Any) -> None:
+    def _on_detections(self, message: bytes) -> None:
         if self._stream is not None:
             self._stream.take_detections(message)
             self._after_step(self._stream)

@@ -41,6 +41,7 @@ class _Waiting(Generic[ImageT]):
     stamp_ns: int
     number: int
     until: float
+    is_answered: bool = False
     detections: Detections | None = None
 
 
@@ -67,7 +68,7 @@ class WaitingImages(Generic[ImageT]):
         self.matched = self.missed = self.late = self.unmatched = 0
         self._clock = clock
         self._images: deque[_Waiting[ImageT]] = deque()
-        self._early: dict[int, Detections] = {}
+        self._early: dict[int, Detections | None] = {}
         self._passed: dict[int, int] = {}
         self._number = 0
         self._awaited = 0
@@ -77,16 +78,20 @@ class WaitingImages(Generic[ImageT]):
 
     def add_image(self, image: ImageT, stamp_ns: int, max_wait: float) -> None:
         """Take the next image, which may wait for `max_wait` s."""
-        until = self._clock() + max_wait
-        waiting = _Waiting(image, stamp_ns, self._number, until, self._early.pop(stamp_ns, None))
+        waiting = _Waiting(image, stamp_ns, self._number, self._clock() + max_wait)
+        if stamp_ns in self._early:
+            waiting.is_answered, waiting.detections = True, self._early.pop(stamp_ns)
         self._number += 1
         self._images.append(waiting)
 
-    def add_detections(self, stamp_ns: int, detections: Detections, every: int = 1) -> None:
-        """Take the detections of an image; the detector answers every `every`-th one."""
+    def add_detections(self, stamp_ns: int, detections: Detections | None, every: int = 1) -> None:
+        """Take the detections of an image; None: the answer cannot be used.
+
+        The detector answers every `every`-th image.
+        """
         for waiting in self._images:
-            if waiting.stamp_ns == stamp_ns and waiting.detections is None:
-                waiting.detections = detections
+            if waiting.stamp_ns == stamp_ns and not waiting.is_answered:
+                waiting.is_answered, waiting.detections = True, detections
                 return
         if stamp_ns in self._passed:
             self.late += 1
@@ -101,10 +106,10 @@ class WaitingImages(Generic[ImageT]):
         """Pass on the images that need not wait any longer."""
         while self._images:
             first = self._images[0]
-            if first.detections is None and self._waits(first):
+            if not first.is_answered and self._waits(first):
                 return
             self._images.popleft()
-            if first.detections is not None:
+            if first.is_answered:
                 self.matched += 1
                 self._awaited = first.number + every
             else:
@@ -123,7 +128,7 @@ class WaitingImages(Generic[ImageT]):
             first.number >= self._awaited
             and self._clock() < first.until
             and len(self._images) <= MOST_WAITING
-            and all(one.detections is None for one in self._images)
+            and not any(one.is_answered for one in self._images)
         )
 
     def _remember(self, passed: _Waiting[ImageT]) -> None:

@@ -1,0 +1,246 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Detections that come in on a topic: those that fit, and all that do not.
+
+vision_msgs is no wheel: it is built from its definitions where it is not installed.
+"""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from tracker_rig import PERIOD_NS, QUEUE, header, overrides, values_of
+from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, lanes
+
+from vehicle_pf_tracker.ros import detections
+from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+FIRST = WARM_UP + 6
+"""First image with both vehicles well in it."""
+COUNT = 16
+
+
+@pytest.fixture
+def vision(messages, monkeypatch):
+    module = messages("vision_msgs")
+    for name in ("Detection2D", "Detection2DArray", "ObjectHypothesisWithPose"):
+        monkeypatch.setattr(detections, name, getattr(module, name))
+    return module
+
+
+class DetectorRig(TrafficRig):
+    """A node that takes detections from a topic, a detector, and the lines of the log."""
+
+    def __init__(self, bench, vision, monkeypatch, **parameters):
+        given = {"detector__max_wait": 20.0, **parameters}
+        super().__init__(bench, overrides(detector__kind="topic", **given))
+        self.vision = vision
+        self.detector = bench.publisher(vision.Detection2DArray, "detections", QUEUE)
+        self.frames = lanes(FIRST + COUNT)[FIRST:]
+        self.said = []
+        monkeypatch.setattr(self.node._stream._notices, "_write", self.said.append)
+
+    def message(self, rows, index, **results):
+        """Make detections of (left, top, width, height, score)."""
+        made = self.vision.Detection2DArray(header=header(index))
+        for x, y, width, height, score in rows:
+            one = self.vision.Detection2D()
+            one.bbox.center.position.x = float(x + width / 2)
+            one.bbox.center.position.y = float(y + height / 2)
+            one.bbox.size_x, one.bbox.size_y = float(width), float(height)
+            result = self.vision.ObjectHypothesisWithPose()
+            result.hypothesis.class_id, result.hypothesis.score = "car", score
+            one.results = [result]
+            made.detections.append(one)
+        return made
+
+    def truth(self, index):
+        return [(*box, 0.9) for box in boxes(FIRST + index)]
+
+    def send(self, index, rows=None):
+        """Publish an image and then its detections; without `rows` the true ones."""
+        self.camera.publish(image_message(header(index), self.frames[index]))
+        self.detector.publish(self.message(self.truth(index) if rows is None else rows, index))
+
+    def answered(self, index, rows=None):
+        """Send, and wait for the answer."""
+        before = len(self.modes)
+        self.send(index, rows)
+        self.bench.wait_for(lambda: len(self.modes) > before)
+        assert len(self.modes) == before + 1
+        assert self.modes[-1].header == header(index)
+        return values_of(self.modes[-1])
+
+    def follow(self, count=8):
+        """Give true detections until both vehicles are followed."""
+        for index in range(count):
+            self.answered(index)
+        assert self.vehicles.summary()["vehicles TRACKING"] == 2
+        return {one.identity for one in self.vehicles.estimates}
+
+
+@pytest.fixture
+def rig(bench, vision, monkeypatch):
+    return DetectorRig(bench, vision, monkeypatch)
+
+
+def test_vehicles_are_followed_as_offline_with_the_same_detections(rig):
+    tracker = TrafficSession(TrafficTracker(TRAFFIC.parameters()))
+    out = rig.bench.collect(rig.vision.Detection2DArray, f"{NODE}/detections", QUEUE)
+    for index in range(COUNT):
+        rig.answered(index)
+        rows = rig.truth(index)
+        found = Detections.make([row[:4] for row in rows], [row[4] for row in rows], ["car"] * 2)
+        expected = tracker.feed(rig.frames[index], 10**9 + index * PERIOD_NS, found)
+        assert rig.vehicles.estimates == expected
+    assert [one.identity for one in expected] == [1, 2]
+    rig.bench.wait_for(lambda: len(out) == COUNT)
+    assert [one.id for one in out[-1].detections] == ["1", "2"]
+    assert out[-1].header == header(COUNT - 1)
+    assert out[-1].detections[0].bbox.size_x == expected[0].box.width
+    assert out[-1].detections[0].results[0].hypothesis.class_id == "car"
+    assert rig.said == []
+
+
+def test_an_image_waits_for_its_detections_and_no_other(rig):
+    rig.camera.publish(image_message(header(0), rig.frames[0]))
+    rig.camera.publish(image_message(header(1), rig.frames[1]))
+    stream = rig.node._stream
+    rig.bench.wait_for(lambda: stream._waiting is not None and len(stream._waiting) == 2)
+    rig.detector.publish(rig.message(rig.truth(5), 5))
+    rig.bench.wait_for(lambda: stream._waiting._early)
+    assert rig.modes == []
+    rig.detector.publish(rig.message(rig.truth(0), 0))
+    rig.bench.wait_for(lambda: rig.modes)
+    assert [one.header for one in rig.modes] == [header(0)]
+    rig.detector.publish(rig.message([], 1))
+    rig.bench.wait_for(lambda: len(rig.modes) == 2)
+    assert rig.node._stream._waiting.matched == 2
+
+
+def test_a_detector_that_stops_is_told_once_and_vehicles_stay(bench, vision, monkeypatch):
+    rig = DetectorRig(bench, vision, monkeypatch, detector__max_wait=0.05)
+    waiting = rig.node._stream._waiting
+    clock, waiting._clock = waiting._clock, lambda: 0.0  # while it answers, nothing is too late
+    before = rig.follow()
+    waiting._clock = clock
+    for index in range(8, 12):
+        rig.show(image_message(header(index), rig.frames[index]))
+    assert {one.identity for one in rig.vehicles.estimates} == before
+    assert waiting.missed == 4
+    assert len(rig.said) == 1
+    assert "1 images waited in vain for detections" in rig.said[0]
+
+
+def test_detections_whose_stamps_never_match_are_told_once(rig):
+    before = rig.follow()
+    waiting = rig.node._stream._waiting
+    for count in range(1, 111):
+        rig.detector.publish(rig.message([], 1000 + count))
+        rig.bench.wait_for(lambda: len(waiting._early) + waiting.unmatched == count)  # noqa: B023
+    assert waiting.unmatched == 10
+    rig.answered(8)
+    assert len(waiting._early) <= 100
+    assert [one for one in rig.said if "the stamp of no image" in one] == rig.said
+    assert len(rig.said) == 1
+    assert {one.identity for one in rig.vehicles.estimates} == before
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        (math.nan, 10, 20, 10, 0.9),
+        (10, 10, math.inf, 10, 0.9),
+        (10, 10, 20, 10, math.nan),
+        (40, 40, -20, -10, 0.9),
+        (10, 10, 0, 0, 0.9),
+        (5000, 10, 20, 10, 0.9),
+        (-1e300, 10, 1e300, 10, 0.9),
+    ],
+    ids=["nan", "infinite", "nan score", "negative", "empty", "outside", "huge"],
+)
+def test_a_detection_that_cannot_be_used_is_told_once_and_left_out(rig, bad):
+    before = rig.follow()
+    for index in range(8, 12):
+        values = rig.answered(index, [*rig.truth(index), bad])
+        assert values["vehicles TRACKING"] == "2"
+    assert {one.identity for one in rig.vehicles.estimates} == before
+    assert len(rig.said) == 1
+    assert rig.said[0].startswith("1 of 3 detections of an image cannot be used: not finite")
+
+
+def test_duplicates_make_no_second_vehicle(rig):
+    before = rig.follow()
+    for index in range(8, 12):
+        rig.answered(index, rig.truth(index) * 5)
+    assert {one.identity for one in rig.vehicles.estimates} == before
+    assert len(rig.said) == 1
+    assert rig.said[0].startswith("8 of 10 detections of an image cannot be used")
+
+
+@pytest.mark.parametrize(
+    ("count", "words"),
+    [(1500, "1502 detections, of which the 1000 of the highest"), (10_000, "MB that are read")],
+)
+def test_a_flood_of_detections_is_told_once_and_the_node_lives(rig, count, words):
+    before = rig.follow()
+    flood = [(x % 150, x // 150, 3, 3, 0.01) for x in range(count)]
+    for index in range(8, 11):
+        rig.answered(index, [*rig.truth(index), *flood])
+    assert len([one for one in rig.said if words in one]) == 1
+    assert before <= {one.identity for one in rig.vehicles.estimates}
+    rig.answered(11)
+    assert before <= {one.identity for one in rig.vehicles.estimates}
+
+
+def test_a_detector_may_answer_every_third_image(bench, vision, monkeypatch):
+    rig = DetectorRig(bench, vision, monkeypatch, detector__every=3)
+    tracker = TrafficSession(TrafficTracker(TRAFFIC.parameters()))
+    for index in range(COUNT - 1):
+        found = None
+        if index % 3:
+            rig.show(image_message(header(index), rig.frames[index]))
+        else:
+            rig.answered(index)
+            rows = rig.truth(index)
+            found = Detections.make([row[:4] for row in rows], [0.9, 0.9], ["car", "car"])
+        expected = tracker.feed(rig.frames[index], 10**9 + index * PERIOD_NS, found)
+        assert rig.vehicles.estimates == expected
+    waiting = rig.node._stream._waiting
+    assert (waiting.matched, waiting.missed) == (5, 0)
+    assert rig.said == []
+
+
+def test_turned_boxes_and_those_without_a_class_are_read(rig):
+    made = rig.message([(10, 20, 30, 10, 0.5), (60, 70, 20, 10, 0.4)], 0)
+    made.detections[0].bbox.center.theta = math.pi / 2
+    made.detections[1].results = []
+    rig.camera.publish(image_message(header(0), rig.frames[0]))
+    rig.detector.publish(made)
+    rig.bench.wait_for(lambda: rig.modes)
+    first, second = rig.vehicles.estimates
+    assert (first.box.x, first.box.y) == pytest.approx((20, 10))
+    assert (first.box.width, first.box.height) == pytest.approx((10, 30))
+    assert (first.label, second.label, second.score) == ("car", "", 1.0)
