@@ -26,7 +26,7 @@ from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 FRAMES = 100
 
 
-def scene(hidden=(), size=(400, 100)):
+def scene(hidden=(), size=(600, 100)):
     """One vehicle that drives to the right, totally hidden in these frames."""
     rows = [[f, 7, 4.0 * (f - 1), 40, 20, 12] for f in range(1, FRAMES + 1)]
     return TrafficSequence(
@@ -91,8 +91,12 @@ def test_crossings_of_the_middle_are_counted_once_per_identity():
     assert counts(scene(), both) == (2, 1)
 
 
+def test_who_crosses_in_the_first_two_seconds_is_not_counted():
+    assert counts(scene(size=(400, 100)), tracks((1, 100, 1))) == (0, 0)
+
+
 def test_traffic_that_goes_down_is_counted_at_a_level_line():
-    sideways = scene(size=(100, 400))
+    sideways = scene(size=(100, 600))
     turned = sideways.truth[:, [0, 1, 3, 2, 5, 4]]
     down = TrafficSequence(
         **{

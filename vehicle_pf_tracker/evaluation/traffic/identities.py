@@ -36,6 +36,8 @@ _GLIMPSE = 5
 """Frames in sight below which two occlusions are one."""
 _LEAST = 10
 """Frames in sight before an occlusion from which a tracker can know the vehicle."""
+_SETTLED_NS = 2 * 10**9
+"""Crossings before are not counted: who is on the line when a clip begins has no past, ns."""
 
 
 def kept_identities(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]:
@@ -101,7 +103,7 @@ def _followed(sequence: TrafficSequence, tracks: Array) -> dict[tuple[int, int],
 
 
 def counts(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]:
-    """Count crossings of a line through the middle of the image, across the traffic.
+    """Count crossings of a line through the middle of the image, after the first two seconds.
 
     Returns
     -------
@@ -128,11 +130,13 @@ def _crossings(sequence: TrafficSequence, tracks: Array, line: CountingLine) -> 
     counter = Counter(CountingPlan(lines=(line,)))
     order = np.argsort(tracks[:, 1], kind="stable")
     rows = tracks[order]
+    total = 0
     for frame in range(1, sequence.frame_count + 1):
         now = rows[rows[:, 0] == frame]
         estimates = [_estimate(row) for row in now.tolist()]
-        counter.update(estimates, round(frame * 1e9 / sequence.frame_rate))
-    return sum(counter.totals.values())
+        crossings = counter.update(estimates, round(frame * 1e9 / sequence.frame_rate))
+        total += sum(one.stamp_ns >= _SETTLED_NS for one in crossings)
+    return total
 
 
 def _estimate(row: list[float]) -> TrackEstimate:
