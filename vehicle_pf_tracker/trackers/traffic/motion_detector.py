@@ -44,12 +44,22 @@ _VEHICLE = 255
 """Value that OpenCV marks what moves by; shadows have another."""
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (7, 7))
 """Holes and gaps up to this size are closed: windscreens show the sky."""
+_HELD = (TrackMode.TRACKING, TrackMode.TENTATIVE)
+"""Modes of tracks where the background is not learnt. New ones count: a vehicle that nobody knows
+yet would melt in before it is confirmed."""
+_SEEDS = 2**31
+"""Number of seeds that OpenCV takes."""
 _ALL_MOVES = 0.5
 """Share of the image that moves from which on it is the camera that does, or the light."""
 
 
 class MotionDetector:
     """Model of the background, whose difference to the image shows vehicles.
+
+    Parameters
+    ----------
+    seed : int
+        Seed of the choice of samples that the background is made of.
 
     Attributes
     ----------
@@ -61,7 +71,8 @@ class MotionDetector:
         the background is learnt from.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, seed: int = 0) -> None:
+        self._seed = seed
         self.disturbed = False
         self.is_blind = False
         self._blobs = BlobReader()
@@ -91,12 +102,12 @@ class MotionDetector:
         self.disturbed = False
         self.is_blind = self._count <= _WARM_UP
         if self.is_blind:
-            self._model.apply(small, None, -1)
+            self._apply(small, -1)
             return Detections.none()
-        mask = np.asarray(self._model.apply(small, None, 0), np.uint8)
+        mask = self._apply(small, 0)
         followed = [one for one in tracks if one.mode in (TrackMode.TRACKING, TrackMode.OCCLUDED)]
         if self._count % _LEARNT_EVERY == 0:
-            self._learn(small, [one for one in followed if one.mode is TrackMode.TRACKING], zoom)
+            self._learn(small, [one for one in tracks if one.mode in _HELD], zoom)
         moving = np.where(mask == _VEHICLE, mask, 0).astype(np.uint8)
         if np.count_nonzero(moving) > _ALL_MOVES * moving.size:
             self.disturbed = self.is_blind = True
@@ -126,7 +137,13 @@ class MotionDetector:
                 columns = slice(max(int(left), 0), min(int(right) + 1, width))
                 rows = slice(max(int(top), 0), min(int(bottom) + 1, height))
                 image[rows, columns] = known[rows, columns]
-        self._model.apply(image, None, _LEARNT_EVERY / _HISTORY)
+        self._apply(image, _LEARNT_EVERY / _HISTORY)
+
+    def _apply(self, image: npt.NDArray[np.uint8], rate: float) -> npt.NDArray[np.uint8]:
+        # OpenCV draws from one generator per process; seeded here, the same images give the same
+        # masks whatever else the process does.
+        cv2.setRNGSeed((self._seed + self._count) % _SEEDS)
+        return np.asarray(self._model.apply(image, None, rate), np.uint8)
 
 
 def _reduced(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:
