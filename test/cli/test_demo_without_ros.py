@@ -51,6 +51,7 @@ def test_everything_else_is_done_and_said(tmp_path, without_ros, short, capsys):
     note = err.splitlines()[0]
     assert "no Python module rclpy" in note
     assert "the nodes are left out and everything is tracked offline" in note
+    assert ". apf, pf offline, and 1 more seeds of each" in out
     assert "lock-step" not in out
     assert "same numbers offline" not in out
     assert f"the picture is {tmp_path / 'demo.png'}" in out

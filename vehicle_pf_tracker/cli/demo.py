@@ -84,7 +84,7 @@ def run(args: argparse.Namespace) -> int:
         nodes = ", ".join(f"{name}_tracker" for name in CONTESTANTS)
         _announce(steps, f"the nodes {nodes}, fed in lock-step through ROS")
         answers = track_through_ros(recording)
-    _announce(steps, f"the same offline, and {args.seeds} more seeds of each")
+    _announce(steps, f"{', '.join(CONTESTANTS)} offline, and {args.seeds} more seeds of each")
     runs = track_offline(recording, args.seeds)
     rows = answers or {name: of_seed[0].rows for name, of_seed in runs.items()}
     same = {name: _numbers(rows[name]) == _numbers(runs[name][0].rows) for name in rows}
