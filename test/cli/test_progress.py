@@ -22,13 +22,15 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_plain_lines_come_every_five_seconds():
+def test_plain_lines_come_after_two_seconds_and_every_five():
     now, out = [0.0], io.StringIO()
     with counting("tracked", out, lambda: now[0]) as progress:
         for done in range(1, 13):
             now[0] += 1.0
             progress(done, 12)
-    assert out.getvalue() == "tracked 5 of 12 frames\ntracked 10 of 12 frames\n"
+    assert out.getvalue() == (
+        "tracked 2 of 12 frames\ntracked 7 of 12 frames\ntracked 12 of 12 frames\n"
+    )
 
 
 def test_where_the_total_is_unknown_the_line_says_less():

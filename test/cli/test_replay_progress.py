@@ -40,21 +40,22 @@ def lines(*moments):
     return stream.getvalue().splitlines()
 
 
-def test_a_line_every_five_seconds_from_the_first_frame_on():
+def test_lines_come_two_seconds_after_the_first_frame_and_every_five():
     moments = [(100.0 + second, 1 + 10 * second, float(second)) for second in range(13)]
     assert lines(*moments) == [
-        " 25%, 51 frames, 10.0 frames/s, 15 s left",
-        " 50%, 101 frames, 10.0 frames/s, 10 s left",
+        " 10%, 21 frames, 10.0 frames/s, 18 s left",
+        " 35%, 71 frames, 10.0 frames/s, 13 s left",
+        " 60%, 121 frames, 10.0 frames/s, 8 s left",
     ]
 
 
 def test_the_time_left_is_that_of_the_present_pass_of_a_loop():
-    moments = [(0.0, 1, 0.0), (4.0, 41, 20.0), (4.1, 42, 0.0), (6.1, 62, 10.0)]
-    assert lines(*moments) == [" 50%, 62 frames, 10.0 frames/s, 2 s left"]
+    moments = [(0.0, 1, 0.0), (1.5, 16, 20.0), (1.6, 17, 0.0), (3.6, 37, 10.0)]
+    assert lines(*moments) == [" 50%, 37 frames, 10.0 frames/s, 2 s left"]
 
 
 def test_quick_replays_say_nothing():
-    assert lines((0.0, 1, 0.0), (4.9, 50, 20.0)) == []
+    assert lines((0.0, 1, 0.0), (1.9, 20, 20.0)) == []
 
 
 def test_a_recording_of_one_moment_has_no_end_to_wait_for():

@@ -23,7 +23,7 @@ from pathlib import Path
 from vehicle_pf_tracker.cli import report, stress, system_options, traffic_evaluation
 from vehicle_pf_tracker.cli.console import print_table, tell_error, tell_notices
 from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers, natural, positive
-from vehicle_pf_tracker.cli.work_progress import telling
+from vehicle_pf_tracker.cli.work_progress import stages, telling
 from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
 from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
@@ -131,7 +131,8 @@ def _tell(notice: str) -> None:
 
 def _plan(args: argparse.Namespace) -> Plan:
     systems, notes = system_options.chosen(args)
-    recordings = describe(find_recordings(args.sources), args.topic, args.max_diff)
+    with stages("evaluate") as on_stage:
+        recordings = describe(find_recordings(args.sources), args.topic, args.max_diff, on_stage)
     tell_notices(notes)
     return Plan(
         dict(recordings),

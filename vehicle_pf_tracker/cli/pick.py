@@ -23,6 +23,7 @@ from typing import TypeVar
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.picking import BOXES, POINTS, ask
+from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.cli.road_pairs import write_pairs
 from vehicle_pf_tracker.cli.shared_options import positive
 from vehicle_pf_tracker.cli.targets import TargetOption, write_targets
@@ -64,7 +65,9 @@ def run(args: argparse.Namespace) -> int:
     """Serve the page until the user is done, and print or write the targets."""
     source = open_source(args.source, topic=args.topic, fps=args.fps)
     if args.grid is not None:
-        write_picture(args.grid, draw_pixel_grid(frame_at(source, args.frame)))
+        with counting("read") as progress:
+            frame = frame_at(source, args.frame, progress)
+        write_picture(args.grid, draw_pixel_grid(frame))
         print(f"frame {args.frame} with a grid is in {args.grid}")
         return 0
     if args.output is not None:

@@ -26,7 +26,29 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 OnProgress: TypeAlias = Callable[[int, int | None], None]
-_LINE_SECONDS = 5.0
+_FIRST_SECONDS, _LINE_SECONDS = 2.0, 5.0
+"""Seconds before the first plain line and between two: quick work prints none, and long work does
+not fill a log."""
+
+
+class LineClock:
+    """Tells when a plain line of progress is due.
+
+    Parameters
+    ----------
+    now : float
+        Time at which the work begins, s.
+    """
+
+    def __init__(self, now: float) -> None:
+        self._next = now + _FIRST_SECONDS
+
+    def is_due(self, now: float) -> bool:
+        """Return whether a line is due; the next one is later then."""
+        if now < self._next:
+            return False
+        self._next = now + _LINE_SECONDS
+        return True
 
 
 @contextmanager
@@ -55,18 +77,14 @@ def counting(
 
 
 class _Lines:
-    """A line about every five seconds, so that quick work prints none."""
-
     def __init__(self, verb: str, stream: TextIO, clock: Callable[[], float]) -> None:
         self._verb = verb
         self._stream = stream
         self._clock = clock
-        self._said = clock()
+        self._due = LineClock(clock())
 
     def __call__(self, done: int, total: int | None) -> None:
-        now = self._clock()
-        if now - self._said < _LINE_SECONDS:
+        if not self._due.is_due(self._clock()):
             return
-        self._said = now
         of_all = "" if total is None else f" of {total}"
         print(f"{self._verb} {done}{of_all} frames", file=self._stream, flush=True)

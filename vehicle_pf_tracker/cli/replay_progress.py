@@ -25,10 +25,10 @@ from typing import TYPE_CHECKING, TextIO
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from vehicle_pf_tracker.cli.progress import LineClock
+
 if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay.replay_options import Progress as ReplayProgress
-
-_LINE_SECONDS = 5.0
 
 
 @contextmanager
@@ -79,23 +79,22 @@ class _Bar:
 
 
 class _Lines:
-    """A line about every five seconds."""
-
     def __init__(self, stream: TextIO, clock: Callable[[], float]) -> None:
         self._stream = stream
         self._clock = clock
-        self._began = self._pass_began = self._said = clock()
+        self._began = self._pass_began = clock()
+        self._due = LineClock(self._began)
         self._position = 0.0
 
     def __call__(self, progress: ReplayProgress) -> None:
         now = self._clock()
         if progress.frames == 1:
-            self._began = self._pass_began = self._said = now
+            self._began = self._pass_began = now
+            self._due = LineClock(now)
         if progress.position < self._position:  # a loop begins again
             self._pass_began = now
         self._position = progress.position
-        if now - self._said >= _LINE_SECONDS:
-            self._said = now
+        if self._due.is_due(now):
             print(self._line(progress, now), file=self._stream, flush=True)
 
     def _line(self, progress: ReplayProgress, now: float) -> str:

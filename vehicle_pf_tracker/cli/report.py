@@ -20,6 +20,7 @@ import argparse
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import tell_notices
+from vehicle_pf_tracker.cli.work_progress import stages
 
 FIGURE_FORMATS = ("pdf", "svg", "png")
 """Those of `paper_figures.FORMATS`, which loads matplotlib."""
@@ -79,5 +80,8 @@ def write(folder: Path, args: argparse.Namespace) -> None:
     options = ReportOptions(
         args.images, args.video, args.recordings, args.trajectories, args.figures
     )
-    page, *_ = write_report(folder, options, lambda sentence: tell_notices([sentence]))
+    with stages("report") as on_stage:
+        page, *_ = write_report(
+            folder, options, lambda sentence: tell_notices([sentence]), on_stage
+        )
     print(f"the report is {page}")

@@ -24,6 +24,7 @@ import numpy as np
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.picking import POINTS, ask
+from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.cli.road_pairs import FORM, read_pairs
 from vehicle_pf_tracker.cli.shared_options import positive
 from vehicle_pf_tracker.evaluation.output_files import write_picture, write_text
@@ -72,7 +73,8 @@ def run(args: argparse.Namespace) -> int:
     """Fit, print the residuals, and write parameters and picture."""
     pairs = (*parse_pairs(";".join(args.pairs)), *(read_pairs(args.file) if args.file else ()))
     source = open_source(args.source, topic=args.topic)
-    frame = frame_at(source, args.frame)
+    with counting("read") as progress:
+        frame = frame_at(source, args.frame, progress)
     if not pairs and args.grid is not None and args.output is None:
         write_picture(args.grid, draw_pixel_grid(frame))
         print(f"{args.grid}: read off pixels of points whose place on the road you know")

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.cli import parameter_options, system_options
 from vehicle_pf_tracker.cli.console import print_table, tell_notices
 from vehicle_pf_tracker.cli.parameter_sets import settable
 from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers, natural, positive
-from vehicle_pf_tracker.cli.work_progress import telling
+from vehicle_pf_tracker.cli.work_progress import stages, telling
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
@@ -153,7 +153,8 @@ def _search(
     space = search_space(variant, dict(base.parameters), words)
     tuned = find_recordings(args.sources)
     held_out = find_recordings(args.held_out)
-    recordings = describe([*tuned, *held_out], args.topic, args.max_diff)
+    with stages("tune") as on_stage:
+        recordings = describe([*tuned, *held_out], args.topic, args.max_diff, on_stage)
     sources = [source for source, _ in recordings]
     seen = {source.digest for source in sources[: len(tuned)]}
     for source in sources[len(tuned) :]:

@@ -26,9 +26,9 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
 from rich.progress import Progress as Bar
 
+from vehicle_pf_tracker.cli.progress import LineClock
 from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress
 
-_LINE_SECONDS = 5.0
 _SHOWN = 4
 
 
@@ -68,20 +68,37 @@ def telling(
         yield show
 
 
-class _Lines:
-    """A line about every five seconds, so that quick work prints none."""
+@contextmanager
+def stages(
+    name: str, stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
+) -> Iterator[Callable[[str], None]]:
+    """Return a function that shows the present stage of the work `name`, a few words."""
+    stream = stream or sys.stderr
+    if stream.isatty():
+        with Console(file=stream).status(name) as status:
+            yield lambda words: status.update(f"{name}: {words}")
+        return
+    due = LineClock(clock())
 
+    def show(words: str) -> None:
+        if due.is_due(clock()):
+            print(f"{name}: {words}", file=stream, flush=True)
+
+    yield show
+
+
+class _Lines:
     def __init__(self, name: str, stream: TextIO, clock: Callable[[], float]) -> None:
         self._name = name
         self._stream = stream
         self._clock = clock
-        self._began = self._said = clock()
+        self._began = clock()
+        self._due = LineClock(self._began)
 
     def __call__(self, progress: Progress) -> None:
         now = self._clock()
-        if now - self._said < _LINE_SECONDS:
+        if not self._due.is_due(now):
             return
-        self._said = now
         running = f"; running {_running(progress)}" if progress.running else ""
         left = _left(progress, now - self._began)
         print(

@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
@@ -124,8 +124,10 @@ def open_source(
     return FootageSource(footage)
 
 
-def frame_at(source: Source, number: int) -> Frame:
-    """Return frame `number` of a source, from 1.
+def frame_at(
+    source: Source, number: int, progress: Callable[[int, int], object] = lambda *_: None
+) -> Frame:
+    """Return frame `number` of a source, from 1; `progress` takes the frames read, and `number`.
 
     Raises
     ------
@@ -134,6 +136,7 @@ def frame_at(source: Source, number: int) -> Frame:
     """
     count = 0
     for count, found in enumerate(source.frames(), start=1):
+        progress(count, number)
         if count == number:
             if found.frame is None:
                 raise InputError(f"frame {number} cannot be read")

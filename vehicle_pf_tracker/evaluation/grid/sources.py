@@ -232,9 +232,14 @@ def footage(source: Source) -> Footage:
 
 
 def describe(
-    locations: Sequence[str], topic: str | None, max_diff: float
+    locations: Sequence[str],
+    topic: str | None,
+    max_diff: float,
+    on_stage: Callable[[str], object] = lambda _: None,
 ) -> list[tuple[Source, dict[int, Truth]]]:
     """Describe recordings, and read their truth by the number of its frame.
+
+    `on_stage` takes a few words before each.
 
     Raises
     ------
@@ -242,7 +247,11 @@ def describe(
         If one cannot be read or has no truth, or two have one name.
     """
     names = _names(locations)
-    return [_describe(location, names[location], topic, max_diff) for location in locations]
+    described = []
+    for location in locations:
+        on_stage(f"reading {location}")
+        described.append(_describe(location, names[location], topic, max_diff))
+    return described
 
 
 def _describe(

@@ -86,15 +86,19 @@ ESTIMATE_RECORDINGS = "estimates"
 
 
 def write_estimate_recordings(
-    evaluation: ScoredEvaluation, notify: Callable[[str], object]
+    evaluation: ScoredEvaluation,
+    notify: Callable[[str], object],
+    on_stage: Callable[[str], object] = lambda _: None,
 ) -> list[Path]:
     """Write a recording for each of the evaluation's, and return their folders.
 
     The estimates are on ``/<system>/seed_<n>/position``, ``box``, ``mode`` and ``annotations``.
-    `notify` takes a sentence for each recording that could not be made.
+    `notify` takes a sentence for each recording that could not be made, and `on_stage` a few words
+    before each.
     """
     written = []
     for entry in evaluation.recordings:
+        on_stage(f"the recording {entry.name} with estimates")
         path = evaluation.folder.path / ESTIMATE_RECORDINGS / entry.name
         try:
             recording = Recording(local_copy(entry.path), entry.topic)

@@ -40,7 +40,10 @@ _DEFAULT_RATE = 25.0
 
 
 def write_videos(
-    evaluation: ScoredEvaluation, slots: Mapping[str, int], notify: Callable[[str], object]
+    evaluation: ScoredEvaluation,
+    slots: Mapping[str, int],
+    notify: Callable[[str], object],
+    on_stage: Callable[[str], object] = lambda _: None,
 ) -> list[Path]:
     """Write a video of each recording, and return the files.
 
@@ -52,11 +55,14 @@ def write_videos(
         Systems to show, with the numbers of their styles.
     notify : callable
         Called with a sentence for each video that could not be made.
+    on_stage : callable
+        Called with a few words before each video.
     """
     if not has_encoder():
         notify(NO_ENCODER)
     written = []
     for entry in evaluation.recordings:
+        on_stage(f"the video of {entry.name}")
         path = evaluation.folder.path / FOLDER / f"{entry.name}.mp4"
         runs = {label: run for label in slots if (run := typical(evaluation.of(entry.name, label)))}
         try:

@@ -251,6 +251,7 @@ def write_report(
     folder: Path,
     options: ReportOptions | None = None,
     notify: Callable[[str], object] = lambda _: None,
+    on_stage: Callable[[str], object] = lambda _: None,
 ) -> list[Path]:
     """Write the report of the evaluation in `folder` there; returns what was written, page first.
 
@@ -264,6 +265,8 @@ def write_report(
         Parts to write; None writes the page and the summaries.
     notify : callable
         Called with a sentence for each file that could not be made.
+    on_stage : callable
+        Called with a few words when a part is begun.
 
     Raises
     ------
@@ -271,19 +274,22 @@ def write_report(
         If it is not an evaluation folder, or cannot be written to.
     """
     options = options or ReportOptions()
+    on_stage("scoring the runs")
     evaluation = score_folder(EvaluationFolder(folder))
     aggregates = aggregate(evaluation)
     page = folder / "report.html"
+    on_stage("drawing the page")
     write_text(page, make_page(evaluation, aggregates, images=options.images))
     written = [page, *_write_summaries(folder, evaluation, aggregates)]
     if options.figures:
+        on_stage("drawing the figures")
         written += write_figures(evaluation, aggregates, styled(aggregates), options.figures)
     if options.trajectories:
         written += write_trajectories(evaluation)
     if options.recordings:
-        written += write_estimate_recordings(evaluation, notify)
+        written += write_estimate_recordings(evaluation, notify, on_stage)
     if options.video:
-        written += write_videos(evaluation, styled(aggregates), notify)
+        written += write_videos(evaluation, styled(aggregates), notify, on_stage)
     return written
 
 
