@@ -42,9 +42,10 @@ def clip(tmp_path_factory):
 
 
 def has_begun(folder):
-    """Return whether a recording has its first chunk, or a video its file."""
+    """Return whether a recording has its first chunk, a folder an image, or a video its file."""
     recordings = [path.stat().st_size for path in folder.glob(".*.partial/*.mcap")]
-    return any(recordings) or any(folder.glob(".*.mp4"))
+    images = folder.glob(".*.partial/img1/*.jpg")
+    return any(recordings) or any(images) or any(folder.glob(".*.mp4"))
 
 
 def end_in_the_middle(folder, number, *words):
@@ -67,6 +68,10 @@ def end_in_the_middle(folder, number, *words):
 @pytest.mark.parametrize("number", ENDINGS)
 def test_a_scene_that_is_not_done_leaves_nothing(tmp_path, number):
     assert end_in_the_middle(tmp_path, number, "synth", "highway", "rec") == []
+
+
+def test_a_folder_of_many_vehicles_that_is_not_done_leaves_nothing(tmp_path):
+    assert end_in_the_middle(tmp_path, signal.SIGTERM, "synth", "traffic-pair", "mot") == []
 
 
 def test_a_video_that_is_not_done_leaves_nothing(tmp_path):

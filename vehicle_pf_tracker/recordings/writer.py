@@ -16,8 +16,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -29,6 +27,7 @@ from mcap.writer import CompressionType, Writer
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.output_folder import OutputFolder
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.bag_folder import (
@@ -49,48 +48,6 @@ def output_errors(folder: Path) -> Iterator[None]:
     except OSError as error:
         reason = error.strerror or str(error)
         raise InputError(f"cannot write the recording {folder}: {reason}") from error
-
-
-class OutputFolder:
-    """Collects files in a hidden folder beside `target`, which takes its place at the end.
-
-    Parameters
-    ----------
-    target : Path
-        The folder to make.
-    overwrite : bool
-        Replace a recording that is there. Anything else than a recording is never replaced.
-
-    Raises
-    ------
-    InputError
-        If `target` is a file or holds files that may not be replaced, or cannot be written.
-    """
-
-    def __init__(self, target: Path, overwrite: bool = False) -> None:
-        self.target = target.expanduser().resolve()
-        self.partial = self.target.parent / f".{self.target.name}.{os.getpid()}.partial"
-        with output_errors(target):
-            _check_replaceable(self.target, overwrite)
-            self.partial.mkdir(parents=True)
-
-    def publish(self) -> None:
-        """Put the finished folder in its place; a former one goes when it is there."""
-        former = self.partial.with_suffix(".former")
-        with output_errors(self.target):
-            try:
-                if self.target.exists():
-                    self.target.rename(former)
-                self.partial.rename(self.target)
-            except BaseException:  # a signal too
-                if former.exists() and not self.target.exists():
-                    former.rename(self.target)
-                raise
-            shutil.rmtree(former, ignore_errors=True)
-
-    def discard(self) -> None:
-        """Remove what was collected."""
-        shutil.rmtree(self.partial, ignore_errors=True)
 
 
 def _check_replaceable(target: Path, overwrite: bool) -> None:
@@ -151,7 +108,9 @@ class RecordingWriter:
             names = ", ".join(COMPRESSIONS)
             raise InputError(f"the compression {compression!r} is unknown; choose from {names}")
         self.folder = Path(folder)
-        self._output = OutputFolder(self.folder, overwrite)
+        with output_errors(self.folder):
+            _check_replaceable(self.folder.expanduser().resolve(), overwrite)
+            self._output = OutputFolder(self.folder)
         self._file_name = f"{self._output.target.name}_0.mcap"
         self._channels: dict[str, _Channel] = {}
         self._schemas: dict[str, int] = {}
@@ -253,4 +212,5 @@ class RecordingWriter:
             self._stream.close()
             text = metadata_yaml(information)
             (self._output.partial / "metadata.yaml").write_text(text, encoding="utf-8")
-        self._output.publish()
+        with output_errors(self._output.target):
+            self._output.publish()

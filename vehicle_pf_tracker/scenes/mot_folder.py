@@ -24,6 +24,7 @@ import cv2
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.output_folder import whole_folder
 from vehicle_pf_tracker.scenes.simulated_detectors import SIMULATED_DETECTORS, detect
 from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, VehicleTruth
 
@@ -40,6 +41,8 @@ def write_mot_folder(
     progress: Callable[[int, int], None] = lambda number, total: None,
 ) -> None:
     """Render `scene` with its truth and all `SIMULATED_DETECTORS` into `folder`.
+
+    The folder appears when it is whole.
 
     Parameters
     ----------
@@ -60,14 +63,16 @@ def write_mot_folder(
     try:
         if folder.exists() and any(folder.iterdir()):
             raise InputError(f"{folder} is not empty; choose another folder")
-        for name in ("img1", "gt", "det"):
-            (folder / name).mkdir(parents=True, exist_ok=True)
-        truths = []
-        for number, (frame, truth) in enumerate(scene.frames(), start=1):
-            _write_image(folder / "img1" / f"{number:06d}.jpg", frame)
-            truths.append(truth)
-            progress(number, scene.frame_count)
-        _write_texts(scene, truths, folder, seed)
+        with whole_folder(folder) as partial:
+            for name in ("img1", "gt", "det"):
+                (partial / name).mkdir()
+            truths = []
+            for number, (frame, truth) in enumerate(scene.frames(), start=1):
+                _write_image(partial / "img1" / f"{number:06d}.jpg", frame)
+                truths.append(truth)
+                progress(number, scene.frame_count)
+            (partial / "seqinfo.ini").write_text(_information(scene, folder.resolve().name))
+            _write_tables(scene, truths, partial, seed)
     except OSError as error:
         raise InputError(f"cannot write {folder}: {error.strerror}") from error
 
@@ -79,14 +84,17 @@ def _write_image(path: Path, frame: Frame) -> None:
     path.write_bytes(data.tobytes())
 
 
-def _write_texts(
-    scene: TrafficScene, truths: Sequence[Sequence[VehicleTruth]], folder: Path, seed: int
-) -> None:
-    (folder / "seqinfo.ini").write_text(
-        f"[Sequence]\nname={folder.name}\nimDir=img1\nframeRate={scene.frame_rate:g}\n"
+def _information(scene: TrafficScene, name: str) -> str:
+    return (
+        f"[Sequence]\nname={name}\nimDir=img1\nframeRate={scene.frame_rate:g}\n"
         f"seqLength={scene.frame_count}\nimWidth={scene.width}\nimHeight={scene.height}\n"
         "imExt=.jpg\n"
     )
+
+
+def _write_tables(
+    scene: TrafficScene, truths: Sequence[Sequence[VehicleTruth]], folder: Path, seed: int
+) -> None:
     boxes = [(frame, one) for frame, now in enumerate(truths, start=1) for one in now]
     _write(folder / "gt" / "gt.txt", (truth_row(*one) for one in boxes if _is_judged(one[1])))
     _write(folder / "ignore.txt", (_ignored(*one) for one in boxes if not _is_judged(one[1])))
