@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 import argparse
-import importlib.util
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
@@ -48,6 +47,7 @@ from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.recordings.source import Source, open_source
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.detector_choice import detector_maker
 from vehicle_pf_tracker.trackers.traffic.detector_parameters import MODEL, MOTION, NONE, TOPIC
@@ -108,7 +108,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Follow all vehicles, write the results, and print a summary."""
-    _check_extra()
+    check_library()
     setup = _Setup.of(args)
     source = open_source(args.source, topic=args.topic, fps=args.fps)
     folder = _folder(args)
@@ -139,15 +139,6 @@ def run(args: argparse.Namespace) -> int:
     if args.video:
         print(f"the video is {args.video}")
     return stop.status if was_cut_short else 0
-
-
-def _check_extra() -> None:
-    """Raise at the start, not in the first frame, if the library of the association is missing."""
-    if importlib.util.find_spec("scipy") is None:
-        raise InputError(
-            "traffic needs the Python module scipy: install the extra [traffic], "
-            "pip install 'vehicle_pf_tracker[traffic]', or with apt python3-scipy"
-        )
 
 
 @dataclass(frozen=True, slots=True)

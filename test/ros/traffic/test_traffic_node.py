@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib.util import find_spec
 
 import cv2
@@ -437,6 +438,12 @@ def test_the_node_can_be_deactivated_and_cleaned_up(rig):
     rig.bench.publish_until(
         lambda: len(rig.modes) > 3, rig.camera, image_message(header(3), frames[0])
     )
+
+
+def test_without_scipy_the_extra_is_named(bench, monkeypatch):
+    monkeypatch.setitem(sys.modules, "scipy", None)
+    with pytest.raises(InputError, match="apt python3-scipy"):
+        TrafficRig(bench)
 
 
 @pytest.mark.skipif(find_spec("vision_msgs") is not None, reason="vision_msgs is installed")

@@ -28,6 +28,7 @@ from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.ros.traffic.selection import NONE, Selection
+from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.detector_choice import detector_maker
@@ -61,10 +62,11 @@ class Vehicles:
     Raises
     ------
     InputError
-        If the network, or the file of lines and zones, cannot be used.
+        If the network, or the file of lines and zones, cannot be used, or a library is missing.
     """
 
     def __init__(self, configuration: Configuration) -> None:
+        check_library()
         parameters = configuration.tracker
         self._configuration = configuration
         self.session = TrafficSession(

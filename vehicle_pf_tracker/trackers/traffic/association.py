@@ -21,9 +21,12 @@ in; and the difference in colour.
 
 from __future__ import annotations
 
+import importlib.util
+
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.errors import InputError
 
 GATE = 30.0
 """Largest cost of a pair: the 0.9999 quantile of chi-squared with four degrees of freedom is 23.5,
@@ -36,6 +39,21 @@ _MISSING = 12.0
 """Cost of all of the vehicle that the detection lacks."""
 _LEAST_PART = 0.15
 """Smallest share of the vehicle that a detection may show."""
+
+
+def check_library() -> None:
+    """Check at the start, not in the first frame, that the library of `assign` is there.
+
+    Raises
+    ------
+    InputError
+        If it is not.
+    """
+    if importlib.util.find_spec("scipy") is None:
+        raise InputError(
+            "traffic needs the Python module scipy: install the extra [traffic], "
+            "pip install 'vehicle_pf_tracker[traffic]', or with apt python3-scipy"
+        )
 
 
 def edge_costs(predicted: Array, deviations: Array, detected: Array) -> Array:
