@@ -366,6 +366,64 @@ def test_parameters_are_set_while_it_runs(rig):
     assert before & set(rig.said(COUNT - 1))
 
 
+def set_parameters(rig, **values):
+    """Set doubles, with `__` for the dot; returns the result."""
+    made = [
+        ParameterMessage(
+            name=name.replace("__", "."),
+            value=ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value)),
+        )
+        for name, value in values.items()
+    ]
+    request = SetParametersAtomically.Request(parameters=made)
+    name = f"{NODE}/set_parameters_atomically"
+    return rig.bench.call(SetParametersAtomically, name, request).result
+
+
+def test_a_target_set_by_parameters_is_followed_and_selected(rig):
+    frames = lanes(COUNT)
+    rig.play(frames[: WARM_UP + 8])
+    x, y, width, height = boxes(WARM_UP + 8)[0]
+    wrong = set_parameters(rig, target__x=5000, target__y=0, target__width=20, target__height=10)
+    assert not wrong.successful
+    assert "outside the image of 160x120 px" in wrong.reason
+    assert set_parameters(
+        rig, target__x=x, target__y=y, target__width=width, target__height=height
+    ).successful
+    answers = rig.play(frames[WARM_UP + 8 :], WARM_UP + 8)
+    assert [one.status[0].message for one in answers[:2]] == ["WAITING", "TRACKING"]
+    assert rig.vehicles.selection.identity == int(values_of(answers[1])["id"])
+
+
+def test_a_road_gives_counts_in_kmh_and_may_change_without_losing_them(bench, tmp_path):
+    path = tmp_path / "lines.yaml"
+    path.write_text("lines: {middle: {from: [80, 0], to: [80, 120]}}\n")
+    pairs = "0,0=0,0; 160,0=16,0; 160,120=16,12; 0,120=0,12"
+    rig = TrafficRig(bench, overrides(lines=str(path), road__pairs=pairs))
+    counts = bench.collect(DiagnosticArray, f"{NODE}/counts", 200)
+    count = WARM_UP + 45
+    rig.play(lanes(count))
+    bench.wait_for(lambda: len(counts) == count)
+    values = {pair.key: pair.value for pair in counts[-1].status[0].values}
+    speed = float(values["last speed (px/s)"]) / 10 * 3.6  # 10 px are a metre
+    assert float(values["last speed (km/h)"]) == pytest.approx(speed, rel=0.01)
+    totals = dict(rig.vehicles.counter.totals)
+    before = rig.vehicles.counter
+    assert set_parameters(rig, road__margin=1.0).successful
+    assert rig.vehicles.counter is not before
+    assert dict(rig.vehicles.counter.totals) == totals
+
+
+def test_pixels_may_have_a_frame_of_their_own(bench):
+    rig = TrafficRig(bench, overrides(output_frame_suffix="_px"))
+    markers = bench.collect(MarkerArray, f"{NODE}/markers", 50)
+    rig.play(lanes(2))
+    bench.wait_for(lambda: len(rig.tracks) == len(markers) == 2)
+    assert rig.tracks[0].header.frame_id == "camera_px"
+    assert markers[0].markers[0].header.frame_id == "camera_px"
+    assert rig.modes[0].header.frame_id == rig.statuses[0].header.frame_id == "camera"
+
+
 def test_every_parameter_of_its_tables_is_declared(rig):
     for name, spec in Configuration.of(TRAFFIC).specs().items():
         if name == "queue_depth":  # the rig's

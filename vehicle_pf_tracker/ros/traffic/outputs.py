@@ -47,7 +47,7 @@ from vehicle_pf_tracker.ros.traffic.track_messages import (
     modes_message,
     tracks_message,
 )
-from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.drawing import annotated
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 
@@ -145,8 +145,8 @@ class TrafficOutputs:
         if selected is not None:
             frame = np.array(frame, order="C")
             draw_box(frame, selected.box, _SELECTED, 3 * line_width(frame))
-        words = f"{len(estimates)} vehicles"
-        picture = annotated(frame, words, estimates, counter)
+        confirmed = sum(one.mode in CONFIRMED for one in estimates)
+        picture = annotated(frame, f"{confirmed} vehicles", estimates, counter)
         self._picture.publish(image_message(header, picture))
 
     def publish_mode(self, header: Header, mode: str, values: Mapping[str, object]) -> None:
