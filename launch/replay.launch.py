@@ -97,6 +97,8 @@ def words(given: dict[str, str], images: RecordedImages) -> list[str]:
         chosen += ["--remap", f"{images.topic}:={images.published}"]
     if given["target"]:
         chosen += ["--target", given["target"]]
+    elif given["variant"] == "traffic":  # it finds its vehicles itself
+        chosen.append("--no-target")
     if given["loop"].lower() in {"true", "1"}:
         chosen.append("--loop")
     if given["use_sim_time"].lower() in {"true", "1"}:

@@ -49,7 +49,7 @@ def share(monkeypatch, tmp_path):
     (tmp_path / "share" / "vehicle_pf_tracker").symlink_to(ROOT)
     executables = tmp_path / "lib" / "vehicle_pf_tracker"
     executables.mkdir(parents=True)
-    for name in ("apf_tracker", "pf_tracker", "fusion_tracker", "bag_replay"):
+    for name in ("apf_tracker", "pf_tracker", "fusion_tracker", "traffic_tracker", "bag_replay"):
         (executables / name).touch(mode=0o755)
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
     return tmp_path / "share" / "vehicle_pf_tracker"
@@ -153,6 +153,7 @@ def test_replay_plays_the_recording_to_the_tracker(bag):
         ({"loop": "true"}, ["--loop"]),
         ({"target": "1,2,30,40"}, ["--target", "1,2,30,40"]),
         ({"use_sim_time": "true"}, ["--clock", "100"]),
+        ({"variant": "traffic"}, ["--no-target"]),
     ],
 )
 def test_replay_passes_arguments_on(bag, argument, told):
