@@ -22,8 +22,8 @@ from vehicle_pf_tracker.trackers.uncertainty import Calibration, Spread
 
 CALIBRATIONS: Mapping[str, Calibration] = {
     "*": Calibration(
-        Spread(10.94, 0.1706, 37.12, 0.479),
-        Spread(2.451, 1.209, 0.2073, 1.21, 2.705, 0.9005),
+        Spread(10.94, 0.1711, 37.1, 0.4957),
+        Spread(4.045, 0.8775, 0.1824, 1.176, 2.642, 0.9435),
     ),
     "adaptive": Calibration(
         Spread(6.001, 0.0774, 13.18, 11.65),
@@ -38,8 +38,8 @@ CALIBRATIONS: Mapping[str, Calibration] = {
         Spread(3.281, 0.119, 3.303, 1.735, 1.998, 1.122),
     ),
     "fusion": Calibration(
-        Spread(0.1279, 0.003959, 0.1499, 0.06893),
-        Spread(1.388, 0.01234, 0.01253, 0.1952, 0.6272, 0.05589),
+        Spread(0.1533, 0.003628, 0.138, 0.0721),
+        Spread(1.54, 0.01324, 0.01341, 0.2234, 0.6743, 0.05671),
     ),
     "hpfms": Calibration(
         Spread(13.17, 0.06065, 11.51, 13.07),
