@@ -25,11 +25,14 @@ import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
-from tracker_rig import PERIOD_NS, QUEUE, header, overrides, values_of
+from sensor_msgs.msg import Image
+from test_traffic_lockstep import COMMAND
+from tracker_rig import FIRST_NS, PERIOD_NS, QUEUE, header, overrides, values_of
 from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, lanes
 
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros import detections
-from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -40,6 +43,8 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 FIRST = WARM_UP + 6
 """First image with both vehicles well in it."""
 COUNT = 16
+MOST = 40
+"""Images in which both vehicles are."""
 
 
 @pytest.fixture
@@ -58,7 +63,8 @@ class DetectorRig(TrafficRig):
         super().__init__(bench, overrides(detector__kind="topic", **given))
         self.vision = vision
         self.detector = bench.publisher(vision.Detection2DArray, "detections", QUEUE)
-        self.frames = lanes(FIRST + COUNT)[FIRST:]
+        self.frames = lanes(FIRST + MOST)[FIRST:]
+        self.next = 0
         self.said = []
         monkeypatch.setattr(self.node._stream._notices, "_write", self.said.append)
 
@@ -93,11 +99,11 @@ class DetectorRig(TrafficRig):
         assert self.modes[-1].header == header(index)
         return values_of(self.modes[-1])
 
-    def follow(self, count=8):
-        """Give true detections until both vehicles are followed."""
-        for index in range(count):
-            self.answered(index)
-        assert self.vehicles.summary()["vehicles TRACKING"] == 2
+    def follow(self):
+        """Give true detections until both vehicles are followed; returns their numbers."""
+        while self.vehicles.summary()["vehicles TRACKING"] < 2:
+            self.answered(self.next)
+            self.next += 1
         return {one.identity for one in self.vehicles.estimates}
 
 
@@ -146,7 +152,7 @@ def test_a_detector_that_stops_is_told_once_and_vehicles_stay(bench, vision, mon
     clock, waiting._clock = waiting._clock, lambda: 0.0  # while it answers, nothing is too late
     before = rig.follow()
     waiting._clock = clock
-    for index in range(8, 12):
+    for index in range(rig.next, rig.next + 4):
         rig.show(image_message(header(index), rig.frames[index]))
     assert {one.identity for one in rig.vehicles.estimates} == before
     assert waiting.missed == 4
@@ -161,7 +167,7 @@ def test_detections_whose_stamps_never_match_are_told_once(rig):
         rig.detector.publish(rig.message([], 1000 + count))
         rig.bench.wait_for(lambda: len(waiting._early) + waiting.unmatched == count)  # noqa: B023
     assert waiting.unmatched == 10
-    rig.answered(8)
+    rig.answered(rig.next)
     assert len(waiting._early) <= 100
     assert [one for one in rig.said if "the stamp of no image" in one] == rig.said
     assert len(rig.said) == 1
@@ -183,7 +189,7 @@ def test_detections_whose_stamps_never_match_are_told_once(rig):
 )
 def test_a_detection_that_cannot_be_used_is_told_once_and_left_out(rig, bad):
     before = rig.follow()
-    for index in range(8, 12):
+    for index in range(rig.next, rig.next + 4):
         values = rig.answered(index, [*rig.truth(index), bad])
         assert values["vehicles TRACKING"] == "2"
     assert {one.identity for one in rig.vehicles.estimates} == before
@@ -193,7 +199,7 @@ def test_a_detection_that_cannot_be_used_is_told_once_and_left_out(rig, bad):
 
 def test_duplicates_make_no_second_vehicle(rig):
     before = rig.follow()
-    for index in range(8, 12):
+    for index in range(rig.next, rig.next + 4):
         rig.answered(index, rig.truth(index) * 5)
     assert {one.identity for one in rig.vehicles.estimates} == before
     assert len(rig.said) == 1
@@ -207,11 +213,11 @@ def test_duplicates_make_no_second_vehicle(rig):
 def test_a_flood_of_detections_is_told_once_and_the_node_lives(rig, count, words):
     before = rig.follow()
     flood = [(x % 150, x // 150, 3, 3, 0.01) for x in range(count)]
-    for index in range(8, 11):
+    for index in range(rig.next, rig.next + 3):
         rig.answered(index, [*rig.truth(index), *flood])
     assert len([one for one in rig.said if words in one]) == 1
     assert before <= {one.identity for one in rig.vehicles.estimates}
-    rig.answered(11)
+    rig.answered(rig.next + 3)
     assert before <= {one.identity for one in rig.vehicles.estimates}
 
 
@@ -231,6 +237,32 @@ def test_a_detector_may_answer_every_third_image(bench, vision, monkeypatch):
     waiting = rig.node._stream._waiting
     assert (waiting.matched, waiting.missed) == (5, 0)
     assert rig.said == []
+
+
+def test_a_lockstep_replay_waits_for_the_detector(rig, start_process, tmp_path):
+    tracker, expected = TrafficSession(TrafficTracker(TRAFFIC.parameters())), []
+    with RecordingWriter(tmp_path / "bag") as writer:
+        for index, frame in enumerate(rig.frames[:COUNT]):
+            writer.write_image(FIRST_NS + index * PERIOD_NS, frame)
+            rows = rig.truth(index)
+            found = Detections.make([row[:4] for row in rows], [0.9, 0.9], ["car", "car"])
+            expected.append(tracker.feed(frame, FIRST_NS + index * PERIOD_NS, found))
+    answers = []
+
+    def detect(image):
+        answers.append(rig.vehicles.estimates)  # of the image before
+        index = (stamp_ns(image.header) - FIRST_NS) // PERIOD_NS
+        rig.detector.publish(rig.message(rig.truth(index), index))
+
+    rig.bench.node.create_subscription(Image, "image", detect, QUEUE)
+    replay = start_process(
+        *COMMAND, str(tmp_path / "bag"), "--no-target", "--lockstep", "--node", "traffic_tracker",
+        "--remap", "/camera/image_raw:=/image", "--timeout", "20",
+    )  # fmt: skip
+    rig.bench.wait_for(lambda: replay.popen.poll() is not None, timeout=60.0)
+    assert f"/traffic_tracker: {COUNT} answered, 0 not" in replay.output
+    assert [*answers[1:], rig.vehicles.estimates] == expected
+    assert rig.node._stream._waiting.matched == COUNT
 
 
 def test_turned_boxes_and_those_without_a_class_are_read(rig):

@@ -40,6 +40,7 @@ from tracker_rig import PERIOD_NS, header, header_at, overrides, values_of
 from traffic_rig import HEIGHT, NODE, WARM_UP, WIDTH, TrafficRig, boxes, lanes
 from visualization_msgs.msg import Marker, MarkerArray
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
@@ -249,6 +250,19 @@ def test_a_target_before_the_first_image_waits_for_it(bench):
     frames = lanes(WARM_UP + 12)[WARM_UP + 10 :]
     rig.play(frames)
     assert list(rig.said(1)) == [1]
+
+
+def test_a_flood_of_targets_is_refused(bench):
+    rig = TrafficRig(bench, overrides(detector__kind="none"))
+    vehicles, box = rig.vehicles, Box(20, 30, 28, 18)
+    for _ in range(2):  # before the first image, and after it
+        for _ in range(100):
+            vehicles.add(box)
+        with pytest.raises(InputError, match="100 targets came without an image between them"):
+            vehicles.add(box)
+        rig.play(lanes(1), len(rig.modes))
+    rig.play(lanes(1), 2)
+    assert len(rig.said(2)) == vehicles.session.tracker._last_identity == 200
 
 
 def test_the_configured_target_is_selected(bench):

@@ -97,7 +97,7 @@ class TrafficNode(ManagedNode):
         health = self._diagnostics.begin()
         try:
             self._stream = TrafficStream(self, configuration, self._outputs, health)
-        except InputError:
+        except Exception:  # of whatever a network raises: `cleanup` relies on what follows
             self._outputs.close()
             self._outputs = None
             raise

@@ -37,7 +37,8 @@ from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 _MOST_TARGETS = 100
-"""Targets that may wait for the first image: more are a mistake of a program."""
+"""Targets that may wait for the first image, or come between two: more are a mistake of a program,
+and each would be followed."""
 
 
 class Vehicles:
@@ -80,6 +81,7 @@ class Vehicles:
         self.selection = Selection()
         self._restarts = 0
         self._is_shown = False
+        self._added = 0
         self._waiting: list[Box] = []
         self._configured: Box | None = configuration.session.target.box
 
@@ -109,7 +111,7 @@ class Vehicles:
         if self.counter is not None:
             for crossing in self.counter.update(self.estimates, stamp_ns):
                 self.latest[crossing.place] = crossing
-        self._is_shown = True
+        self._is_shown, self._added = True, 0
         return [*self.session.events, *self._add_waiting()]
 
     def add(self, box: Box) -> int | None:
@@ -122,11 +124,13 @@ class Vehicles:
         InputError
             If it cannot be followed there.
         """
+        if max(self._added, len(self._waiting)) == _MOST_TARGETS:
+            raise InputError(f"{_MOST_TARGETS} targets came without an image between them")
         if self._is_shown:
-            return self.session.tracker.add(box)
+            identity = self.session.tracker.add(box)
+            self._added += 1
+            return identity
         check_target(box, MAX_SIDE, MAX_SIDE)
-        if len(self._waiting) == _MOST_TARGETS:
-            raise InputError(f"{_MOST_TARGETS} targets wait for the first image already")
         self._waiting.append(box)
         return None
 
