@@ -25,14 +25,18 @@ import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
 from test_traffic_lockstep import COMMAND
 from tracker_rig import FIRST_NS, PERIOD_NS, QUEUE, header, overrides, values_of
 from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, lanes
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros import detections
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
+from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -263,6 +267,30 @@ def test_a_lockstep_replay_waits_for_the_detector(rig, start_process, tmp_path):
     assert f"/traffic_tracker: {COUNT} answered, 0 not" in replay.output
     assert [*answers[1:], rig.vehicles.estimates] == expected
     assert rig.node._stream._waiting.matched == COUNT
+
+
+def test_a_detector_may_publish_best_effort(bench, vision):
+    override = {"qos_overrides./detections.subscription.reliability": "best_effort"}
+    node = bench.add(
+        TrafficNode(
+            context=bench.context,
+            parameter_overrides=[
+                *overrides(detector__kind="topic"),
+                *(Parameter(name, value=value) for name, value in override.items()),
+            ],
+        )
+    )
+    qos = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+    bench.publisher(vision.Detection2DArray, "detections", qos)  # waits until it is matched
+    bench.remove(node)
+    with pytest.raises(InputError, match="the QoS overrides of /detections do not fit"):
+        TrafficNode(
+            context=bench.context,
+            parameter_overrides=[
+                *overrides(detector__kind="topic"),
+                *(Parameter(name, value="perhaps") for name in override),
+            ],
+        )
 
 
 def test_turned_boxes_and_those_without_a_class_are_read(rig):

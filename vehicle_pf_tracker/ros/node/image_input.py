@@ -28,6 +28,7 @@ from rclpy.qos import (
     qos_check_compatible,
 )
 from rclpy.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions
+from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from sensor_msgs.msg import CompressedImage, Image
 
@@ -44,6 +45,38 @@ def image_topic(node: Node, transport: str) -> str:
     """Resolve the topic of the images: a remapped `image` takes its `/compressed` with it."""
     base: str = node.resolve_topic_name("image")
     return base if transport == "raw" else str(node.resolve_topic_name(f"{base}/compressed"))
+
+
+def subscribe(
+    node: Node,
+    kind: Any,
+    topic: str,
+    callback: Callable[..., object],
+    qos: QoSProfile,
+    *,
+    raw: bool,
+) -> Subscription:
+    """Subscribe with a QoS that parameters ``qos_overrides.<topic>.subscription.*`` may change.
+
+    Raises
+    ------
+    InputError
+        If a QoS override is not usable.
+    """
+    options = QoSOverridingOptions.with_default_policies()
+    try:
+        return node.create_subscription(
+            kind, topic, callback, qos, qos_overriding_options=options, raw=raw
+        )
+    except RCLError as error:
+        raise InputError(f"cannot subscribe to {topic}: {error}") from None
+    except (
+        InvalidParameterTypeException,
+        InvalidParameterValueException,
+        InvalidQosOverridesError,
+        RuntimeError,
+    ) as error:
+        raise InputError(f"the QoS overrides of {topic} do not fit: {error}") from None
 
 
 class ImageInput:
@@ -71,24 +104,14 @@ class ImageInput:
         self._transport = transport
         self._kind = Image if transport == "raw" else CompressedImage
         self.topic = image_topic(node, transport)
-        try:
-            self._subscription = node.create_subscription(
-                self._kind,
-                self.topic,
-                _reading(callback) if self._kind is Image else callback,
-                QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT),
-                qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-                raw=self._kind is Image,
-            )
-        except RCLError as error:
-            raise InputError(f"cannot subscribe to {self.topic}: {error}") from None
-        except (
-            InvalidParameterTypeException,
-            InvalidParameterValueException,
-            InvalidQosOverridesError,
-            RuntimeError,
-        ) as error:
-            raise InputError(f"the QoS overrides of {self.topic} do not fit: {error}") from None
+        self._subscription = subscribe(
+            node,
+            self._kind,
+            self.topic,
+            _reading(callback) if self._kind is Image else callback,
+            QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT),
+            raw=self._kind is Image,
+        )
 
     @property
     def publisher_count(self) -> int:

@@ -34,7 +34,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.detections import detections_type
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
-from vehicle_pf_tracker.ros.node.image_input import ImageInput, image_topic
+from vehicle_pf_tracker.ros.node.image_input import ImageInput, image_topic, subscribe
 from vehicle_pf_tracker.ros.node.managed_node import ManagedNode
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, unknown_overrides
 from vehicle_pf_tracker.ros.node.target_messages import box_of_region, check_frame_id
@@ -117,7 +117,6 @@ class TrafficNode(ManagedNode):
         configuration = self._table.configuration
         own = configuration.node
         source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
-        self._warn_of(unknown_overrides(self, qos=True))
         self._diagnostics.listen_to(source)
         self._inputs += [
             self.create_subscription(RegionOfInterest, "~/add_target", self._on_region, 10),
@@ -128,10 +127,10 @@ class TrafficNode(ManagedNode):
         if detector == TOPIC:
             # As many as images may wait: a detector may answer several at once.
             qos = QoSProfile(depth=MOST_WAITING)
-            detections = self.create_subscription(
-                detections_type(), "detections", self._on_detections, qos, raw=True
-            )
-            self._inputs.append(detections)
+            topic = self.resolve_topic_name("detections")
+            take = self._on_detections
+            self._inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
+        self._warn_of(unknown_overrides(self, qos=True))
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
 
     def deactivate(self) -> None:
