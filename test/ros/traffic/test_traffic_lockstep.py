@@ -32,6 +32,7 @@ from tracker_rig import FIRST_NS, PERIOD_NS
 from traffic_rig import NODE, WARM_UP, boxes, lanes
 
 from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.evaluation.estimates import read_estimates
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros.messages import stamp_ns
 
@@ -99,7 +100,7 @@ def test_lockstep_and_offline_runs_give_identical_vehicles(
     words = ["--target", target] if by_hand else ["--no-target"]
     replay = start_process(
         *COMMAND, str(recording), *words, "--lockstep", "--node", "traffic_tracker",
-        "--timeout", "20",
+        "--timeout", "20", "-o", str(tmp_path / "replayed"),
     )  # fmt: skip
     bench.wait_for(lambda: len(heard) == FRAMES, timeout=60.0)
     assert replay.wait() == 0, replay.output
@@ -108,6 +109,13 @@ def test_lockstep_and_offline_runs_give_identical_vehicles(
     expected = offline(recording, tmp_path / "out", *words)
     assert len(expected) > FRAMES / 2
     assert in_numbers(online(heard)) == in_numbers(expected)
+    first, *others = read_estimates(tmp_path / "replayed" / "estimates.csv")
+    assert first.mode == "WAITING"
+    if by_hand:  # the target of the replay is the selected vehicle
+        selected = [(row.stamp_ns, 1, row.x, row.y, row.width, row.height) for row in others]
+        assert selected == [row[:6] for row in in_numbers(expected)]
+    else:
+        assert {row.mode for row in others} == {"WAITING"}
 
 
 def test_the_executable_ends_with_a_signal_and_says_a_mistake_in_one_sentence(start_node, bench):
