@@ -48,6 +48,7 @@ from vehicle_pf_tracker.ros.messages import (
 from vehicle_pf_tracker.ros.node.images import read_image
 from vehicle_pf_tracker.ros.node.target_messages import box_of_point, box_of_polygon, box_of_region
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode, read_only
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
 
 @pytest.fixture
@@ -93,7 +94,7 @@ def test_values_are_written_plainly(value, text):
 
 
 def test_every_mode_has_a_level():
-    assert set(LEVELS) == {*(mode.value for mode in Mode), WAITING, REJECTED}
+    assert set(LEVELS) == {*(mode.value for mode in (*Mode, *TrackMode)), WAITING, REJECTED}
     assert [LEVELS[mode.value] for mode in Mode] == [b"\x00", b"\x01", b"\x02"]
 
 
