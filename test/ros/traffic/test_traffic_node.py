@@ -55,7 +55,7 @@ from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 pytestmark = pytest.mark.ros
 
-COUNT = WARM_UP + 20
+COUNT = WARM_UP + 28
 BEST_EFFORT = QoSProfile(depth=50, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
