@@ -107,11 +107,17 @@ def test_what_a_blind_detector_does_not_see_is_not_missed():
 def test_a_camera_that_moves_blinds_the_motion_detector_until_it_has_learnt():
     detector, rng = MotionDetector(), np.random.default_rng(0)
     still, other = rng.integers(0, 256, (2, 48, 64, 3), np.uint8)
-    blind = []
-    for frame in [still] * 20 + [other] * 20:
+    blind, disturbed = [], []
+    for frame in [still] * 40 + [other] * 40:
         detector.detect(frame)
         blind.append(detector.is_blind)
-    assert blind == [True] * 15 + [False] * 5 + [True] * 16 + [False] * 4
+        disturbed.append(detector.disturbed)
+    learnt = blind.index(False)
+    assert 0 < learnt < 39
+    assert blind[learnt:] == [False] * (40 - learnt) + [True] * (learnt + 1) + [False] * (
+        39 - learnt
+    )
+    assert [index for index, is_so in enumerate(disturbed) if is_so] == [40]
 
 
 def test_a_reset_forgets_vehicles_size_and_time():
