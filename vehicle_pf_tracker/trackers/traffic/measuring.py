@@ -137,6 +137,11 @@ def measure(
     return whole
 
 
+def is_cut(edges: Array, size: tuple[int, int]) -> bool:
+    """Tell whether a border of the image cuts a box (4,)."""
+    return any(_cut(edges, size))
+
+
 def _cut(edges: Array, size: tuple[int, int]) -> list[bool]:
     """Which edges lie on or beyond the border."""
     left, top, right, bottom = edges.tolist()

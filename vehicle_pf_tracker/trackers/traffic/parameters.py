@@ -145,6 +145,9 @@ class TrafficParameters:
     occlusions: bool = parameter(
         True, "Off: vehicles are followed as if none could hide another; to compare."
     )
+    returning: bool = parameter(
+        True, "Off: a vehicle that comes back away from its prediction gets a new number."
+    )
     motion: RoadMotionParameters = group(RoadMotionParameters)
     detections: DetectionParameters = group(DetectionParameters)
     birth: BirthParameters = group(BirthParameters)

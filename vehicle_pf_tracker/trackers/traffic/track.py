@@ -25,6 +25,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.colours import BINS
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import Sample
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.horizon import Growth
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
 
 MOST_EVIDENCE = 8.0
@@ -74,6 +75,10 @@ class Track:
         Edges in the frame before, px.
     samples : list of Sample
         Its detections before it was confirmed.
+    usual_likeness : float
+        Likeness of its colours to those learnt, while it is detected.
+    growth : Growth
+        How its size depends on its place.
     """
 
     identity: int
@@ -96,6 +101,7 @@ class Track:
     before: Array = field(default_factory=lambda: np.zeros(4))
     samples: list[Sample] = field(default_factory=list)
     usual_likeness: float = _FIRST_LIKENESS
+    growth: Growth = field(default_factory=Growth)
     _first: Array = field(default_factory=lambda: np.zeros(2))
     _drive: Array = field(default_factory=lambda: np.zeros(8))
 

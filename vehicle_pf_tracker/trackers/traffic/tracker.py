@@ -30,11 +30,13 @@ from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvid
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
-from vehicle_pf_tracker.trackers.traffic.measuring import deviations, first_state, measure
+from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
+from vehicle_pf_tracker.trackers.traffic.measuring import deviations, first_state, is_cut, measure
 from vehicle_pf_tracker.trackers.traffic.occlusion import cover
 from vehicle_pf_tracker.trackers.traffic.overlaps import areas, clipped, intersections
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
+from vehicle_pf_tracker.trackers.traffic.returning import former
 from vehicle_pf_tracker.trackers.traffic.seen import Seen
 from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge
@@ -86,6 +88,7 @@ class TrafficTracker:
         self._pixels = PixelHold()
         self._evidence = DetectionEvidence()
         self._existence = Existence(self.parameters, self._evidence)
+        self._horizon = Horizon()
 
     @property
     def seed(self) -> int:
@@ -121,7 +124,7 @@ class TrafficTracker:
             self._take(detections.usable(*self._size), elapsed)
         if self.parameters.pixels:
             self._hold(normals)
-        self._tracks = self._existence.survivors(self._tracks, self._size, self.frame_period)
+        self._end()
         self._learn_likeness()
         ordered = sorted(self._tracks, key=lambda track: track.identity)
         return tuple(track.estimate() for track in ordered)
@@ -219,7 +222,24 @@ class TrafficTracker:
         track.label = seen.labels[index] or track.label
         if whole and track.visible > _LEARNING_SHARE:
             track.learn_colours(seen.histogram(index))
+            if not is_cut(edges, self._size):
+                track.growth.add(edges)
+        known = track.confirmed
         self._existence.detected(track, edges, seen.samples[index], float(seen.log_odds[index]))
+        if track.confirmed and not known and self.parameters.returning:
+            self._recognise(track)
+
+    def _recognise(self, track: Track) -> None:
+        """Go on under its number with a hidden vehicle that a new one turns out to be."""
+        hidden = former(track, self._tracks)
+        if hidden is None:
+            return
+        hidden.state, hidden.before = track.state, track.before
+        hidden.score, hidden.label = track.score, track.label or hidden.label
+        hidden.unseen = hidden.undetected = 0.0
+        hidden.log_odds = max(hidden.log_odds, track.log_odds)
+        hidden.visible, hidden.covers, hidden.hidden_by = track.visible, track.covers, None
+        self._tracks.remove(track)
 
     def _drop_parts(self, seen: Seen) -> None:
         """Drop detections inside vehicles that have one: their bonnets, or second boxes."""
@@ -255,7 +275,8 @@ class TrafficTracker:
             top_speed=motion.top_speed * period / _VEHICLE_WIDTH,
             focal=_FOCAL * width,
         )
-        noise, horizon = self.parameters.detections.edge_noise, motion.horizon * height
+        noise = self.parameters.detections.edge_noise
+        horizon = self._horizon.row(motion.horizon) * height
         # A horizon below the box would have it drive on the sky.
         horizon = min(horizon, float(edges[Edge.BOTTOM]) - 1)
         self._last_identity += 1
@@ -282,6 +303,14 @@ class TrafficTracker:
                 for edge in Edge:
                     value, deviation = hold.edges[edge], hold.deviations[edge]
                     track.state.measure(edge, float(value), float(deviation))
+
+    def _end(self) -> None:
+        """End tracks that are no vehicles, or have left; the horizon is learnt from the others."""
+        kept = self._existence.survivors(self._tracks, self._size, self.frame_period)
+        for track in self._tracks:
+            if track.confirmed and track not in kept:
+                self._horizon.learn(track.growth, self._size[1])
+        self._tracks = kept
 
     def _learn_likeness(self) -> None:
         """Learn how like itself each detected vehicle looks from frame to frame."""
