@@ -31,12 +31,19 @@ _PIXEL_NOISE = 0.7
 """Standard deviation of an edge in px however small the box: a detector's grid."""
 _BORDER = 1.0
 """Distance in px from the border of the image from which on an edge counts as cut."""
-_OUTWARD = 1.0
+_PUSHED = 1.0
 """Standard deviations that the opposite edge may at most be pushed out by, where an edge is drawn
 in because it is covered. A vehicle that brakes pushes it out."""
+_PATIENCE = 30
+"""Detections in a row that an edge may be covered in; then it is the vehicle that was taken too
+large: 1 s, in which even a slow vehicle goes behind what hides it."""
 _WHOLE = 0.85
-"""Share of the predicted width or height below which one of the two edges is covered: at the rim
-of an occluder the edge does not jump, it creeps, and would brake the vehicle."""
+"""Share of the width or height, of the predicted and of the latest detections, below which one of
+the two edges is covered: at the rim of an occluder the edge does not jump, it creeps, and would
+brake the vehicle."""
+_FADED = 0.985
+"""What is left per detection of the largest latest width and height: a vehicle that drives away
+becomes smaller by about 1 % per frame."""
 _SETTLED = 4
 """Detections from which on a box is known well enough to tell that an edge is covered."""
 _ASPECT = 0.8
@@ -122,18 +129,23 @@ def measure(
     uncertainty = np.sqrt(np.diag(state.edge_covariance) + spread**2)
     normal = ((edges - predicted) * INWARD / uncertainty).tolist()
     cut, beyond = _cut(edges, size), _cut(predicted, size)
-    shrunk = (edges[2:] - edges[:2]) < _WHOLE * (predicted[2:] - predicted[:2])
+    sides = edges[2:] - edges[:2]
+    track.sides = np.maximum(sides, _FADED * track.sides)
+    shrunk = sides < _WHOLE * np.minimum(predicted[2:] - predicted[:2], track.sides)
+    patient = track.matches >= _SETTLED and track.partial < _PATIENCE
     whole = True
     for edge in Edge:
         if cut[edge] and beyond[edge]:
             continue
         own, opposite = normal[edge], normal[_OPPOSITE[edge]]
-        jumped = own > covered and opposite > -_OUTWARD
+        jumped = own > covered and opposite > -_PUSHED
         crept = bool(shrunk[edge % 2]) and own > max(opposite, 0.0)
-        if (jumped or crept) and track.matches >= _SETTLED:
+        if jumped or crept:
             whole = False
-            continue
+            if patient:
+                continue
         state.measure(edge, float(edges[edge]), float(spread[edge]))
+    track.partial = 0 if whole else track.partial + 1
     return whole
 
 

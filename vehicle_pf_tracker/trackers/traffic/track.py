@@ -57,8 +57,10 @@ class Track:
         Evidence that the vehicle exists.
     strength : float
         Evidence by the scores of its detections alone.
-    matches : int
-        Number of its detections.
+    matches, partial : int
+        Number of its detections, and of the latest in a row that showed only a part of it.
+    sides : (2,) array
+        Largest width and height of its latest detections, px.
     confirmed, lost : bool
         It is reported; it has been hidden for too long to be predicted.
     score : float
@@ -88,6 +90,8 @@ class Track:
     log_odds: float = 0.0
     strength: float = 0.0
     matches: int = 0
+    partial: int = 0
+    sides: Array = field(default_factory=lambda: np.zeros(2))
     confirmed: bool = False
     lost: bool = False
     score: float = math.nan

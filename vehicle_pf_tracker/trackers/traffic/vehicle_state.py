@@ -40,7 +40,7 @@ _NEAREST_HORIZON = 3.0
 _FASTEST_APPROACH = 1.3
 """Largest growth of a box in a nominal frame period. Beyond it the distance is down to the
 camera's own height, where the plane no longer describes what is seen."""
-_SIZE_WALK = 0.002
+_SIZE_WALK = 0.004
 """Change of a vehicle's shape as the camera sees it, of its size per nominal period: a vehicle that
 drives past is seen from behind and then from the side within some 5 s."""
 
