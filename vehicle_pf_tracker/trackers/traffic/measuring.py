@@ -41,6 +41,9 @@ _WHOLE = 0.85
 """Share of the width or height, of the predicted and of the latest detections, below which one of
 the two edges is covered: at the rim of an occluder the edge does not jump, it creeps, and would
 brake the vehicle."""
+_LESS = 0.95
+"""Share of the latest detections' width or height below which an edge can have jumped inward: a
+box of the same size as before is not covered, it was predicted wrong."""
 _FADED = 0.985
 """What is left per detection of the largest latest width and height: a vehicle that drives away
 becomes smaller by about 1 % per frame."""
@@ -132,13 +135,14 @@ def measure(
     sides = edges[2:] - edges[:2]
     track.sides = np.maximum(sides, _FADED * track.sides)
     shrunk = sides < _WHOLE * np.minimum(predicted[2:] - predicted[:2], track.sides)
+    less = sides < _LESS * track.sides
     patient = track.matches >= _SETTLED and track.partial < _PATIENCE
     whole = True
     for edge in Edge:
         if cut[edge] and beyond[edge]:
             continue
         own, opposite = normal[edge], normal[_OPPOSITE[edge]]
-        jumped = own > covered and opposite > -_PUSHED
+        jumped = bool(less[edge % 2]) and own > covered and opposite > -_PUSHED
         crept = bool(shrunk[edge % 2]) and own > max(opposite, 0.0)
         if jumped or crept:
             whole = False

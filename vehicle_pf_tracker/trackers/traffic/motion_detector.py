@@ -30,23 +30,24 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 
 _WIDEST = 400
 """Width in px above which the image is halved: finer says nothing more about vehicles."""
-_HISTORY = 300
-"""Frames that the background is made of: 10 s."""
+_RATE = 0.03
+"""Rate per image at which samples of the background are renewed: some 30 images, so that leaves and
+light do not stay foreground for long."""
 _WARM_UP = 15
 """Frames in which the background is learnt and nothing is reported."""
 _THRESHOLD = 400.0
 """Squared distance of colours, three channels together, from which on a pixel has changed."""
 _SHADOW = 0.35
 """Least brightness of a shadow, of the background's."""
-_LEARNT_EVERY = 3
-"""Frames between two in which the background is learnt, which takes a second pass."""
+_RESTORED_EVERY = 3
+"""Images between two in which the background is restored where vehicles are: a second pass."""
 _VEHICLE = 255
 """Value that OpenCV marks what moves by; shadows have another."""
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (7, 7))
 """Holes and gaps up to this size are closed: windscreens show the sky."""
 _HELD = (TrackMode.TRACKING, TrackMode.TENTATIVE)
-"""Modes of tracks where the background is not learnt. New ones count: a vehicle that nobody knows
-yet would melt in before it is confirmed."""
+"""Modes of tracks where the background is restored. New ones count: a vehicle that nobody knows yet
+would melt in before it is confirmed."""
 _SEEDS = 2**31
 """Number of seeds that OpenCV takes."""
 _ALL_MOVES = 0.5
@@ -87,7 +88,7 @@ class MotionDetector:
         frame : Frame
             RGB image.
         tracks : sequence of TrackEstimate
-            Estimates of the frame before; the background is not learnt where they stand.
+            Estimates of the frame before; the background is restored where they stand.
 
         Returns
         -------
@@ -104,10 +105,10 @@ class MotionDetector:
         if self.is_blind:
             self._apply(small, -1)
             return Detections.none()
-        mask = self._apply(small, 0)
+        mask = self._apply(small, _RATE)
         followed = [one for one in tracks if one.mode in (TrackMode.TRACKING, TrackMode.OCCLUDED)]
-        if self._count % _LEARNT_EVERY == 0:
-            self._learn(small, [one for one in tracks if one.mode in _HELD], zoom)
+        if self._count % _RESTORED_EVERY == 0:
+            self._restore(small, [one for one in tracks if one.mode in _HELD], zoom)
         moving = np.where(mask == _VEHICLE, mask, 0).astype(np.uint8)
         if np.count_nonzero(moving) > _ALL_MOVES * moving.size:
             self.disturbed = self.is_blind = True
@@ -120,24 +121,24 @@ class MotionDetector:
         return Detections.make(boxes, fullness)
 
     def _restart(self) -> None:
-        self._model = cv2.createBackgroundSubtractorKNN(_HISTORY, _THRESHOLD, True)
+        self._model = cv2.createBackgroundSubtractorKNN(round(1 / _RATE), _THRESHOLD, True)
         self._model.setShadowThreshold(_SHADOW)
         self._count = 0
 
-    def _learn(
+    def _restore(
         self, small: npt.NDArray[np.uint8], standing: Sequence[TrackEstimate], zoom: float
     ) -> None:
-        """Learn the background, but keep it where vehicles are: one that stops must not melt in."""
+        """Learn the background again where vehicles are: one that stops must not melt in."""
         image = small
         if standing:
             image, known = small.copy(), self._model.getBackgroundImage()
             width, height = frame_size(small)
             for track in standing:
                 left, top, right, bottom = (_edges(track) * zoom).tolist()
-                columns = slice(max(int(left), 0), min(int(right) + 1, width))
-                rows = slice(max(int(top), 0), min(int(bottom) + 1, height))
+                columns = slice(max(int(left), 0), max(min(int(right) + 1, width), 0))
+                rows = slice(max(int(top), 0), max(min(int(bottom) + 1, height), 0))
                 image[rows, columns] = known[rows, columns]
-        self._apply(image, _LEARNT_EVERY / _HISTORY)
+        self._apply(image, _RATE)
 
     def _apply(self, image: npt.NDArray[np.uint8], rate: float) -> npt.NDArray[np.uint8]:
         # OpenCV draws from one generator per process; seeded here, the same images give the same

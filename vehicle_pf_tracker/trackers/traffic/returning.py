@@ -34,7 +34,7 @@ _REACH = 1.0
 """Distance from the prediction, in widths, within which a vehicle can come back at once; ..."""
 _REACH_GROWTH = 1 / 30
 """... and its growth per nominal period, of itself: roads bend, drivers brake."""
-_SIZE_RATIO = 2.5
+_SIZE_RATIO = 4.0
 """Largest ratio of areas: a vehicle comes back part by part."""
 _LARGEST_FALL = 0.25
 """Fall of the colours' likeness below its usual value up to which it may be the same vehicle."""
