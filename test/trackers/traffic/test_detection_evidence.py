@@ -1,0 +1,68 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Evidence of detections, learnt from their outcomes."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
+
+SIZE = (320, 240)
+ROAD, TREE = np.array([100.0, 100, 140, 130]), np.array([10.0, 10, 20, 20])
+
+
+def taught(transform=lambda score: score):
+    evidence = DetectionEvidence()
+    rng = np.random.default_rng(3)
+    for score in rng.uniform(0.1, 0.9, 600).tolist():
+        evidence.learn(evidence.sample(ROAD, transform(score), SIZE), bool(score > 0.5))
+    return evidence
+
+
+def odds(evidence, edges, *scores):
+    return evidence.log_odds([evidence.sample(edges, score, SIZE) for score in scores])
+
+
+def test_nothing_is_known_at_first():
+    assert odds(DetectionEvidence(), ROAD, 0.1, 0.9).tolist() == [0, 0]
+
+
+def test_scores_that_were_vehicles_speak_for_one():
+    low, middle, high = odds(taught(), ROAD, 0.2, 0.5, 0.8)
+    assert low < -2.5
+    assert abs(middle) < 1
+    assert high > 2.5
+
+
+@pytest.mark.parametrize("transform", [np.square, lambda score: score / 2, np.log])
+def test_only_the_order_of_scores_counts(transform):
+    scores = [0.15, 0.45, 0.55, 0.88]
+    changed = odds(taught(transform), ROAD, *(float(transform(score)) for score in scores))
+    assert changed == pytest.approx(odds(taught(), ROAD, *scores))
+
+
+def test_a_place_of_false_alarms_speaks_against_a_detection_and_never_for_one():
+    evidence = taught()
+    before = odds(evidence, ROAD, 0.8)
+    for _ in range(50):
+        evidence.learn(evidence.sample(TREE, 0.8, SIZE), False)
+    for _ in range(200):
+        evidence.learn(evidence.sample(ROAD, 0.8, SIZE), True)
+    assert odds(evidence, TREE, 0.8) < odds(evidence, ROAD, 0.8) - 2
+    assert odds(evidence, ROAD, 0.8) < before + 2
+
+
+def test_no_detections_have_no_odds():
+    assert len(taught().log_odds([])) == 0

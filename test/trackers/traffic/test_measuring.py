@@ -1,0 +1,85 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Which edges of a detection are measured."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.trackers.traffic.measuring import first_state, is_cut, measure
+from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
+
+SIZE = (320, 240)
+DRIVE = Drive(0.001, 0.5, 400.0)
+BOX = np.array([100.0, 100, 140, 130])
+
+
+@pytest.fixture
+def track():
+    """A vehicle whose box has been measured often."""
+    one = Track(1, VehicleState(BOX, np.full(4, 0.3), -1e4, DRIVE), matches=20)
+    one.sides = BOX[2:] - BOX[:2]
+    return one
+
+
+def measured(track, detection):
+    return measure(track, np.array(detection, float), 0.05, 2.5, SIZE)
+
+
+def test_a_whole_detection_measures_every_edge(track):
+    assert measured(track, BOX + 1)
+    assert (track.state.edges > BOX).all()
+
+
+def test_a_covered_edge_does_not_brake_the_vehicle(track):
+    assert not measured(track, BOX - (0, 0, 0, 12))
+    assert track.state.edges[Edge.BOTTOM] == pytest.approx(130, abs=0.3)
+    assert track.partial == 1
+
+
+def test_a_vehicle_that_brakes_is_followed(track):
+    # Both edges go the same way: it is not covered.
+    assert measured(track, BOX - (0, 6, 0, 6))
+    assert track.state.edges[Edge.BOTTOM] < 129.8
+
+
+def test_an_edge_cut_by_the_border_is_not_measured():
+    below = np.array([100.0, 215, 140, 250])
+    one = Track(1, VehicleState(below, np.full(4, 0.3), -1e4, DRIVE), matches=20)
+    measure(one, np.array([100.0, 215, 140, 240]), 0.05, 2.5, SIZE)
+    assert one.state.edges[Edge.BOTTOM] == pytest.approx(250, abs=0.2)
+
+
+def test_no_edge_stays_covered_for_ever(track):
+    for _ in range(200):
+        measured(track, BOX - (0, 0, 0, 12))
+    assert track.state.edges[Edge.BOTTOM] < 125
+
+
+def test_a_vehicle_cut_at_the_border_gets_the_usual_height():
+    state = first_state(np.array([100.0, 0, 140, 8]), 0.05, -40.0, DRIVE, SIZE)
+    assert state.box.height == pytest.approx(0.8 * 40)
+    assert state.edges[Edge.BOTTOM] == 8
+
+
+def test_a_thin_first_box_may_grow():
+    thin = first_state(np.array([100.0, 100, 140, 110]), 0.05, -40.0, DRIVE, SIZE)
+    whole = first_state(BOX, 0.05, -40.0, DRIVE, SIZE)
+    assert thin.edge_covariance[1, 1] > 10 * whole.edge_covariance[1, 1]
+
+
+def test_cut_boxes_are_told():
+    assert not is_cut(BOX, SIZE)
+    assert is_cut(BOX - (100, 0, 100, 0), SIZE)

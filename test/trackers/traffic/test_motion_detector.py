@@ -1,0 +1,110 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Detection of what moves before a standing camera."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
+from vehicle_pf_tracker.trackers.traffic.horizon import Growth, Horizon
+from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
+
+GROUND = np.random.default_rng(0).integers(90, 120, (120, 160, 3))
+PAINT = np.random.default_rng(1).integers(180, 250, (24, 36, 3))
+
+
+def frames(count, seed=0):
+    """An empty road, then from frame 30 on a vehicle that drives to the right by 3 px."""
+    rng = np.random.default_rng(seed)
+    for index in range(count):
+        image = GROUND + rng.integers(0, 5, GROUND.shape)
+        left = 3 * (index - 30)
+        if left >= 0:
+            image[60:84, left : left + 36] = PAINT
+        yield image.astype(np.uint8)
+
+
+def test_a_moving_vehicle_is_one_box_where_it_is():
+    detector = MotionDetector()
+    found = [detector.detect(frame) for frame in frames(45)]
+    assert all(len(one) == 0 for one in found[:30])
+    assert found[-1].boxes == pytest.approx(np.array([[42, 60, 36, 24]]), abs=3)
+
+
+def test_masks_repeat_whatever_else_the_process_draws():
+    runs = []
+    for _ in range(2):
+        detector = MotionDetector()
+        runs.append([detector.detect(frame).boxes.tolist() for frame in frames(45)])
+    assert runs[0] == runs[1]
+
+
+def test_a_camera_that_moves_is_told_and_reported_as_blind():
+    detector = MotionDetector()
+    for frame in frames(29):
+        detector.detect(frame)
+    assert not detector.disturbed
+    assert len(detector.detect(np.full((120, 160, 3), 255, np.uint8))) == 0
+    assert detector.disturbed
+    assert detector.is_blind
+
+
+def mask(*boxes):
+    image = np.zeros((120, 160), np.uint8)
+    for left, top, right, bottom in boxes:
+        image[top:bottom, left:right] = 255
+    return image
+
+
+def test_a_blob_of_two_vehicles_is_divided_by_their_predictions():
+    predicted = np.array([[20.0, 40, 60, 70], [45, 20, 75, 44]])
+    edges, _ = BlobReader().read(mask((20, 40, 60, 70), (45, 20, 75, 44)), predicted)
+    assert len(edges) == 2
+    assert edges[0] == pytest.approx([20, 40, 60, 70], abs=8)
+
+
+def test_pieces_of_one_vehicle_are_joined():
+    predicted = np.array([[20.0, 40, 60, 70]])
+    edges, fullness = BlobReader().read(mask((20, 40, 60, 50), (20, 55, 60, 70)), predicted)
+    assert edges.tolist() == [[20, 40, 60, 70]]
+    assert fullness == pytest.approx([25 / 30])
+
+
+def test_a_thin_rim_is_cut_off():
+    edges, _ = BlobReader().read(mask((20, 40, 60, 70), (60, 69, 90, 70)), np.empty((0, 4)))
+    assert edges.tolist() == [[20, 40, 60, 70]]
+
+
+def test_the_horizon_is_where_widths_are_zero():
+    growth = Growth()
+    for bottom in range(60, 160):
+        width = 0.4 * (bottom - 24)
+        growth.add(np.array([100 - width / 2, bottom - 20, 100 + width / 2, bottom]))
+    assert growth.horizon(240) == pytest.approx(0.1)
+    horizon = Horizon()
+    assert horizon.row(-0.2) == -0.2
+    for _ in range(4):
+        horizon.learn(growth, 240)
+    assert horizon.row(-0.2) == pytest.approx(0.1)
+
+
+def test_a_short_way_tells_no_horizon_and_a_constant_width_none_in_sight():
+    near, flat = Growth(), Growth()
+    for bottom in range(60, 90):
+        near.add(np.array([80.0, 40, 100, bottom]))
+    for bottom in range(60, 160):
+        flat.add(np.array([80.0, 40, 100, bottom]))
+    assert near.horizon(240) is None
+    assert flat.horizon(240) == -2.0

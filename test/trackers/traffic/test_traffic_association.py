@@ -1,0 +1,62 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Costs of pairs, their assignment, and overlaps, with hand numbers."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.trackers.traffic.association import assign, edge_costs
+from vehicle_pf_tracker.trackers.traffic.overlaps import (
+    areas,
+    clipped,
+    inside_image,
+    intersections,
+    unions,
+)
+
+BOX = np.array([10.0, 10, 50, 40])
+
+
+def test_a_cost_is_the_squared_distance_in_standard_deviations():
+    costs = edge_costs(BOX[np.newaxis], np.full((1, 4), 2.0), BOX[np.newaxis] + (2, 0, 2, -2))
+    assert costs == pytest.approx(np.array([[3.0]]))
+
+
+def test_a_part_costs_what_is_missing_not_its_distance():
+    # The lower half is hidden: 15 px inward are 56 squared deviations.
+    half = BOX - (0, 0, 0, 15)
+    costs = edge_costs(BOX[np.newaxis], np.full((1, 4), 2.0), half[np.newaxis])
+    assert costs == pytest.approx(np.array([[3 + 12 * 0.5]]))
+
+
+def test_a_sliver_is_no_part():
+    sliver = BOX - (0, 0, 0, 28)
+    assert edge_costs(BOX[np.newaxis], np.full((1, 4), 2.0), sliver[np.newaxis]) == 14**2
+
+
+def test_the_assignment_is_the_cheapest_of_all_and_below_the_gate():
+    assert assign(np.array([[1.0, 2.0], [2.0, 29.0]])) == [(0, 1), (1, 0)]
+    assert assign(np.array([[1.0, 40.0], [40.0, 40.0]])) == [(0, 0)]
+    assert assign(np.empty((0, 3))) == []
+
+
+def test_overlaps():
+    others = np.array([[30.0, 10, 70, 40], [60, 60, 70, 70]])
+    assert intersections(BOX, others).tolist() == [600, 0]
+    assert unions(BOX, others)[0] == pytest.approx(600 / 1800)
+    assert areas(BOX) == 1200
+    assert inside_image(BOX, (30, 240)) == 0.5
+    assert clipped(np.array([[-5.0, 5, 20, 300]]), (100, 240)).tolist() == [[0, 5, 20, 240]]
+    assert clipped(np.array([[200.0, 5, 220, 30]]), (100, 240)).tolist() == [[99, 5, 100, 30]]

@@ -1,0 +1,177 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The tracker of many vehicles, from boxes with known truth."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
+from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackMode
+from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+
+GROUND = np.random.default_rng(0).integers(90, 130, (240, 320, 3)).astype(np.uint8)
+PAINT = np.random.default_rng(1).integers(0, 255, (80, 80, 3)).astype(np.uint8)
+FLAT = TrafficParameters()
+FLAT = replace(FLAT, motion=replace(FLAT.motion, horizon=-50.0))
+
+
+def scene(*boxes):
+    frame = GROUND.copy()
+    for index, (x, y, w, h) in enumerate(boxes):
+        frame[y : y + h, x : x + w] = PAINT[10 * index : 10 * index + h, :w]
+    return frame
+
+
+def drive(tracker, frames, seen=lambda index: True, right=lambda index: 20 + 4 * index):
+    """Show a vehicle that drives to the right, detected where `seen` says so."""
+    every = []
+    for index in range(frames):
+        box = (right(index), 100, 40, 30)
+        detections = Detections.make([box] if seen(index) else np.empty((0, 4)))
+        every.append(tracker.step(scene(box), detections))
+    return every
+
+
+def test_a_vehicle_is_tentative_then_followed_under_one_number():
+    every = drive(TrafficTracker(FLAT), 40)
+    assert {one.identity for estimates in every for one in estimates} == {1}
+    modes = [estimates[0].mode for estimates in every]
+    assert modes[0] is TrackMode.TENTATIVE
+    assert modes[-1] is TrackMode.TRACKING
+    assert modes == sorted(modes, key=lambda mode: mode is TrackMode.TRACKING)
+    assert every[-1][0].box.centre == pytest.approx((20 + 4 * 39 + 20, 115), abs=1)
+    assert every[-1][0].velocity == pytest.approx((4, 0), abs=0.2)
+
+
+def test_pixels_hold_a_vehicle_that_the_detector_misses():
+    every = drive(TrafficTracker(FLAT), 55, seen=lambda index: index < 30 or index > 45)
+    held = [estimates[0] for estimates in every[31:45]]
+    assert {one.mode for one in held} == {TrackMode.TRACKING}
+    assert held[-1].box.centre[0] == pytest.approx(20 + 4 * 44 + 20, abs=3)
+    alone = drive(TrafficTracker(replace(FLAT, pixels=False)), 40, seen=lambda index: index < 30)
+    assert alone[-1][0].mode is TrackMode.OCCLUDED
+
+
+def test_a_vehicle_behind_something_is_occluded_and_comes_back_under_its_number():
+    tracker = TrafficTracker(FLAT)
+    wall = slice(130, 190)
+    numbers, modes = [], []
+    for index in range(60):
+        left = 20 + 4 * index
+        frame = scene((left, 100, 40, 30))
+        frame[:, wall] = 60
+        hidden = wall.start <= left + 5 and left + 35 <= wall.stop
+        partly = left + 40 > wall.start and left < wall.stop
+        seen = [] if partly else [(left, 100, 40, 30)]
+        estimates = tracker.step(frame, Detections.make(np.reshape(seen, (-1, 4))))
+        numbers += [one.identity for one in estimates if one.mode is not TrackMode.TENTATIVE]
+        if hidden:
+            modes += [(one.mode, one.hidden_by) for one in estimates]
+    assert set(numbers) == {1}
+    assert set(modes) == {(TrackMode.OCCLUDED, SCENE)}
+    assert estimates[0].mode is TrackMode.TRACKING
+
+
+def test_a_hidden_vehicle_is_lost_and_forgotten_by_seconds():
+    tracker = TrafficTracker(replace(FLAT, lost_after=0.2, forgotten_after=0.2))
+    drive(tracker, 30)
+    modes = [
+        [one.mode for one in tracker.step(np.full_like(GROUND, 60), Detections.none())]
+        for _ in range(20)
+    ]
+    assert [TrackMode.OCCLUDED] in modes
+    assert [TrackMode.LOST] in modes
+    assert modes[-1] == []
+
+
+def test_a_detection_that_stays_where_it_is_and_flickers_is_no_vehicle():
+    tracker, rng = TrafficTracker(FLAT), np.random.default_rng(4)
+    for index in range(100):
+        where = np.append(60 + rng.normal(0, 2, 2), (12, 9))
+        detections = Detections.make([where]) if index % 3 else Detections.none()
+        estimates = tracker.step(GROUND, detections)
+        assert all(one.mode is TrackMode.TENTATIVE for one in estimates)
+
+
+def test_runs_repeat_bit_by_bit():
+    first, second = (drive(TrafficTracker(), 40, seen=lambda i: i % 7 != 0) for _ in range(2))
+    assert repr(first) == repr(second)
+
+
+def test_vehicles_given_by_hand_need_no_detector():
+    tracker = TrafficTracker(FLAT)
+    with pytest.raises(RuntimeError, match="frame"):
+        tracker.add(Box(20, 100, 40, 30))
+    tracker.step(scene((20, 100, 40, 30)))
+    number = tracker.add(Box(20, 100, 40, 30), "van")
+    for index in range(1, 30):
+        (estimate,) = tracker.step(scene((20 + 2 * index, 100, 40, 30)))
+    assert (estimate.identity, estimate.label, estimate.mode) == (number, "van", TrackMode.TRACKING)
+    assert estimate.box.centre == pytest.approx((20 + 58 + 20, 115), abs=3)
+    assert tracker.remove(number)
+    assert not tracker.remove(number)
+    with pytest.raises(InputError, match="outside"):
+        tracker.add(Box(1000, 1000, 40, 30))
+
+
+def test_numbers_go_on_after_a_reset_and_parameters_change_without_a_loss():
+    tracker = TrafficTracker(FLAT)
+    drive(tracker, 20)
+    tracker.reconfigure(replace(FLAT, seed=7, num_particles=20))
+    assert tracker.seed == 7
+    assert [one.identity for one in drive(tracker, 21)[-1]][:1] == [1]
+    tracker.reset()
+    assert min(one.identity for one in drive(tracker, 3)[-1]) > 1
+
+
+def test_another_size_of_image_and_none_of_its_boxes_end_nothing():
+    tracker = TrafficTracker(FLAT)
+    drive(tracker, 20)
+    tracker.step(np.zeros((120, 160, 3), np.uint8), Detections.none())
+    with pytest.raises(InputError):
+        tracker.step(np.zeros((120, 160), np.uint8))
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.lists(
+        st.tuples(*[st.floats(allow_nan=True, allow_infinity=True, width=32)] * 5), max_size=12
+    )
+)
+def test_no_detection_breaks_it(rows):
+    tracker = TrafficTracker()
+    array = np.array(rows, dtype=float).reshape(-1, 5)
+    for _ in range(3):
+        for one in tracker.step(GROUND, Detections.make(array[:, :4], array[:, 4])):
+            box = one.box
+            assert np.isfinite([box.x, box.y, box.width, box.height, *one.velocity]).all()
+
+
+def test_usable_detections_are_few_finite_distinct_and_in_the_image():
+    rng = np.random.default_rng(0)
+    flood = np.hstack([rng.uniform(0, 200, (10_000, 2)), rng.uniform(5, 30, (10_000, 2))])
+    kept = Detections.make(flood, rng.uniform(size=10_000)).usable(320, 240)
+    assert len(kept) == MOST_DETECTIONS
+    bad = [(np.nan, 0, 5, 5), (0, 0, -3, 5), (900, 0, 5, 5), (0, 0, 1e5, 5), (1, 1, 5, 5)]
+    assert len(Detections.make([*bad, bad[-1]]).usable(320, 240)) == 1
+    with pytest.raises(ValueError, match="as many"):
+        Detections.make([(1, 1, 5, 5)], [1.0, 2.0])

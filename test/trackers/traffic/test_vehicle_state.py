@@ -1,0 +1,98 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""State of a vehicle on the plane of the road, against hand numbers."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import ALONG, Drive, Edge, V, VehicleState
+
+STILL = Drive(acceleration=0.0, top_speed=0.5, focal=400.0)
+
+
+@pytest.fixture
+def state():
+    """A box 40 px wide and 30 px high whose lower edge is 100 px below the horizon."""
+    return VehicleState(np.array([80.0, 120.0, 120.0, 150.0]), np.ones(4), 50.0, STILL)
+
+
+def test_the_first_box_is_the_detection(state):
+    assert state.edges == pytest.approx([80, 120, 120, 150])
+    assert (state.box.width, state.box.height) == (40, 30)
+    assert state.velocity == (0.0, 0.0)
+
+
+def test_a_nearer_vehicle_is_larger_by_the_rule_of_perspective(state):
+    state.mean[ALONG] = -0.1 / 100
+    state.predict(1.0)
+    # 1 / v falls from 0.01 to 0.009.
+    assert state.mean[V] == pytest.approx(1 / 0.009)
+    assert state.box.width == pytest.approx(40 / 0.9)
+    assert state.box.height == pytest.approx(30 / 0.9)
+
+
+def test_the_jacobian_is_that_of_the_prediction():
+    start = VehicleState(np.array([80.0, 120.0, 120.0, 150.0]), np.ones(4), 50.0, STILL)
+    start.mean[4:] = (0.02, -0.0004)
+
+    def predicted(mean):
+        one = VehicleState(np.array([80.0, 120.0, 120.0, 150.0]), np.ones(4), 50.0, STILL)
+        one.mean = mean.copy()
+        one.predict(2.0)
+        return one.mean
+
+    steps = 1e-6 * np.maximum(np.abs(start.mean), 1e-3)
+    columns = [
+        (predicted(start.mean + step) - predicted(start.mean - step)) / (2 * step.sum())
+        for step in np.diag(steps)
+    ]
+    jacobian = np.array(columns).T
+    start.covariance = np.diag([1.0, 2.0, 0.5, 0.4, 1e-4, 1e-8])
+    expected = jacobian @ start.covariance @ jacobian.T
+    w, h = predicted(start.mean)[2:4]
+    start_width, start_height = start.mean[2:4]
+    start.predict(2.0)
+    noise = start.covariance - expected
+    assert noise[2, 2] / start_width**2 == pytest.approx(noise[3, 3] / start_height**2, rel=1e-3)
+    noise[2, 2] = noise[3, 3] = 0
+    assert w > start_width
+    assert h > start_height
+    assert noise == pytest.approx(np.zeros((6, 6)), abs=1e-6)
+
+
+def test_an_edge_moves_the_box_by_the_kalman_gain(state):
+    state.measure(Edge.BOTTOM, 152.0, 1.0)
+    # Variance 1 of the edge and 1 of its measurement: half way.
+    assert state.edges[Edge.BOTTOM] == pytest.approx(151)
+    assert state.edge_covariance[Edge.BOTTOM, Edge.BOTTOM] == pytest.approx(0.5)
+    assert state.edges[Edge.LEFT] == 80
+
+
+def test_measured_places_give_the_speed():
+    state = VehicleState(np.array([0.0, 20.0, 40.0, 50.0]), np.ones(4), -1e4, STILL)
+    for index in range(1, 30):
+        state.predict(1.0)
+        for edge, value in zip(Edge, (3.0 * index, 20.0, 40 + 3.0 * index, 50.0), strict=True):
+            state.measure(edge, value, 1.0)
+    assert state.velocity == pytest.approx((3.0, 0.0), abs=0.1)
+
+
+@pytest.mark.parametrize("along", [-10.0, -0.011, 10.0])
+def test_no_speed_makes_a_box_infinite(state, along):
+    state.mean[ALONG] = along
+    for _ in range(5):
+        state.predict(1.0)
+    assert np.isfinite(state.edges).all()
+    assert state.box.width >= 1
