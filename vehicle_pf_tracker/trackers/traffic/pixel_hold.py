@@ -57,6 +57,10 @@ _LEAST_SHARE = 0.5
 """Share of the points that must agree."""
 _GROWTH_SIGMA = 0.02
 """Standard deviation of the change of size in a frame beyond the predicted one."""
+_DRIVES_PX = 0.7
+"""Predicted way in a frame from which on standing points are told from those on the vehicle, px."""
+_STANDS = 0.4
+"""Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
 _LARGEST_FALL = 0.15
 """Fall of the colours' likeness below its usual value from which on it is not the vehicle."""
 _REPULSION = 10.0
@@ -118,10 +122,11 @@ class PixelHold:
 
 def _hold(track: Track, old: Array, new: Array, normals: Array, colours: ColourBins) -> Hold | None:
     """Weight particles by the flow of one vehicle's points."""
-    alive = np.isfinite(new[:, 0])
-    if alive.sum() < _FEWEST:
-        return None
     before, predicted = track.before, track.state.edges
+    found = np.isfinite(new[:, 0])
+    alive = found & ~_standing(old, new, before, predicted)
+    if alive.sum() < max(_FEWEST, _LEAST_SHARE * found.sum()):
+        return None
     centre, size = (predicted[:2] + predicted[2:]) / 2, predicted[2:] - predicted[:2]
     relative = (old[alive] - (before[:2] + before[2:]) / 2) * _growth(before, predicted)
     observed = new[alive] - centre
@@ -146,6 +151,15 @@ def _hold(track: Track, old: Array, new: Array, normals: Array, colours: ColourB
     spread = np.sqrt(weights @ (boxes - edges) ** 2)
     sides = np.tile(edges[2:] - edges[:2], 2)
     return Hold(edges, _CAUTION * (np.hypot(spread, _SLIP * sides) + _SLIP_PX))
+
+
+def _standing(old: Array, new: Array, before: Array, predicted: Array) -> npt.NDArray[np.bool_]:
+    """Points that stand while the vehicle drives: they lie on what hides it."""
+    drive = (predicted[:2] + predicted[2:] - before[:2] - before[2:]) / 2
+    length = float(np.hypot(*drive))
+    if length < _DRIVES_PX:
+        return np.zeros(len(old), dtype=np.bool_)
+    return np.asarray(np.hypot(*(new - old).T) < _STANDS * length)
 
 
 def _particles(track: Track, motions: Array, normals: Array) -> Array:
