@@ -31,7 +31,7 @@ from vehicle_pf_tracker.trackers.traffic.overlaps import (
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track
 
-_AGREEMENT = 0.7
+_AGREEMENT = 1.2
 """Log odds that a detection adds by being where a track predicts it."""
 _LEAST, _MOST = -0.6, 2.0
 """Bounds of the log odds that one detection adds: a few good scores are no proof, and a detector
