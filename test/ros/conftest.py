@@ -67,6 +67,13 @@ def ros_domain():
 
 
 @pytest.fixture(scope="session", autouse=True)
+def compiled_kernels():
+    """Compile the kernels once: a node with a cold cache answers WAITING for a minute."""
+    code = "from vehicle_pf_tracker.image.kernels.choice import load_kernels; load_kernels('auto')"
+    subprocess.run([sys.executable, "-c", code], check=False, timeout=600)
+
+
+@pytest.fixture(scope="session", autouse=True)
 def hangups():
     """Let child processes take SIGHUP as ever, also where nohup started the tests."""
     before = signal.signal(signal.SIGHUP, signal.SIG_DFL)

@@ -121,10 +121,11 @@ def test_descriptors_say_all_that_is_known(make, variant):
             assert spec.maximum is None or one.to_value == spec.maximum
 
 
-def test_whole_numbers_in_a_file_do_for_real_ones(make, tmp_path):
+def test_whole_numbers_in_a_file_do_for_real_ones(bench, make, tmp_path):
     node = make(*yaml_file(tmp_path, "motion:", "  sigma_w: 4", "lost_after: 3"))
     assert (value(node, "motion.sigma_w"), value(node, "lost_after")) == (4.0, 3.0)
     assert type(value(node, "motion.sigma_w")) is float
+    bench.wait_for(node._stream.get_ready)  # kernels load beside
     assert node._stream._session.tracker.parameters.motion.sigma_w == 4.0
 
 
