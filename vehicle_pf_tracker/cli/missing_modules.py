@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What brings a Python module that is not installed."""
+"""Remedies for Python modules that are not installed."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Which edges of a detection are measured."""
+"""Choice of the edges of a detection that are measured."""
 
 import numpy as np
 import pytest

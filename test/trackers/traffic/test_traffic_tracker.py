@@ -175,3 +175,13 @@ def test_usable_detections_are_few_finite_distinct_and_in_the_image():
     assert len(Detections.make([*bad, bad[-1]]).usable(320, 240)) == 1
     with pytest.raises(ValueError, match="as many"):
         Detections.make([(1, 1, 5, 5)], [1.0, 2.0])
+
+
+def test_a_vehicle_given_by_hand_is_not_refuted_by_a_detector_that_does_not_see_it():
+    tracker = TrafficTracker(FLAT)
+    parked = (200, 100, 40, 30)
+    tracker.step(scene(parked), Detections.none())
+    number = tracker.add(Box(*parked))
+    for _ in range(120):
+        (estimate,) = tracker.step(scene(parked), Detections.none())
+    assert (estimate.identity, estimate.mode) == (number, TrackMode.TRACKING)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Which detection belongs to which track.
+"""Assignment of detections to tracks.
 
 The cost of a pair is the squared Mahalanobis distance of the four edges, or, where the detection
 lies inside the predicted box because something hides a part, that of the edges that are not drawn

@@ -117,7 +117,7 @@ class BlobReader:
     def _is_divided(
         self, box: Array, common: Array, predicted: Array, members: npt.NDArray[np.intp]
     ) -> bool:
-        """Whether a blob is several vehicles: none fits alone, and the aspects speak for it."""
+        """Test for several vehicles in a blob: none fits alone, and the aspects suggest it."""
         if len(members) < 2:
             return False
         union = areas(box) + areas(predicted) - common

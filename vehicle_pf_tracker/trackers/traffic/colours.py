@@ -69,6 +69,6 @@ class ColourBins:
         return np.asarray(counts / max(int(counts.sum()), 1))
 
 
-def likeness(one: Array, other: Array) -> float:
+def similarity(one: Array, other: Array) -> float:
     """Bhattacharyya coefficient of two histograms, 0 to 1."""
     return float(np.sqrt(one * other).sum())

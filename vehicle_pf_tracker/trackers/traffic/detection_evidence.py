@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How likely a detection is a vehicle, learnt from what became of earlier ones.
+"""Probability that a detection is a vehicle, learnt from the outcomes of earlier ones.
 
 Two things tell: the score, of which only the order counts, so that a detector whose scores are
 squared or halved is the same one; and the place, because a tree in the wind is reported again and

@@ -50,6 +50,8 @@ _MISSED_HELD = 0.3
 """... off one that its pixels hold, ..."""
 _MISSED_HIDDEN = 0.12
 """... and off one that may be hidden by something unknown."""
+_ONE_PERIOD = 1.5
+"""Nominal periods since pixels held a vehicle in the frame before, at most: stamps jitter."""
 _DOUBLE = 0.3
 """Log odds that a track without a detection loses while it is one box with a detected one."""
 _SAME = 0.5
@@ -126,7 +128,7 @@ class Existence:
         detected = [one for one in tracks if one.confirmed and one.undetected == 0]
         boxes = np.array([track.state.edges for track in detected]).reshape(-1, 4)
         for track in tracks:
-            if track.undetected == 0:
+            if track.undetected == 0 or (track.given and track.unseen <= _ONE_PERIOD):
                 continue
             if track.confirmed and _is_double(track, boxes):
                 track.log_odds -= _DOUBLE * elapsed
@@ -138,7 +140,7 @@ class Existence:
         if not track.confirmed:
             return _MISSED_TENTATIVE
         # Pixels are asked later in the frame: they held it if they did in the frame before.
-        return _MISSED_HELD if track.unseen <= 1.0 else _MISSED_HIDDEN
+        return _MISSED_HELD if track.unseen <= _ONE_PERIOD else _MISSED_HIDDEN
 
     def survivors(
         self, tracks: Sequence[Track], size: tuple[int, int], period: float
@@ -176,7 +178,7 @@ class Existence:
 
 
 def _is_double(track: Track, detected: Array) -> bool:
-    """Whether a track without a detection is the same vehicle as a detected one."""
+    """Test whether a track without a detection is the same vehicle as a detected one."""
     if not len(detected):
         return False
     edges = track.state.edges

@@ -45,7 +45,7 @@ _LESS = 0.95
 """Share of the latest detections' width or height below which an edge can have jumped inward: a
 box of the same size as before is not covered, it was predicted wrong."""
 _FADED = 0.985
-"""What is left per detection of the largest latest width and height: a vehicle that drives away
+"""Decay per detection of the largest latest width and height: a vehicle that drives away
 becomes smaller by about 1 % per frame."""
 _SETTLED = 4
 """Detections from which on a box is known well enough to tell that an edge is covered."""
@@ -159,7 +159,7 @@ def is_cut(edges: Array, size: tuple[int, int]) -> bool:
 
 
 def _cut(edges: Array, size: tuple[int, int]) -> list[bool]:
-    """Which edges lie on or beyond the border."""
+    """Find the edges that lie on or beyond the border."""
     left, top, right, bottom = edges.tolist()
     width, height = size
     return [left <= _BORDER, top <= _BORDER, right >= width - _BORDER, bottom >= height - _BORDER]

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Which vehicles hide which: the one whose lower edge is lower in the image is nearer."""
+"""Occlusions among vehicles: the one whose lower edge is lower in the image is nearer."""
 
 from __future__ import annotations
 

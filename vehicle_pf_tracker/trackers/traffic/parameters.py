@@ -136,7 +136,7 @@ class TrafficParameters:
     )
     forgotten_after: float = parameter(
         3.0,
-        "Longer: a LOST vehicle can come back under its number for longer.",
+        "Longer: a LOST vehicle keeps its number for longer, should it reappear.",
         minimum=0.0,
         maximum=600.0,
         unit="s",
@@ -146,7 +146,7 @@ class TrafficParameters:
         True, "Off: vehicles are followed as if none could hide another; to compare."
     )
     returning: bool = parameter(
-        True, "Off: a vehicle that comes back away from its prediction gets a new number."
+        True, "Off: a vehicle that reappears away from its prediction gets a new number."
     )
     motion: RoadMotionParameters = group(RoadMotionParameters)
     detections: DetectionParameters = group(DetectionParameters)

@@ -30,7 +30,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, likeness
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.overlaps import areas
 from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import V, X
@@ -62,7 +62,7 @@ _DRIVES_PX = 0.7
 _STANDS = 0.4
 """Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
 _LARGEST_FALL = 0.15
-"""Fall of the colours' likeness below its usual value from which on it is not the vehicle."""
+"""Fall of the colours' similarity below its usual value from which on it is not the vehicle."""
 _REPULSION = 10.0
 """Weight of an overlap with nearer vehicles beyond the predicted one, per area of the box."""
 _SLIP, _SLIP_PX = 0.02, 0.3
@@ -145,7 +145,9 @@ def _hold(track: Track, old: Array, new: Array, normals: Array, colours: ColourB
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
     edges = weights @ boxes
-    fall = track.usual_likeness - likeness(track.colours, colours.histogram(edges, track.covers))
+    fall = track.usual_similarity - similarity(
+        track.colours, colours.histogram(edges, track.covers)
+    )
     if fall > _LARGEST_FALL:
         return None
     spread = np.sqrt(weights @ (boxes - edges) ** 2)

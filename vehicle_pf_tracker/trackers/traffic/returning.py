@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Recognition of a vehicle that comes back away from where it was predicted.
+"""Re-identification of a vehicle that reappears away from its predicted position.
 
 Before a new vehicle is reported, those that are hidden near by are asked whether it is one of them:
 by distance, size and colours.
@@ -25,19 +25,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from vehicle_pf_tracker.trackers.traffic.colours import likeness
+from vehicle_pf_tracker.trackers.traffic.colours import similarity
 from vehicle_pf_tracker.trackers.traffic.track import Track
 
 _MISSED_FOR = 5.0
 """Nominal periods without a detection from which on a vehicle may be hidden."""
 _REACH = 1.0
-"""Distance from the prediction, in widths, within which a vehicle can come back at once; ..."""
+"""Distance from the prediction, in widths, within which a vehicle can reappear at once; ..."""
 _REACH_GROWTH = 1 / 30
 """... and its growth per nominal period, of itself: roads bend, drivers brake."""
 _SIZE_RATIO = 4.0
-"""Largest ratio of areas: a vehicle comes back part by part."""
+"""Largest ratio of areas: a vehicle reappears part by part."""
 _LARGEST_FALL = 0.25
-"""Fall of the colours' likeness below its usual value up to which it may be the same vehicle."""
+"""Fall of the colours' similarity below its usual value up to which it may be the same vehicle."""
 
 
 def former(track: Track, others: Sequence[Track]) -> Track | None:
@@ -65,7 +65,7 @@ def _cost(track: Track, other: Track) -> float | None:
     (x, y), (u, v) = new.centre, old.centre
     width = math.sqrt(new.width * old.width)
     distance = math.hypot(x - u, y - v) / width / (_REACH * (1 + _REACH_GROWTH * other.undetected))
-    fall = other.usual_likeness - likeness(other.colours, track.colours)
+    fall = other.usual_similarity - similarity(other.colours, track.colours)
     if distance > 1 or fall > _LARGEST_FALL or not np.any(track.colours):
         return None
     return distance

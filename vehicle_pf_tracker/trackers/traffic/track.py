@@ -34,9 +34,9 @@ detections in plain sight speak against it."""
 SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
 _COLOUR_RATE = 0.1
-"""Rate per detection at which colours and their usual likeness are learnt."""
-_FIRST_LIKENESS = 0.9
-"""Likeness of a vehicle's colours from frame to frame before it is known."""
+"""Rate per detection at which colours and their usual similarity are learnt."""
+_FIRST_SIMILARITY = 0.9
+"""Similarity of a vehicle's colours from frame to frame before it is known."""
 _HIDDEN_CONFIDENCE = 0.5
 """Share of the confidence that is left while a vehicle is predicted only."""
 
@@ -63,6 +63,8 @@ class Track:
         Largest width and height of its latest detections, px.
     confirmed, lost : bool
         It is reported; it has been hidden for too long to be predicted.
+    given : bool
+        It was given by hand: that no detector finds it does not refute it.
     score : float
         Score of its detection in this frame; NaN without one.
     age, unseen, undetected : float
@@ -77,8 +79,8 @@ class Track:
         Edges in the frame before, px.
     samples : list of Sample
         Its detections before it was confirmed.
-    usual_likeness : float
-        Likeness of its colours to those learnt, while it is detected.
+    usual_similarity : float
+        Similarity of its colours to those learnt, while it is detected.
     growth : Growth
         How its size depends on its place.
     """
@@ -94,6 +96,7 @@ class Track:
     sides: Array = field(default_factory=lambda: np.zeros(2))
     confirmed: bool = False
     lost: bool = False
+    given: bool = False
     score: float = math.nan
     age: float = 0.0
     unseen: float = 0.0
@@ -104,7 +107,7 @@ class Track:
     hidden_by: int | None = None
     before: Array = field(default_factory=lambda: np.zeros(4))
     samples: list[Sample] = field(default_factory=list)
-    usual_likeness: float = _FIRST_LIKENESS
+    usual_similarity: float = _FIRST_SIMILARITY
     growth: Growth = field(default_factory=Growth)
     _first: Array = field(default_factory=lambda: np.zeros(2))
     _drive: Array = field(default_factory=lambda: np.zeros(8))
@@ -123,9 +126,9 @@ class Track:
         known = self.colours.any()
         self.colours = self.colours + (_COLOUR_RATE if known else 1.0) * (colours - self.colours)
 
-    def learn_likeness(self, likeness: float) -> None:
-        """Let the usual likeness of the colours follow that of a detected vehicle."""
-        self.usual_likeness += _COLOUR_RATE * (likeness - self.usual_likeness)
+    def learn_similarity(self, similarity: float) -> None:
+        """Let the usual similarity of the colours follow that of a detected vehicle."""
+        self.usual_similarity += _COLOUR_RATE * (similarity - self.usual_similarity)
 
     def note_place(self, centre: Array) -> None:
         """Note the centre (px) of a detection, from which the straightness of its way is known."""

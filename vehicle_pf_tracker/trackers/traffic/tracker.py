@@ -25,7 +25,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.trackers.traffic.association import GATE, assign, edge_costs
-from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, likeness
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
@@ -125,7 +125,7 @@ class TrafficTracker:
         if self.parameters.pixels:
             self._hold(normals)
         self._end()
-        self._learn_likeness()
+        self._learn_similarity()
         ordered = sorted(self._tracks, key=lambda track: track.identity)
         return tuple(track.estimate() for track in ordered)
 
@@ -143,7 +143,8 @@ class TrafficTracker:
             raise RuntimeError("show the tracker a frame before adding a vehicle")
         check_target(box, *self._size)
         track = self._begin(np.array([*box.corners[0], *box.corners[2]]), label)
-        track.confirmed, track.log_odds = True, MOST_EVIDENCE
+        track.confirmed = track.given = True
+        track.log_odds = MOST_EVIDENCE
         track.learn_colours(self._colours.histogram(track.state.edges, track.covers))
         return track.identity
 
@@ -207,7 +208,7 @@ class TrafficTracker:
         costs = edge_costs(clipped(predicted, self._size), spread, seen.edges[indices])
         if settings.colour_cost:
             for row, column in np.argwhere(costs < GATE).tolist():
-                alike = likeness(tracks[row].colours, seen.histogram(indices[column]))
+                alike = similarity(tracks[row].colours, seen.histogram(indices[column]))
                 costs[row, column] += settings.colour_cost * (1 - alike)
         for row, column in assign(costs):
             self._correct(tracks[row], seen, indices[column])
@@ -239,6 +240,7 @@ class TrafficTracker:
         hidden.unseen = hidden.undetected = 0.0
         hidden.log_odds = max(hidden.log_odds, track.log_odds)
         hidden.visible, hidden.covers, hidden.hidden_by = track.visible, track.covers, None
+        hidden.sides, hidden.partial = track.sides, track.partial
         self._tracks.remove(track)
 
     def _drop_parts(self, seen: Seen) -> None:
@@ -252,7 +254,7 @@ class TrafficTracker:
                 self._evidence.learn(seen.samples[index], False)
 
     def _is_taken(self, edges: Array) -> bool:
-        """Whether a vehicle that is followed stands where a new one would begin."""
+        """Test whether a tracked vehicle is where a new one would begin."""
         there = [one for one in self._tracks if one.confirmed and one.unseen < _RECENT]
         boxes = np.array([track.state.edges for track in there]).reshape(-1, 4)
         smaller = np.minimum(areas(boxes), areas(edges))
@@ -312,9 +314,9 @@ class TrafficTracker:
                 self._horizon.learn(track.growth, self._size[1])
         self._tracks = kept
 
-    def _learn_likeness(self) -> None:
-        """Learn how like itself each detected vehicle looks from frame to frame."""
+    def _learn_similarity(self) -> None:
+        """Learn the usual similarity of each detected vehicle's colours to those learnt."""
         for track in self._tracks:
             if track.confirmed and track.undetected == 0:
                 now = self._colours.histogram(track.state.edges, track.covers)
-                track.learn_likeness(likeness(track.colours, now))
+                track.learn_similarity(similarity(track.colours, now))

@@ -67,7 +67,7 @@ OBSERVATION = np.array(
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """What is known of all vehicles' motion.
+    """Motion model that all vehicles share.
 
     Attributes
     ----------
