@@ -210,6 +210,8 @@ class Configuration:
         for field in dataclasses.fields(self):
             part = getattr(self, field.name)
             own = {name: values[name] for name in specs(type(part)) if name in values}
+            if not own:
+                continue
             try:
                 changed[field.name] = from_mapping(type(part), own, part)
             except InputError as error:

@@ -193,8 +193,13 @@ def specs(cls: type[object]) -> Mapping[str, ParameterSpec]:
 
 
 @functools.cache
+def _hints(cls: Any) -> Mapping[str, Any]:
+    return get_type_hints(cls)  # would evaluate every annotation anew for each change
+
+
+@functools.cache
 def _specs(cls: Any) -> Mapping[str, ParameterSpec]:
-    hints = get_type_hints(cls)
+    hints = _hints(cls)
     defaults = cls()
     table: dict[str, ParameterSpec] = {}
     for field in dataclasses.fields(cls):
@@ -253,8 +258,8 @@ def from_mapping(
     return parameters
 
 
-def _build(cls: type[Any], values: Mapping[str, Value], prefix: str) -> Any:
-    hints = get_type_hints(cls)
+def _build(cls: Any, values: Mapping[str, Value], prefix: str) -> Any:
+    hints = _hints(cls)
     arguments: dict[str, Any] = {}
     for field in dataclasses.fields(cls):
         dotted = prefix + field.name
