@@ -44,6 +44,10 @@ _STRAIGHT = 0.8
 """Straightness of the way of a vehicle; of flickering leaves it is below one half."""
 _STRAIGHT_MATCHES = 15
 """Fewest detections that a straightness is judged by."""
+_MOVED_MATCHES = 5
+"""Fewest detections by which what ended unconfirmed is known to have driven: it may have been a
+vehicle, and tells nothing about its detections. Taken for false alarms, vehicles that reach the
+next bridge too soon kept those after them from being confirmed, too: of forty, six."""
 _MISSED_TENTATIVE = 1.0
 """Log odds that a detection missed in plain sight takes off a new vehicle, ..."""
 _MISSED_HELD = 0.3
@@ -112,8 +116,10 @@ class Existence:
             return False
         if track.strength > _PROVEN_BY_SCORES:
             return True
-        straight = track.matches >= _STRAIGHT_MATCHES and track.straightness > _STRAIGHT
-        return straight and track.way > birth.displacement
+        return track.matches >= _STRAIGHT_MATCHES and self._drives(track)
+
+    def _drives(self, track: Track) -> bool:
+        return track.straightness > _STRAIGHT and track.way > self.parameters.birth.displacement
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
         """Take off evidence from tracks that a detector has not seen.
@@ -163,8 +169,9 @@ class Existence:
             if self._goes_on(track, unseen, inside_image(track.state.edges, size)):
                 kept.append(track)
                 continue
-            for sample in track.samples:
-                self._evidence.learn(sample, False)
+            if track.matches < _MOVED_MATCHES or not self._drives(track):
+                for sample in track.samples:
+                    self._evidence.learn(sample, False)
         return kept
 
     def _goes_on(self, track: Track, unseen: float, inside: float) -> bool:

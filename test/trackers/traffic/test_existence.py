@@ -1,0 +1,59 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Evidence that tracks are vehicles."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
+from vehicle_pf_tracker.trackers.traffic.existence import Existence
+from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
+
+SIZE = (320, 240)
+SCORE = 0.8
+
+
+def ended_unconfirmed(places):
+    """Return the log odds of a detection after ten tracks that were detected at these places."""
+    evidence = DetectionEvidence()
+    existence = Existence(TrafficParameters(), evidence)
+    for _ in range(10):
+        track = None
+        for frame, (left, top) in enumerate(places):
+            edges = np.array([left, top, left + 40.0, top + 30.0])
+            state = VehicleState(edges, np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0))
+            track = track or Track(1, state)
+            track.state, track.age = state, float(frame)
+            existence.detected(track, edges, evidence.sample(edges, SCORE, SIZE), 0.0)
+        assert not track.confirmed
+        track.undetected = 100.0
+        assert existence.survivors([track], SIZE, 1 / 30) == []
+    elsewhere = evidence.sample(np.array([200.0, 180.0, 240.0, 210.0]), SCORE, SIZE)
+    return float(evidence.log_odds([elsewhere])[0])
+
+
+def test_what_flickered_in_one_place_speaks_against_its_scores():
+    jitter = np.random.default_rng(4).normal(0, 3, (8, 2))
+    assert ended_unconfirmed(100 + jitter) < -1
+
+
+def test_what_drove_and_ended_unconfirmed_tells_nothing_about_its_scores():
+    assert ended_unconfirmed([(20 + 4 * frame, 100) for frame in range(8)]) == pytest.approx(0)
+
+
+def test_what_was_seen_a_few_times_speaks_against_its_scores():
+    assert ended_unconfirmed([(20 + 4 * frame, 100) for frame in range(3)]) < -1
