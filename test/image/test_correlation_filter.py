@@ -18,18 +18,29 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image import correlation_filter
-from vehicle_pf_tracker.image.correlation_filter import CorrelationFilter, cells_of, half_spectrum
+from vehicle_pf_tracker.image.correlation_filter import CorrelationFilter
+from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.image.partial_fourier import PartialFourier
 
 SIDE = 32
 TARGET = np.array([8.0, 6.0])
+INSIDE = (slice(None), slice(13, 19), slice(12, 20))
+"""The target's cells: eight by six around the middle, which lies between cells 15 and 16."""
+KERNELS = load_kernels("opencv")
+WHOLE = PartialFourier(SIDE, slice(SIDE), slice(SIDE))
 
 
 def features(seed=0, side=SIDE):
     return np.random.default_rng(seed).normal(size=(5, side, side)).astype(np.float32)
 
 
-def trained(seed=0):
-    made = CorrelationFilter(SIDE, TARGET, 0.1)
+def cells_of(made, seed=0):
+    """Cells as the filter sees them, faded out."""
+    return WHOLE.cells_of(made.spectrum(features(seed)))
+
+
+def trained(seed=0, kernels=KERNELS):
+    made = CorrelationFilter(SIDE, TARGET, 0.1, kernels)
     made.train(made.spectrum(features(seed)), 0.0)
     return made
 
@@ -57,7 +68,7 @@ def test_more_steps_reach_the_least_squares_solution(monkeypatch):
     monkeypatch.setattr(correlation_filter, "_FIRST_STEPS", 40)
     monkeypatch.setattr(correlation_filter, "_FIRST_GROWTH", 1.0)
     made = trained()
-    cells = cells_of(made.spectrum(features()), SIDE)
+    cells = cells_of(made)
     columns = [
         np.roll(channel, (SIDE // 2 - row, SIDE // 2 - column), (0, 1)).ravel()
         for channel in cells for row in range(13, 19) for column in range(12, 20)
@@ -70,14 +81,14 @@ def test_more_steps_reach_the_least_squares_solution(monkeypatch):
     least = np.linalg.norm(matrix @ solution - label.ravel())
 
     def residual(trained_filter):
-        weights = trained_filter.weights.cells[:, 13:19, 12:20].ravel()
+        weights = trained_filter.weights.target.ravel()
         return np.linalg.norm(matrix @ weights - label.ravel())
 
     assert residual(made) == pytest.approx(least, rel=1e-3)
     assert least < residual(eight) < 0.7 * np.linalg.norm(label)
     # The upsampled response leaves out the highest frequency, which noise has.
     response = made.respond(made.spectrum(features()))[::2, ::2]
-    expected = matrix @ made.weights.cells[:, 13:19, 12:20].ravel()
+    expected = matrix @ made.weights.target.ravel()
     assert response.ravel() == pytest.approx(expected, abs=0.03)
 
 
@@ -91,27 +102,44 @@ def test_the_peak_follows_a_shift_to_half_a_cell(x, y):
 def test_shifting_a_spectrum_moves_its_cells():
     made = trained()
     spectrum = made.spectrum(features())
-    moved = cells_of(made.shifted(spectrum, 3, -2), SIDE)
-    assert moved == pytest.approx(np.roll(cells_of(spectrum, SIDE), (-2, 3), (1, 2)), abs=1e-5)
+    moved = WHOLE.cells_of(made.shifted(spectrum, 3, -2))
+    assert moved == pytest.approx(np.roll(cells_of(made), (-2, 3), (1, 2)), abs=1e-5)
 
 
 def test_weights_are_zero_outside_the_target():
-    """Eight by six cells around the middle, which lies between cells 15 and 16."""
-    weights = trained().weights.cells
-    outside = np.ones((SIDE, SIDE), bool)
-    outside[13:19, 12:20] = False
-    assert not weights[:, outside].any()
-    assert (np.abs(weights).sum(axis=0) > 0)[~outside].all()
-
-
-def test_kept_spectrum_and_cells_are_the_same_filter():
+    """The spectrum that responses are made with is that of the target's cells and zeros."""
     weights = trained().weights
-    assert weights.spectrum == pytest.approx(half_spectrum(weights.cells), abs=1e-6)
+    cells = WHOLE.cells_of(weights.spectrum)
+    assert cells[INSIDE] == pytest.approx(weights.target, abs=1e-6)
+    assert (np.abs(weights.target).sum(axis=0) > 0).all()
+    cells[INSIDE] = 0
+    assert np.abs(cells).max() < 1e-6
+
+
+def test_the_response_in_the_middle_of_a_small_patch_is_that_of_the_large_one():
+    """Which leaves out the highest frequency along x."""
+    made = trained()
+    small = features()[:, 10:22, 10:22]
+    whole = float(np.vdot(cells_of(made)[INSIDE], made.weights.target))
+    assert made.respond_in_middle(small) == pytest.approx(whole, rel=1e-5)
+    assert made.respond_in_middle(small) == pytest.approx(
+        float(made.respond(made.spectrum(features()))[SIDE, SIDE]), abs=0.03
+    )
+
+
+def test_compiled_kernels_train_the_same_filter():
+    pytest.importorskip("numba", reason="numba is not installed")
+    plain, compiled = (trained(kernels=load_kernels(name)) for name in ("opencv", "numba"))
+    for made in (plain, compiled):
+        made.train(made.shifted(made.spectrum(features(3)), 0.4, -0.7), 2.0)
+    assert compiled.weights.target == pytest.approx(plain.weights.target, abs=1e-6)
+    responses = [made.respond(made.spectrum(features(4))) for made in (plain, compiled)]
+    assert responses[0] == pytest.approx(responses[1], abs=1e-6)
 
 
 def test_a_single_channel_without_limit_is_ridge_regression():
     """Without prior and limit, ADMM's fixed point inverts the patch wherever it has power."""
-    made = CorrelationFilter(SIDE, np.array([2.0 * SIDE, 2.0 * SIDE]), 1e-4)
+    made = CorrelationFilter(SIDE, np.array([2.0 * SIDE, 2.0 * SIDE]), 1e-4, KERNELS)
     spectrum = made.spectrum(features()[:1])
     made.train(spectrum, 0.0)
     offsets = np.arange(SIDE) - SIDE // 2
@@ -125,9 +153,9 @@ def test_great_stiffness_keeps_the_filter_and_none_learns_the_new_patch():
     strangers = {}
     for stiffness in (1e9, 1.0, 0.0):
         made = trained()
-        before = made.weights.cells.copy()
+        before = made.weights.target.copy()
         made.train(made.spectrum(features(9)), stiffness)
-        strangers[stiffness] = np.linalg.norm(made.weights.cells - before) / np.linalg.norm(before)
+        strangers[stiffness] = np.linalg.norm(made.weights.target - before) / np.linalg.norm(before)
     assert strangers[1e9] < 1e-3
     assert strangers[1e9] < strangers[1.0] < strangers[0.0]
 
@@ -145,7 +173,7 @@ def test_learning_a_new_patch_raises_the_response_to_it():
 
 
 def test_training_is_deterministic():
-    assert np.array_equal(trained().weights.cells, trained().weights.cells)
+    assert np.array_equal(trained().weights.target, trained().weights.target)
 
 
 @pytest.mark.parametrize(("x", "y"), [(0, 0), (10, -6), (-14, 15)])
@@ -153,14 +181,14 @@ def test_a_wide_patch_shows_the_target_wherever_it_is(x, y):
     made = trained()
     wide = 0.3 * features(4, 64)
     row, column = 16 + y, 16 + x
-    wide[:, row : row + SIDE, column : column + SIDE] = cells_of(made.spectrum(features()), SIDE)
+    wide[:, row : row + SIDE, column : column + SIDE] = cells_of(made)
     response = made.respond_wide(wide)
     assert response.shape == (128, 128)
     assert peak(response) == (2 * x, 2 * y)
 
 
 def test_empty_cells_give_a_finite_filter():
-    made = CorrelationFilter(SIDE, TARGET, 0.1)
+    made = CorrelationFilter(SIDE, TARGET, 0.1, KERNELS)
     nothing = made.spectrum(np.zeros((5, SIDE, SIDE), np.float32))
     for stiffness in (0.0, 5.0):
         made.train(nothing, stiffness)

@@ -24,6 +24,8 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.image import shared_motion
+from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE, MotionKernels
 from vehicle_pf_tracker.image.small_grey import SmallGrey
 
 _LEAST_SIDE = 32
@@ -31,7 +33,7 @@ _LEAST_SIDE = 32
 _GRID = (8, 6)
 """Cells along x and y that give one corner each, so that no lorry gives most of them."""
 _BORDER = 6
-"""Margin in px without corners: half a flow window."""
+"""Margin in px without corners: a flow window, or most of one."""
 _LEAST_STRENGTH = 1e-4
 """Smallest eigenvalue of a corner; below it a patch of road matches its whole surroundings."""
 _REFRESHED_AFTER = 5
@@ -48,14 +50,10 @@ _NEIGHBOURHOOD = (5, 5)
 """Window in px over which changes around a corner are averaged: the noise of its pixels cancels."""
 _CLEARANCE = 0.75
 """Distance of corners from the target's centre, of its size: half of it, and a margin."""
-_AGREEING_PX = 0.7
-"""Residual of a corner that agrees with the motion, in px of the reduced frame."""
-_LEAST_CORNERS = 6
-"""Fewest corners that four numbers are fitted to."""
-_STILL_SHARE = 0.5
-"""Share of corners at rest from which the camera stands: a lorry moves many, not half."""
-_FITS = 5
-"""Reweighted fits; the weights change little after the third."""
+_CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 10, 0.03)
+_FLOW = {"winSize": (9, 9), "maxLevel": 3, "criteria": _CRITERIA,
+         "flags": cv2.OPTFLOW_USE_INITIAL_FLOW}  # fmt: skip
+"""Windows of 13 px cost twice as much, and are no nearer to what 300 corners give."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,55 +85,38 @@ class CameraMotion:
         return bool(np.array_equal(self.turn, np.eye(2)) and not self.shift.any())
 
 
-def fit_camera_motion(before: Array, after: Array) -> CameraMotion:
+def fit_camera_motion(
+    before: Array, after: Array, kernels: MotionKernels = shared_motion
+) -> CameraMotion:
     """Fit a similarity to the motion that most corners share; none for a camera that stands.
 
     Parameters
     ----------
     before, after : (N, 2) arrays
         Corners in both frames, px.
+    kernels : MotionKernels
+        What fits.
     """
-    flow = after - before
-    if len(flow) < _LEAST_CORNERS:
-        return CameraMotion()
-    if (np.hypot(flow[:, 0], flow[:, 1]) < _AGREEING_PX).mean() >= _STILL_SHARE:
-        return CameraMotion()
-    # A zoom or a roll spreads the flow over the image, hence the wide neighbourhood.
-    apart = np.linalg.norm(flow[:, np.newaxis] - flow, axis=2)
-    densest = int((apart < 3 * _AGREEING_PX).sum(axis=1).argmax())
-    agreeing = apart[densest] < 5 * _AGREEING_PX
-    if agreeing.sum() < _LEAST_CORNERS:
-        return CameraMotion()
-    return _robust_similarity(before[agreeing], after[agreeing])
-
-
-def _robust_similarity(before: Array, after: Array) -> CameraMotion:
-    """Fit by least squares, reweighted so that corners far off count little."""
-    weights = np.ones(len(before))
-    motion = CameraMotion()
-    for _ in range(_FITS):
-        total = weights.sum()
-        middle, target = weights @ before / total, weights @ after / total
-        x, y = before - middle, after - target
-        spread = float(weights @ (x**2).sum(axis=1)) + 1e-9
-        along = float(weights @ (x * y).sum(axis=1)) / spread
-        across = float(weights @ (x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0])) / spread
-        turn = np.array([[along, -across], [across, along]])
-        motion = CameraMotion(turn, target - turn @ middle)
-        residual = np.linalg.norm(after - motion.apply(before), axis=1)
-        scale = max(1.5 * float(np.median(residual)), _AGREEING_PX / 2)
-        weights = 1 / (1 + (residual / scale) ** 2) ** 2
-    return motion
+    found = kernels.shared_similarity(before, after)
+    return CameraMotion(found[:, :2], found[:, 2])
 
 
 class CameraFlow:
-    """Follows corners of the background from frame to frame."""
+    """Follows corners of the background from frame to frame.
 
-    def __init__(self) -> None:
+    Attributes
+    ----------
+    kernels : MotionKernels
+        What fits their motion.
+    """
+
+    def __init__(self, kernels: MotionKernels = shared_motion) -> None:
+        self.kernels = kernels
         self._last: npt.NDArray[np.uint8] | None = None
         self._corners = np.empty((0, 1, 2), np.float32)
         self._age = 0.0
         self._still = 0
+        self._motion = CameraMotion()
 
     @property
     def _is_mounted(self) -> bool:
@@ -156,17 +137,18 @@ class CameraFlow:
         if last is None or last.shape != reduced.shape or min(reduced.shape) < _LEAST_SIDE:
             return CameraMotion()
         corners = self._background(last, target, zoom)
-        if len(corners) < _LEAST_CORNERS:
+        if len(corners) < LEAST_CORNERS:
             return CameraMotion()
         if self._is_mounted and _stand(last, reduced, corners):
             self._age += _WEAR_IN_PLACE - 1
             self._still += 1
             return CameraMotion()
-        moved, found = _track(last, reduced, corners)
+        moved, found = _track(last, reduced, corners, self._motion)
         kept = found.ravel() > 0
         self._corners = np.ascontiguousarray(moved[kept])
-        before = corners[kept].reshape(-1, 2).astype(np.float64)
-        motion = fit_camera_motion(before, moved[kept].reshape(-1, 2).astype(np.float64))
+        before, after = (ends[kept, 0].astype(np.float64) for ends in (corners, moved))
+        motion = fit_camera_motion(before, after, self.kernels)
+        self._motion = motion
         if motion.still:
             self._still += 1
             return motion
@@ -195,18 +177,19 @@ def _stand(
     pixels = np.rint(corners[:, 0]).astype(np.intp)
     pixels = np.clip(pixels, 0, (present.shape[1] - 1, present.shape[0] - 1))
     unchanged = change[pixels[:, 1], pixels[:, 0]] < _UNCHANGED
-    return bool(unchanged.mean() >= _STILL_SHARE)
+    return bool(unchanged.mean() >= STILL_SHARE)
 
 
 def _track(
-    last: npt.NDArray[np.uint8], present: npt.NDArray[np.uint8], corners: npt.NDArray[np.float32]
-) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:
-    """Lucas-Kanade on a pyramid: where the corners are now, and which of them were found."""
-    guess = corners.copy()
-    criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 10, 0.03)
-    moved, found, _ = cv2.calcOpticalFlowPyrLK(
-        last, present, corners, guess, winSize=(13, 13), maxLevel=3, criteria=criteria
-    )
+    last: npt.NDArray[np.uint8], present: npt.NDArray[np.uint8], corners: npt.NDArray[np.float32],
+    motion: CameraMotion,
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:  # fmt: skip
+    """Lucas-Kanade on a pyramid: where the corners are now, and which of them were found.
+
+    The search starts where the motion of the frame before would take them.
+    """
+    guess = motion.apply(corners.astype(np.float64)).astype(np.float32)
+    moved, found, _ = cv2.calcOpticalFlowPyrLK(last, present, corners, guess, **_FLOW)  # type: ignore[call-overload]
     return np.asarray(moved, np.float32), np.asarray(found, np.uint8)
 
 

@@ -27,6 +27,7 @@ feature channels, `*` is correlation, and `y` a narrow Gaussian at the target's 
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -36,6 +37,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.partial_fourier import PartialFourier, Spectrum, upsampled
+from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty, SpectralKernels
 
 Response: TypeAlias = npt.NDArray[np.float32]
 """Filter response by [y, x], its middle at the patch's centre; 1 is the ideal peak."""
@@ -56,16 +58,16 @@ class FilterWeights:
 
     Attributes
     ----------
-    cells : (channels, n, n) array of float32
-        The weights, zero outside the target.
     target : (channels, rows, columns) array of float32
-        Those of the target's cells.
-    spectrum : (channels, n, n // 2 + 1) array of complex64
+        The weights of the target's cells; outside they are zero.
+    faded : (rows, channels, columns) array of float32
+        The same times the window that the image's cells are faded out by.
+    spectrum : (n, channels, 2, n // 2 + 1) array of float32
         Their half spectrum.
     """
 
-    cells: CellFeatures
     target: CellFeatures
+    faded: CellFeatures
     spectrum: Spectrum
 
 
@@ -80,14 +82,18 @@ class CorrelationFilter:
         Width and height of the target in cells.
     penalty : float
         First ADMM penalty: the larger, the smoother the filter and the less a step changes it.
+    kernels : SpectralKernels
+        What spectra are multiplied with.
     """
 
-    def __init__(self, cells: int, target: Array, penalty: float) -> None:
+    def __init__(self, cells: int, target: Array, penalty: float, kernels: SpectralKernels) -> None:
         self.penalty = penalty
+        self.kernels = kernels
         offsets = np.arange(cells) - cells // 2
         sigma = _LABEL_SIGMA * float(np.sqrt(target.prod()))
         label = np.exp(-0.5 * (offsets[:, np.newaxis] ** 2 + offsets**2) / sigma**2)
-        self._label = half_spectrum(np.fft.ifftshift(label).astype(np.float32))
+        spectrum = np.fft.rfft2(np.fft.ifftshift(label)).real / cells**2
+        self._label = np.ascontiguousarray(spectrum[: cells // 2 + 1], np.float32)
         from_middle = np.abs(np.arange(cells) - (cells - 1) / 2)
         inside = (from_middle[:, np.newaxis] <= target[1] / 2) & (from_middle <= target[0] / 2)
         rows, columns = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
@@ -96,9 +102,8 @@ class CorrelationFilter:
         self._target = PartialFourier(cells, self._rows, self._columns)
         window = np.hanning(cells + 2)[1:-1]
         self._faded = PartialFourier(cells, slice(cells), slice(cells), window)
-        self._window = np.outer(window, window).astype(np.float32)
-        self._down = (-2j * np.pi * np.fft.fftfreq(cells))[:, np.newaxis]
-        self._right = -2j * np.pi * np.fft.rfftfreq(cells)
+        fading = np.outer(window[self._rows], window[self._columns])
+        self._fading = fading[:, np.newaxis].astype(np.float32)
         self._cells = cells
         self.weights: FilterWeights | None = None
 
@@ -108,67 +113,38 @@ class CorrelationFilter:
 
     def shifted(self, spectrum: Spectrum, x: float, y: float) -> Spectrum:
         """Spectrum of the same cells moved by (x, y) cells, circularly."""
-        phase = np.exp(self._down * y) * np.exp(self._right * x)
-        return np.asarray(spectrum * phase.astype(np.complex64))
+        return self.kernels.shifted(spectrum, x, y)
 
     def train(self, spectrum: Spectrum, stiffness: float) -> None:
         """Learn from one image in whose middle the target is.
 
         Parameters
         ----------
-        spectrum : (channels, n, n // 2 + 1) array
+        spectrum : (n, channels, 2, n // 2 + 1) array
             Of the image's cells.
         stiffness : float
             Resistance against change; the first image is learnt without any.
         """
         if self.weights is None:
-            self.weights = self._solve(spectrum, None, 0.0, _FIRST_STEPS, _FIRST_GROWTH)
+            problem = FilterProblem(spectrum, np.zeros_like(spectrum), self._label, 0.0)
+            self.weights = self._solved(problem, _FIRST_STEPS, _FIRST_GROWTH)
         else:
-            before = self.weights.spectrum
-            self.weights = self._solve(spectrum, before, stiffness, _STEPS, _GROWTH)
+            problem = FilterProblem(spectrum, self.weights.spectrum, self._label, stiffness)
+            self.weights = self._solved(problem, _STEPS, _GROWTH)
 
-    def _solve(
-        self, spectrum: Spectrum, before: Spectrum | None, stiffness: float, steps: int,
-        growth: float,
-    ) -> FilterWeights:  # fmt: skip
-        places = self._cells**2
-        squares = np.square(spectrum.view(np.float32)).sum(axis=0)
-        power = squares[:, 0::2] + squares[:, 1::2]
-        conjugate = spectrum.conj()
-        wanted = spectrum * (self._label * np.float32(1 / places))
-        free = np.empty_like(spectrum)
-        if before is not None:
-            wanted += np.multiply(before, np.float32(stiffness), out=free)
-        # The multiplier is kept divided by the penalty (scaled ADMM). Whole spectra are written
-        # over: new memory for each of them would take longer than the arithmetic.
-        right, multiplier = wanted.copy(), np.zeros_like(spectrum)
-        penalty = self.penalty
+    def _solved(self, problem: FilterProblem, steps: int, growth: float) -> FilterWeights:
+        multiplier, confined = np.zeros_like(problem.spectrum), np.zeros_like(problem.spectrum)
         for step in range(steps):
-            total = np.float32(penalty + stiffness)
-            # (x x^H + places * total) f = places * right, by Sherman and Morrison.
-            np.multiply(conjugate, right, out=free)
-            share = free.sum(axis=0) / (power + places * total)
-            np.multiply(spectrum, share, out=free)
-            np.subtract(right, free, out=free)
-            free *= 1 / total  # not divided: numpy divides complex numbers ten times slower
-            multiplier += free
+            penalty = Penalty(self.penalty * growth**step, growth)
+            self.kernels.take_filter_step(problem, penalty, multiplier, confined)
             cells = self._target.cells_of(multiplier)
             confined = self._target.spectrum_of(cells)
-            if step < steps - 1:
-                multiplier -= confined
-                multiplier *= np.float32(1 / growth)
-                penalty *= growth
-                np.subtract(confined, multiplier, out=right)
-                right *= np.float32(penalty)
-                right += wanted
-        weights = np.zeros((len(cells), self._cells, self._cells), np.float32)
-        weights[:, self._rows, self._columns] = cells
-        return FilterWeights(weights, cells, confined)
+        return FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)
 
     def respond(self, spectrum: Spectrum) -> Response:
         """Respond to cells (half spectrum), at `UPSAMPLING` places per cell."""
         assert self.weights is not None, "train the filter first"
-        return _correlated(spectrum, self.weights.spectrum)
+        return self._response(spectrum, self.weights.spectrum)
 
     @property
     def extent(self) -> int:
@@ -182,28 +158,29 @@ class CorrelationFilter:
         margin = (self._cells - features.shape[1]) // 2
         rows = slice(self._rows.start - margin, self._rows.stop - margin)
         columns = slice(self._columns.start - margin, self._columns.stop - margin)
-        seen = features[:, rows, columns] * self._window[self._rows, self._columns]
-        return float(np.vdot(seen, self.weights.target))
+        return float(np.vdot(features.transpose(1, 0, 2)[rows, :, columns], self.weights.faded))
 
     def respond_wide(self, features: CellFeatures) -> Response:
         """Respond to the cells (channels, m, m) of a larger patch, m even and above n."""
         assert self.weights is not None, "train the filter first"
-        size = features.shape[1]
+        whole, target = self._wide(features.shape[1])
+        spectrum = target.spectrum_of(self.weights.target)
+        return self._response(whole.spectrum_of(features), spectrum)
+
+    def _response(self, spectrum: Spectrum, weights: Spectrum) -> Response:
+        return upsampled(self.kernels.correlated(spectrum, weights), UPSAMPLING)
+
+    def _wide(self, size: int) -> tuple[PartialFourier, PartialFourier]:
+        """Return transforms of a larger square of cells, and of the target in its middle."""
         margin = (size - self._cells) // 2
-        padded = np.pad(self.weights.cells, ((0, 0), (margin, margin), (margin, margin)))
-        return _correlated(half_spectrum(features), half_spectrum(padded))
+        rows, columns = (
+            slice(side.start + margin, side.stop + margin) for side in (self._rows, self._columns)
+        )
+        return _transforms(size, 0, size, 0, size), _transforms(
+            size, rows.start, rows.stop, columns.start, columns.stop
+        )
 
 
-def half_spectrum(cells: npt.NDArray[np.float32]) -> Spectrum:
-    """Fourier transform over the last two axes."""
-    return np.asarray(np.fft.rfft2(cells), np.complex64)
-
-
-def cells_of(spectrum: Spectrum, size: int) -> CellFeatures:
-    """Inverse Fourier transform to (..., size, size)."""
-    return np.asarray(np.fft.irfft2(spectrum, s=(size, size)), np.float32)
-
-
-def _correlated(spectrum: Spectrum, weights: Spectrum) -> Response:
-    """Correlate and sum over channels."""
-    return upsampled((spectrum * weights.conj()).sum(axis=0), UPSAMPLING)
+@functools.cache
+def _transforms(size: int, top: int, bottom: int, left: int, right: int) -> PartialFourier:
+    return PartialFourier(size, slice(top, bottom), slice(left, right))

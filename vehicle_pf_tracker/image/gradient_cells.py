@@ -55,20 +55,23 @@ MAGNITUDE_OF: npt.NDArray[np.float32] = np.hypot(_DX, _DY).astype(np.float32)
 """Magnitude in grey levels by [dy + 255, dx + 255]."""
 
 
-def gradient_cells(grey: Grey) -> CellFeatures:
+def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
     """Compute the 31 channels of every whole cell of an image.
 
     Parameters
     ----------
     grey : (4 r, 4 c) array of uint8
         Luminance.
+    spare : int
+        Channels that are added for the caller to fill.
 
     Returns
     -------
-    (31, r, c) array of float32
-        Non-negative, at most about 0.4.
+    (31 + spare, r, c) array of float32
+        Non-negative, at most about 0.4; the spare ones are not set.
     """
-    return normalised_cells(_direction_histograms(grey))
+    cells = normalised_cells(_direction_histograms(grey))
+    return np.concatenate([cells, np.zeros((spare, *cells.shape[1:]), np.float32)])
 
 
 def _direction_histograms(grey: Grey) -> npt.NDArray[np.float32]:

@@ -30,8 +30,15 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 
-Spectrum: TypeAlias = npt.NDArray[np.complex64]
-"""Half spectrum of cells, (channels, n, n // 2 + 1)."""
+Spectrum: TypeAlias = npt.NDArray[np.float32]
+"""Half spectrum of cells, (n, channels, 2, n // 2 + 1).
+
+Along y it has the coefficients of cosines (n // 2 + 1 rows) and then of sines (n // 2 - 1), along x
+real and imaginary parts. Matrix products with real numbers then give it from cells, and cells from
+it, in half the time of those with complex ones.
+"""
+ComplexSpectrum: TypeAlias = npt.NDArray[np.complex64]
+"""The same as complex numbers, (n, channels, n // 2 + 1)."""
 _Matrix: TypeAlias = npt.NDArray[np.float32]
 
 
@@ -51,53 +58,91 @@ class PartialFourier:
     def __init__(
         self, cells: int, rows: slice, columns: slice, window: Array | None = None
     ) -> None:
-        down = 2j * np.pi * np.outer(np.arange(cells)[rows], np.fft.fftfreq(cells))
-        right = 2j * np.pi * np.outer(np.fft.rfftfreq(cells), np.arange(cells)[columns])
-        self._to_rows = (np.exp(down) / cells).astype(np.complex64)
+        places = np.arange(cells)
         weights = np.ones(cells) if window is None else window
-        from_rows = np.exp(-down).T * weights[rows]
-        from_columns = np.exp(-right).T * weights[columns, np.newaxis]
-        self._from_rows = np.ascontiguousarray(from_rows, np.complex64)
-        self._to_columns = _real_part_of(np.exp(right), cells)
-        self._from_columns = _as_pairs(np.ascontiguousarray(from_columns, np.complex64))
+        y, x = places[rows], places[columns]
+        self._from_rows = np.asarray(_waves(y, cells).T * weights[rows], np.float32)
+        self._to_rows = np.asarray(_waves(y, cells) * _counted(cells), np.float32)
+        self._from_columns = _from_columns(x, cells) * weights[columns, np.newaxis]
+        self._from_columns = self._from_columns.astype(np.float32)
+        self._to_columns = _to_columns(x, cells)
 
     def cells_of(self, spectrum: Spectrum) -> CellFeatures:
         """Cells of the part, (channels, rows, columns)."""
-        return np.asarray(_as_pairs(self._to_rows @ spectrum) @ self._to_columns)
+        channels = spectrum.shape[1]
+        rows = self._to_rows @ spectrum.reshape(len(spectrum), -1)
+        cells = rows.reshape(len(rows) * channels, -1) @ self._to_columns
+        return np.asarray(cells.reshape(len(rows), channels, -1).transpose(1, 0, 2))
 
     def spectrum_of(self, cells: CellFeatures) -> Spectrum:
         """Half spectrum of the square from the cells of the part."""
-        rows = (cells @ self._from_columns).view(np.complex64)
-        return np.asarray(self._from_rows @ rows)
+        channels, count = cells.shape[:2]
+        by_row = cells.transpose(1, 0, 2).reshape(count * channels, -1)
+        rows = (by_row @ self._from_columns).reshape(count, -1)
+        spectrum = self._from_rows @ rows
+        return np.asarray(spectrum.reshape(len(spectrum), channels, 2, -1))
 
 
 def upsampled(spectrum: Spectrum, upsampling: int) -> _Matrix:
-    """Inverse transform of a half spectrum (n, n // 2 + 1), `upsampling` places per cell and axis.
+    """Inverse transform of a half spectrum (n, 1, 2, n // 2 + 1), `upsampling` places per cell.
 
     Zero is in the middle. The highest frequency along x, which has no phase, is left out.
     """
     down, right = _fine_transforms(len(spectrum), upsampling)
-    return np.asarray(_as_pairs(down @ spectrum) @ right)
+    return np.asarray(down @ spectrum.reshape(len(spectrum), -1) @ right)
+
+
+def complex_spectrum(spectrum: Spectrum) -> ComplexSpectrum:
+    """Make complex numbers of the coefficients."""
+    half = len(spectrum) // 2
+    pairs = np.empty((*spectrum.shape[:2], spectrum.shape[3]), np.complex64)
+    pairs.real, pairs.imag = spectrum[:, :, 0], spectrum[:, :, 1]
+    cosines, sines = pairs[1:half], pairs[half + 1 :]
+    whole = pairs.copy()
+    whole[1:half] = cosines - 1j * sines
+    whole[:half:-1] = cosines + 1j * sines
+    return np.asarray(whole)
+
+
+def real_spectrum(spectrum: ComplexSpectrum) -> Spectrum:
+    """Make coefficients of complex numbers."""
+    half = len(spectrum) // 2
+    low, high = spectrum[1:half], spectrum[:half:-1]
+    pairs = spectrum.copy()
+    pairs[1:half], pairs[half + 1 :] = 0.5 * (low + high), 0.5j * (low - high)
+    return np.stack([pairs.real, pairs.imag], axis=2)
 
 
 @functools.cache
-def _fine_transforms(cells: int, upsampling: int) -> tuple[Spectrum, _Matrix]:
+def _fine_transforms(cells: int, upsampling: int) -> tuple[_Matrix, _Matrix]:
     places = (np.arange(cells * upsampling) - cells * upsampling // 2) / upsampling
-    down = np.exp(2j * np.pi * np.outer(places, np.fft.fftfreq(cells))) / cells
-    right = np.exp(2j * np.pi * np.outer(np.fft.rfftfreq(cells), places))
-    right[cells // 2] = 0
-    return down.astype(np.complex64), _real_part_of(right, cells)
+    down = np.asarray(_waves(places, cells) * _counted(cells), np.float32)
+    right = _to_columns(places, cells).reshape(2, cells // 2 + 1, -1)
+    right[:, -1] = 0
+    return down, np.ascontiguousarray(right.reshape(cells + 2, -1))
 
 
-def _real_part_of(waves: npt.NDArray[np.complex128], cells: int) -> _Matrix:
-    """Matrix that takes pairs of real and imaginary parts of a half spectrum to real values."""
-    counted = np.full(len(waves), 2.0)  # once for itself, once for the frequency below zero
-    counted[[0, -1]] = 1.0
-    waves = waves * counted[:, np.newaxis] / cells
-    pairs = np.stack([waves.real, -waves.imag], axis=1)
-    return np.ascontiguousarray(pairs.reshape(2 * len(waves), -1), np.float32)
+def _waves(places: npt.NDArray[np.integer] | Array, cells: int) -> Array:
+    """Cosines and then sines of all frequencies at some places, (places, cells)."""
+    angles = 2 * np.pi / cells * np.outer(places, np.arange(cells // 2 + 1))
+    return np.hstack([np.cos(angles), np.sin(angles[:, 1:-1])])
 
 
-def _as_pairs(values: Spectrum) -> _Matrix:
-    """View complex numbers (..., n) as pairs (..., 2 n) of real and imaginary parts."""
-    return values.view(np.float32)
+def _counted(cells: int) -> Array:
+    """Weights of the coefficients in the inverse transform: most stand for two frequencies."""
+    counted = np.full(cells, 2.0)
+    counted[[0, cells // 2]] = 1.0
+    return counted / cells
+
+
+def _from_columns(places: npt.NDArray[np.integer], cells: int) -> Array:
+    """Matrix that takes cells of a row to real and then imaginary parts of its half spectrum."""
+    waves = np.exp(-2j * np.pi / cells * np.outer(places, np.arange(cells // 2 + 1)))
+    return np.hstack([waves.real, waves.imag])
+
+
+def _to_columns(places: npt.NDArray[np.integer] | Array, cells: int) -> _Matrix:
+    """Matrix that takes real and imaginary parts of a half spectrum to values at some places."""
+    counted = _counted(cells)[: cells // 2 + 1, np.newaxis]
+    waves = np.exp(2j * np.pi / cells * np.outer(np.arange(cells // 2 + 1), places)) * counted
+    return np.ascontiguousarray(np.vstack([waves.real, -waves.imag]), np.float32)

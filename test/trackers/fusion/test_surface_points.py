@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.canonical_patch import cut_patch
+from vehicle_pf_tracker.image.shared_motion import shared_turn
 from vehicle_pf_tracker.trackers.fusion import surface_points
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 
@@ -125,14 +126,14 @@ def test_the_turn_of_places_is_found_among_strays(degrees):
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     moved = places @ turn
     moved[:4] += 0.5
-    found = moved - places @ surface_points._turn(places, moved)
+    found = moved - places @ shared_turn(places, moved, 0.2)
     assert np.hypot(*found[4:].T).max() < 0.12
     assert np.hypot(*found[:4].T).min() > 0.4
 
 
 def test_few_places_hardly_turn():
     places = np.array([[0.1, 0.1], [0.12, 0.1]])
-    assert surface_points._turn(places, 2 * places) == pytest.approx(np.eye(2), abs=0.1)
+    assert shared_turn(places, 2 * places, 0.2) == pytest.approx(np.eye(2), abs=0.1)
 
 
 def test_points_of_a_turning_vehicle_survive():

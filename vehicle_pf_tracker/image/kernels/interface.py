@@ -23,10 +23,15 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.climbing import Places
 from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey
+from vehicle_pf_tracker.image.partial_fourier import Spectrum
+from vehicle_pf_tracker.image.shared_motion import Alive
 from vehicle_pf_tracker.image.similarity import Reference
+from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty
 from vehicle_pf_tracker.image.window import Positions, Window
 from vehicle_pf_tracker.image.window_feature import (
     Coefficients,
@@ -173,5 +178,35 @@ class Kernels(ABC):
         """Move every position one mean-shift step; see `image.mean_shift`."""
 
     @abstractmethod
-    def gradient_cells(self, grey: Grey) -> CellFeatures:
+    def gradient_cells(self, grey: Grey, spare: int = 0) -> CellFeatures:
         """Compute histograms of oriented gradients; see `image.gradient_cells`."""
+
+    @abstractmethod
+    def take_filter_step(
+        self, problem: FilterProblem, penalty: Penalty, multiplier: Spectrum, confined: Spectrum
+    ) -> None:
+        """Train a filter by one step; see `image.spectral_products`."""
+
+    @abstractmethod
+    def correlated(self, spectrum: Spectrum, weights: Spectrum) -> Spectrum:
+        """Correlate and sum over channels; see `image.spectral_products`."""
+
+    @abstractmethod
+    def shifted(self, spectrum: Spectrum, x: float, y: float) -> Spectrum:
+        """Move cells by (x, y); see `image.spectral_products`."""
+
+    @abstractmethod
+    def shared_similarity(self, before: Array, after: Array) -> Array:
+        """Fit a similarity to points (N, 2); see `image.shared_motion`."""
+
+    @abstractmethod
+    def staying(self, before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
+        """Tell which places (N, 2) turn with most; see `image.shared_motion`."""
+
+    @abstractmethod
+    def shared_stretch(self, before: Array, after: Array, size: Array) -> Array:
+        """Change of the distances of points (N, 2); see `image.shared_motion`."""
+
+    @abstractmethod
+    def climbed(self, values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
+        """Move places to the best value in reach; see `image.climbing`."""

@@ -31,43 +31,80 @@ from vehicle_pf_tracker.image.gradient_cells import (
     CellFeatures,
     Grey,
 )
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled
+from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 
 _HALF = DIRECTIONS // 2
 _IMAGE = numba.types.Array(numba.uint8, 2, "C")
-_BYTES = numba.types.Array(numba.uint8, 2, "C", readonly=True)
+_BYTES = numba.types.Array(numba.uint8, 1, "C", readonly=True)
+_CELLS = numba.types.Array(numba.float32, 3, "C")
 
-DIRECTION_OF.flags.writeable = False
+_DIRECTION_OF = DIRECTION_OF.ravel()
+_DIRECTION_OF.flags.writeable = False
 
 
-@compiled(numba.types.Array(numba.float32, 3, "C")(_IMAGE, _BYTES))
+@inlined
+def _gradients(
+    grey: Grey, y: int, magnitudes: npt.NDArray[np.float32], places: npt.NDArray[np.uint32]
+) -> None:
+    """Write magnitudes of a row, and places in the table of directions; vectorised."""
+    for x in range(1, grey.shape[1] - 1):
+        dx = np.int32(grey[y, x + 1]) - np.int32(grey[y, x - 1])
+        dy = np.int32(grey[y + 1, x]) - np.int32(grey[y - 1, x])
+        magnitudes[x] = np.sqrt(np.float32(dx * dx + dy * dy))
+        places[x] = np.uint32((dy + 255) * 511 + dx + 255)
+
+
+@inlined
+def _share_row(
+    sums: npt.NDArray[np.float32], low: float, above: npt.NDArray[np.float32],
+    below: npt.NDArray[np.float32],
+) -> None:  # fmt: skip
+    """Share a row's sums between the cells above and below, and clear them."""
+    for i in range(len(sums)):
+        lower = low * sums[i]
+        above[i] += sums[i] - lower
+        below[i] += lower
+        sums[i] = 0
+
+
+@compiled(_CELLS(_IMAGE, _BYTES))
 def _direction_histograms(
     grey: Grey, direction_of: npt.NDArray[np.uint8]
 ) -> npt.NDArray[np.float32]:
-    """Sum magnitudes by direction and cell, one cell more on each side, (18, r + 2, c + 2)."""
+    """Sum magnitudes by direction and cell, one cell more on each side, (18, r + 2, c + 2).
+
+    Only the sums of each row of pixels are scattered; indices are unsigned, as signed ones would be
+    tested for being negative.
+    """
     height, width = grey.shape
-    cells = np.zeros((DIRECTIONS, height // CELL + 2, width // CELL + 2), np.float32)
+    columns = width // CELL + 2
+    cells = np.zeros((DIRECTIONS, height // CELL + 2, columns), np.float32)
+    sums = np.zeros(DIRECTIONS * columns, np.float32)
+    above, below = np.zeros_like(sums), np.zeros_like(sums)
+    magnitudes, places = np.empty(width, np.float32), np.empty(width, np.uint32)
     for y in range(1, height - 1):
+        _gradients(grey, y, magnitudes, places)
+        for x in range(1, width - 1):
+            place_x = np.float32(x + 0.5) * np.float32(1 / CELL) + np.float32(0.5)
+            column = np.uint32(place_x)
+            right = (place_x - np.float32(column)) * magnitudes[x]
+            i = np.uint64(direction_of[places[x]]) * np.uint64(columns) + np.uint64(column)
+            sums[i] += magnitudes[x] - right
+            sums[i + np.uint64(1)] += right
         place_y = (y + 0.5) / CELL + 0.5
         row = int(place_y)
-        low = np.float32(place_y - row)
-        for x in range(1, width - 1):
-            dx = np.int32(grey[y, x + 1]) - np.int32(grey[y, x - 1])
-            dy = np.int32(grey[y + 1, x]) - np.int32(grey[y - 1, x])
-            o = direction_of[dy + 255, dx + 255]
-            magnitude = np.sqrt(np.float32(dx * dx + dy * dy))
-            place_x = np.float32(x + 0.5) * np.float32(1 / CELL) + np.float32(0.5)
-            column = np.int32(place_x)
-            right = (place_x - column) * magnitude
-            left = magnitude - right
-            cells[o, row, column] += left - low * left
-            cells[o, row, column + 1] += right - low * right
-            cells[o, row + 1, column] += low * left
-            cells[o, row + 1, column + 1] += low * right
+        _share_row(sums, np.float32(place_y - row), above, below)
+        if int((y + 1.5) / CELL + 0.5) != row or y == height - 2:
+            for o in range(DIRECTIONS):
+                for x in range(columns):
+                    cells[o, row, x] += above[o * columns + x]
+                    cells[o, row + 1, x] += below[o * columns + x]
+            above[:] = 0
+            below[:] = 0
     return cells
 
 
-@compiled(numba.types.Array(numba.float32, 3, "C")(numba.types.Array(numba.float32, 3, "C")))
+@compiled(_CELLS(_CELLS))
 def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     """Inverse norms of the four neighbourhoods of the inner cells, (4, r, c)."""
     rows, columns = cells.shape[1] - 2, cells.shape[2] - 2
@@ -91,17 +128,12 @@ def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     return scales
 
 
-@compiled(
-    numba.void(
-        numba.types.Array(numba.float32, 3, "C"), numba.types.Array(numba.float32, 3, "C"),
-        numba.types.Array(numba.float32, 3, "C"),
-    )
-)  # fmt: skip
+@compiled(numba.void(_CELLS, _CELLS, _CELLS))
 def _normalise(
     cells: npt.NDArray[np.float32], scales: npt.NDArray[np.float32], features: CellFeatures
 ) -> None:
     """Write the channels of the inner cells; the inner loops, along x, are vectorised."""
-    rows, columns = features.shape[1], features.shape[2]
+    rows, columns = features.shape[0], features.shape[2]
     limit, half = np.float32(TRUNCATION), np.float32(0.5)
     texture = np.empty((4, columns), np.float32)
     for y in range(rows):
@@ -111,7 +143,7 @@ def _normalise(
                 value = cells[o, y + 1, x + 1]
                 a, b = min(value * scales[0, y, x], limit), min(value * scales[1, y, x], limit)
                 c, d = min(value * scales[2, y, x], limit), min(value * scales[3, y, x], limit)
-                features[o, y, x] = half * (((a + b) + c) + d)
+                features[y, o, x] = half * (((a + b) + c) + d)
                 texture[0, x] += a
                 texture[1, x] += b
                 texture[2, x] += c
@@ -121,16 +153,17 @@ def _normalise(
                 value = cells[o, y + 1, x + 1] + cells[o + _HALF, y + 1, x + 1]
                 a, b = min(value * scales[0, y, x], limit), min(value * scales[1, y, x], limit)
                 c, d = min(value * scales[2, y, x], limit), min(value * scales[3, y, x], limit)
-                features[DIRECTIONS + o, y, x] = half * (((a + b) + c) + d)
+                features[y, DIRECTIONS + o, x] = half * (((a + b) + c) + d)
         for k in range(4):
             for x in range(columns):
-                features[DIRECTIONS + _HALF + k, y, x] = np.float32(TEXTURE_GAIN) * texture[k, x]
+                features[y, DIRECTIONS + _HALF + k, x] = np.float32(TEXTURE_GAIN) * texture[k, x]
 
 
-def gradient_cells(grey: Grey) -> CellFeatures:
-    """Compute the channels of every whole cell, (31, r, c); `grey` is contiguous."""
+def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
+    """See `gradient_cells.gradient_cells`; `grey` is contiguous."""
     rows, columns = grey.shape[0] // CELL, grey.shape[1] // CELL
-    features = np.empty((GRADIENT_CHANNELS, rows, columns), np.float32)
-    cells = _direction_histograms(grey, DIRECTION_OF)
+    # In this order of memory rows are transformed without a copy.
+    features = np.empty((rows, GRADIENT_CHANNELS + spare, columns), np.float32)
+    cells = _direction_histograms(grey, _DIRECTION_OF)
     _normalise(cells, _scales(cells), features)
-    return features
+    return np.asarray(features.transpose(1, 0, 2))

@@ -22,12 +22,18 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image import climbing, shared_motion, spectral_products
+from vehicle_pf_tracker.image.climbing import Places
 from vehicle_pf_tracker.image.colour import JointColour, bin_indices
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey, gradient_cells
 from vehicle_pf_tracker.image.kernels.interface import Kernels, PixelRange, SimilarityMap
 from vehicle_pf_tracker.image.mean_shift import kernel_similarity, mean_shift
+from vehicle_pf_tracker.image.partial_fourier import Spectrum
+from vehicle_pf_tracker.image.shared_motion import Alive
 from vehicle_pf_tracker.image.similarity import Reference
+from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty
 from vehicle_pf_tracker.image.window import Positions, Window
 from vehicle_pf_tracker.image.window_feature import (
     Coefficients,
@@ -51,9 +57,39 @@ class OpenCvKernels(Kernels):
     def __init__(self, notices: Sequence[str] = ()) -> None:
         self.notices = notices
 
-    def gradient_cells(self, grey: Grey) -> CellFeatures:
+    def gradient_cells(self, grey: Grey, spare: int = 0) -> CellFeatures:
         """Compute gradient histograms; see `Kernels.gradient_cells`."""
-        return gradient_cells(grey)
+        return gradient_cells(grey, spare)
+
+    def take_filter_step(
+        self, problem: FilterProblem, penalty: Penalty, multiplier: Spectrum, confined: Spectrum
+    ) -> None:
+        """Train a filter by one step; see `Kernels.take_filter_step`."""
+        spectral_products.take_filter_step(problem, penalty, multiplier, confined)
+
+    def correlated(self, spectrum: Spectrum, weights: Spectrum) -> Spectrum:
+        """Correlate and sum over channels; see `Kernels.correlated`."""
+        return spectral_products.correlated(spectrum, weights)
+
+    def shifted(self, spectrum: Spectrum, x: float, y: float) -> Spectrum:
+        """Move cells; see `Kernels.shifted`."""
+        return spectral_products.shifted(spectrum, x, y)
+
+    def shared_similarity(self, before: Array, after: Array) -> Array:
+        """Fit a similarity; see `Kernels.shared_similarity`."""
+        return shared_motion.shared_similarity(before, after)
+
+    def staying(self, before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
+        """Tell which places turn with most; see `Kernels.staying`."""
+        return shared_motion.staying(before, after, alive, strayed)
+
+    def shared_stretch(self, before: Array, after: Array, size: Array) -> Array:
+        """Change of distances; see `Kernels.shared_stretch`."""
+        return shared_motion.shared_stretch(before, after, size)
+
+    def climbed(self, values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
+        """Move places; see `Kernels.climbed`."""
+        return climbing.climbed(values, places, costs)
 
     def counts(
         self,

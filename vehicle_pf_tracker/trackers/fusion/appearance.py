@@ -62,6 +62,8 @@ _COLOURS = 3
 _HUE_GAIN = 4.0
 """Weight of Lab's a and b. Paint spans some 20 of their 100 units: unweighted, a grey car answers
 to the filter of a beige one of the same shape (scenes `bus` and `braking`, seeds 100 to 104)."""
+_COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32) / 100
+_COLOUR_MIDDLE = np.array([0.5, 0, 0], np.float32)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,7 +74,7 @@ class View:
     ----------
     patch : Patch
         The surroundings.
-    spectrum : (channels, n, n // 2 + 1) array or None
+    spectrum : (n, channels, 2, n // 2 + 1) array or None
         Of their cells; None for a wide view.
     response : (m, m) array
         Response by [y, x], relative to the usual one of visible frames.
@@ -91,7 +93,7 @@ class View:
         """Nearest places (..., 2), as x and y, of positions in px of the frame."""
         last = len(self.response) - 1
         exact = (positions - self.patch.centre) * self.steps + len(self.response) / 2
-        return np.clip(np.rint(exact), 0, last).astype(np.intp)
+        return np.minimum(np.maximum(np.rint(exact), 0), last).astype(np.intp)
 
     def at(self, position: Array) -> float:
         """Response at the place nearest to a position in px."""
@@ -101,7 +103,9 @@ class View:
     def peak_near(self, position: Array, reach: int) -> tuple[Array, float]:
         """Find the peak within `reach` places of a position: its position in px, and height."""
         inner = len(self.response) - 2 - reach
-        column, row = np.clip(self.places(position), reach + 1, inner).tolist()
+        column, row = (
+            min(max(place, reach + 1), inner) for place in self.places(position).tolist()
+        )
         near = self.response[row - reach : row + reach + 1, column - reach : column + reach + 1]
         dy, dx = np.unravel_index(int(near.argmax()), near.shape)
         y, x = row - reach + int(dy), column - reach + int(dx)
@@ -125,7 +129,7 @@ class Appearance:
     Parameters
     ----------
     kernels : Kernels
-        What gradients are measured with.
+        What gradients are measured with, and spectra multiplied.
     size : (2,) array
         Width and height of the target in the first frame, px.
     penalty : float
@@ -136,13 +140,22 @@ class Appearance:
 
     def __init__(self, kernels: Kernels, size: Array, penalty: float, *, colour: bool) -> None:
         zoom = min(_TARGET_SIDE / math.sqrt(size.prod()), _LARGEST_ZOOM)
-        self.kernels = kernels
         self._side = _CELLS * CELL
         self._target = np.minimum(size * zoom, _LARGEST_SHARE * self._side)
         self._colour = colour
-        self._filter = CorrelationFilter(_CELLS, self._target / CELL, penalty)
+        self._filter = CorrelationFilter(_CELLS, self._target / CELL, penalty, kernels)
+        self.kernels = kernels
         self.usual_response = 0.0
         self._least_usual = 0.0
+
+    @property
+    def kernels(self) -> Kernels:
+        """Implementation that gradients are measured with, and spectra multiplied."""
+        return self._kernels
+
+    @kernels.setter
+    def kernels(self, kernels: Kernels) -> None:
+        self._kernels = self._filter.kernels = kernels
 
     def patch(self, frame: Frame, position: Array, size: Array, *, wide: bool = False) -> Patch:
         """Cut the surroundings of a box of this centre and size (px) out of a frame."""
@@ -194,16 +207,12 @@ class Appearance:
         self.usual_response *= 1 + rate * (response - 1)
 
     def _features(self, patch: Patch) -> CellFeatures:
-        gradients = self.kernels.gradient_cells(patch.grey)
+        features = self.kernels.gradient_cells(patch.grey, _COLOURS if self._colour else 0)
         if not self._colour:
-            return gradients
-        cells = gradients.shape[1]
-        features = np.empty((GRADIENT_CHANNELS + _COLOURS, cells, cells), np.float32)
-        features[:GRADIENT_CHANNELS] = gradients
+            return features
+        cells = features.shape[1]
         small = cv2.resize(patch.image, (cells, cells), interpolation=cv2.INTER_AREA)
-        lab = cv2.cvtColor(small.astype(np.float32) / 255, cv2.COLOR_RGB2Lab)
+        lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
         # Lightness is 0 to 100, a and b about as much to either side: all within about one.
-        features[GRADIENT_CHANNELS:] = lab.transpose(2, 0, 1) / 100
-        features[GRADIENT_CHANNELS] -= 0.5
-        features[GRADIENT_CHANNELS + 1 :] *= _HUE_GAIN
+        features[GRADIENT_CHANNELS:] = (lab * _COLOUR_GAINS - _COLOUR_MIDDLE).transpose(2, 0, 1)
         return features

@@ -28,7 +28,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.canonical_patch import Patch
+from vehicle_pf_tracker.image.shared_motion import MotionKernels
 
 _GRID = 6
 """Points along each axis of a set; 36 points give a survival to within 0.08."""
@@ -41,11 +43,6 @@ _OLDEST = 10
 _STRAYED = 0.2
 """Distance from its place in the box, which turns with the others, of the size, from which on a
 point has left the vehicle."""
-_TURN_FITS = 2
-"""Fits of the turn: one for all, and one in which those that strayed from it count less."""
-_TURN_INERTIA = 0.3
-"""Resistance of the turn's fit, as the sum of the squared places of five points: the few that an
-occluder leaves must not turn all."""
 _ROUND_TRIP_PX = 1.0
 """Largest error in canonical px of a point tracked forth and back (Kalal et al. 2010)."""
 _HEALTHY = 0.6
@@ -54,12 +51,6 @@ _LEAST_USUAL = 0.3
 """Usual survival below which points tell nothing: a vehicle of a few px, or motion blur."""
 _USUAL_RATE = 0.05
 """Rate per frame at which the usual survival follows the present one in clear frames."""
-_FEWEST_POINTS = 12
-"""Fewest tracked points that tell a change of size."""
-_APART = 0.25
-"""Least distance of two points that tell a change of size, of the size."""
-_LARGEST_STRETCH = 0.05
-"""Bound of the change of log size per frame."""
 _CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 8, 0.05)
 _FLOW = {"winSize": (9, 9), "maxLevel": 1, "criteria": _CRITERIA,
          "flags": cv2.OPTFLOW_USE_INITIAL_FLOW}  # fmt: skip
@@ -89,13 +80,16 @@ class SurfacePoints:
 
     Attributes
     ----------
+    kernels : MotionKernels
+        What fits the motion of points.
     survival : float
         Share of the points that live, of the usual share; 1 where points tell nothing.
     stretch : (2,) array
         Change of the logarithm of width and height in the last frame by the points' spread.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, kernels: MotionKernels = shared_motion) -> None:
+        self.kernels = kernels
         self._usual = 0.0
         self._latest = 1.0
         self._previous: Patch | None = None
@@ -156,11 +150,9 @@ class SurfacePoints:
         for points in self._sets:
             points.age += 1
             present = (points.positions - position) / size
-            turn = _turn(points.places[points.alive], present[points.alive])
-            strayed = present - points.places @ turn
-            points.alive &= np.hypot(strayed[:, 0], strayed[:, 1]) < _STRAYED
+            points.alive = self.kernels.staying(points.places, present, points.alive, _STRAYED)
             if points.age >= _SEEDED_EVERY:
-                shares.append(float(points.alive.mean()))
+                shares.append(np.count_nonzero(points.alive) / len(points.alive))
         if not shares:
             return None
         self._latest = min(shares)
@@ -186,23 +178,23 @@ class SurfacePoints:
 
     def _move_points(self, patch: Patch, move: Array, size: Array) -> None:
         previous = self._previous
-        alive = [np.flatnonzero(points.alive) for points in self._sets]
-        if previous is None or not any(len(indices) for indices in alive):
+        alive = np.concatenate([points.alive for points in self._sets] or [np.zeros(0, bool)])
+        if previous is None or not alive.any():
             return
-        before = np.concatenate(
-            [points.positions[i] for points, i in zip(self._sets, alive, strict=True)]
-        )
-        start = (previous.to_patch(before) - 0.5).astype(np.float32)[:, np.newaxis]
-        guess = (patch.to_patch(before + move) - 0.5).astype(np.float32)[:, np.newaxis]
-        end, found = _flow(previous, patch, start, guess, _FLOW)
+        positions = np.concatenate([points.positions for points in self._sets])
+        before = positions[alive]
+        start = np.asarray(previous.to_patch(before) - 0.5, np.float32)
+        guess = np.asarray(patch.to_patch(before + move) - 0.5, np.float32)
+        end, found = _flow(previous, patch, start[:, np.newaxis], guess[:, np.newaxis], _FLOW)
         after = patch.to_frame(end[:, 0].astype(np.float64) + 0.5)
-        self.stretch = _stretch(before[found], after[found], size)
+        self.stretch = self.kernels.shared_stretch(before[found], after[found], size)
+        positions[alive] = after
+        alive[alive] = found
         place = 0
-        for points, indices in zip(self._sets, alive, strict=True):
-            part = slice(place, place + len(indices))
-            points.positions[indices] = after[part]
-            points.alive[indices[~found[part]]] = False
-            place += len(indices)
+        for points in self._sets:
+            part = slice(place, place + len(points.alive))
+            points.positions, points.alive = positions[part], alive[part]
+            place = part.stop
 
 
 def _grid(count: int, reach: float) -> Array:
@@ -220,38 +212,6 @@ def _flow(
     back = None if guess is None else start.copy()
     end, found, _ = cv2.calcOpticalFlowPyrLK(before.grey, after.grey, start, forth, **options)  # type: ignore[call-overload]
     again, refound, _ = cv2.calcOpticalFlowPyrLK(after.grey, before.grey, end, back, **options)  # type: ignore[call-overload]
-    error = np.linalg.norm(again - start, axis=2).ravel()
-    good = (found.ravel() > 0) & (refound.ravel() > 0) & (error < _ROUND_TRIP_PX)
+    error = np.square(again - start).sum(axis=2).ravel()
+    good = (found & refound).ravel().astype(bool) & (error < _ROUND_TRIP_PX**2)
     return np.asarray(end, np.float32), np.asarray(good, np.bool_)
-
-
-def _turn(before: Array, after: Array) -> Array:
-    """Linear map (2, 2) that most places (N, 2) in the box have moved by: a vehicle that turns.
-
-    It has no shift, so that points which stay behind with an occluder do not fit into it.
-    """
-    turn = np.eye(2)
-    for _ in range(_TURN_FITS):
-        off = after - before @ turn
-        weighted = before / (1 + (off**2).sum(axis=1) / _STRAYED**2)[:, np.newaxis]
-        kept = _TURN_INERTIA * np.eye(2)
-        turn = np.linalg.solve(weighted.T @ before + kept, weighted.T @ after + kept)
-    return turn
-
-
-def _stretch(before: Array, after: Array, size: Array) -> Array:
-    """Median change of the log distance of points, along x and y."""
-    change = np.zeros(2)
-    if len(before) < _FEWEST_POINTS:
-        return change
-    half = len(before) // 2
-    for axis in (0, 1):
-        # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.
-        order = before[:, axis].argsort(kind="stable")
-        low, high = order[:half], order[-half:]
-        old, new = before[high, axis] - before[low, axis], after[high, axis] - after[low, axis]
-        far = old > _APART * size[axis]
-        if far.sum() >= _FEWEST_POINTS // 2:
-            ratio = np.maximum(new[far] / old[far], 0.2)
-            change[axis] = float(np.median(np.log(ratio)))
-    return np.clip(change, -_LARGEST_STRETCH, _LARGEST_STRETCH)

@@ -85,15 +85,15 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `Tracker.start`."""
-        self._size = np.array([box.width, box.height])
-        self._position = np.array(box.centre)
+        self._size = np.array([box.width, box.height], float)
+        self._position = np.array(box.centre, float)
         self._velocity = np.zeros(2)
         self._frames = 0
         self._set_off = False
         self._visible = True
         self._sightings = Sightings()
-        self._points = SurfacePoints()
-        self._camera = CameraFlow()
+        self._points = SurfacePoints(self.kernels)
+        self._camera = CameraFlow(self.kernels)
         self._camera.measure(small_grey(frame), box)
         estimate = super().start(frame, box)
         self._points.keep(self._appearance.patch(frame, self._position, self._size))
@@ -104,7 +104,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         recoloured = parameters.filter.colour != self.parameters.filter.colour
         super().reconfigure(parameters)
         if self._target is not None:
-            self._appearance.kernels = self.kernels
+            self._appearance.kernels = self._points.kernels = self._camera.kernels = self.kernels
             self._particles = self._particles.resampled(self._rng, parameters.num_particles)
             if recoloured:
                 self._learn()
@@ -222,7 +222,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         climb = CLIMB_FREELY if self._visible else CLIMB_ON_PATH
         climb = STAY if self._set_off else climb
         positions, log_ratios = response_evidence(
-            view, self._particles.positions, climb, self.parameters.visibility
+            view, self._particles.positions, climb, self.parameters.visibility, self.kernels
         )
         self._particles = replace(self._particles, positions=positions).observed(log_ratios)
         return view

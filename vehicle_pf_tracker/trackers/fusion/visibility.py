@@ -20,9 +20,9 @@ import functools
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
@@ -60,15 +60,14 @@ answers better than the vehicle, and the filter cannot tell which of them it was
 
 
 @functools.cache
-def _moves(climb: Climb) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], Array]:
-    """All moves in reach along x and y, in places, and what they cost as log ratios."""
-    offsets = np.arange(-climb.reach, climb.reach + 1)
-    dy, dx = (grid.ravel() for grid in np.meshgrid(offsets, offsets, indexing="ij"))
-    return dx, dy, np.asarray(0.5 * (dx**2 + dy**2) / climb.sigma**2)
+def _costs(climb: Climb) -> Array:
+    """Costs of all moves in reach, as log ratios, by [y, x]."""
+    offsets = np.arange(-climb.reach, climb.reach + 1) ** 2
+    return np.asarray(0.5 * (offsets[:, np.newaxis] + offsets) / climb.sigma**2)
 
 
 def response_evidence(
-    view: View, positions: Array, climb: Climb, parameters: VisibilityParameters
+    view: View, positions: Array, climb: Climb, parameters: VisibilityParameters, kernels: Kernels
 ) -> tuple[Array, Array]:
     """Judge hypotheses by the filter's response close by.
 
@@ -78,6 +77,8 @@ def response_evidence(
         The response around the prediction.
     positions : (N, 2) array
         Of the hypotheses, px.
+    kernels : Kernels
+        What climbs.
 
     Returns
     -------
@@ -86,21 +87,12 @@ def response_evidence(
     log_ratios : (N,) array
         Log-likelihood ratio there, less what the move costs.
     """
-    dx, dy, costs = _moves(climb)
-    places = view.places(positions)
-    last = len(view.response) - 1
-    rows = np.clip(places[:, 1, np.newaxis] + dy, 0, last)
-    columns = np.clip(places[:, 0, np.newaxis] + dx, 0, last)
-    rows *= last + 1
-    rows += columns
-    near = view.response.ravel().take(rows)
-    near = np.minimum(np.maximum(near, 0), np.float32(_HIGHEST_RESPONSE)).astype(np.float64)
-    ratios = parameters.response_slope * (near - parameters.response_middle)
-    ratios -= costs
-    best = ratios.argmax(axis=1)
-    moves = np.column_stack([dx[best], dy[best]]) / view.steps
-    log_ratios = ratios[np.arange(len(best)), best]
-    return positions + moves, np.clip(log_ratios, -_LARGEST_LOG_RATIO, _LARGEST_LOG_RATIO)
+    seen = np.minimum(np.maximum(view.response, 0), np.float32(_HIGHEST_RESPONSE))
+    ratios = parameters.response_slope * (seen.astype(np.float64) - parameters.response_middle)
+    moves, log_ratios = kernels.climbed(ratios, view.places(positions), _costs(climb))
+    return positions + moves / view.steps, np.clip(
+        log_ratios, -_LARGEST_LOG_RATIO, _LARGEST_LOG_RATIO
+    )
 
 
 def likeliest_peak(view: View, particles: Hypotheses, extent: float) -> tuple[Array, float]:

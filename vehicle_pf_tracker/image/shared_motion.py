@@ -1,0 +1,164 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+"""Motion that most of some points share: a background's, and a turning or growing vehicle's.
+
+In numpy; the kernels in numba compute the same, see `image.kernels`.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+
+Alive: TypeAlias = npt.NDArray[np.bool_]
+
+AGREEING_PX = 0.7
+"""Residual of a corner that agrees with the motion, in px of the reduced frame."""
+LEAST_CORNERS = 6
+"""Fewest corners that four numbers are fitted to."""
+STILL_SHARE = 0.5
+"""Share of corners at rest from which the camera stands: a lorry moves many, not half."""
+FITS = 5
+"""Reweighted fits; the weights change little after the third."""
+TURN_FITS = 2
+"""Fits of the turn: one for all, and one in which those that strayed from it count less."""
+TURN_INERTIA = 0.3
+"""Resistance of the turn's fit, as the sum of the squared places of five points: the few that an
+occluder leaves must not turn all."""
+FEWEST_POINTS = 12
+"""Fewest tracked points that tell a change of size."""
+APART = 0.25
+"""Least distance of two points that tell a change of size, of the size."""
+LARGEST_STRETCH = 0.05
+"""Bound of the change of log size per frame."""
+LEAST_RATIO = 0.2
+"""Bound of the ratio of two distances, whose logarithm is taken."""
+
+
+class MotionKernels(Protocol):
+    """Fits of shared motion; those of this module, or compiled."""
+
+    def shared_similarity(self, before: Array, after: Array) -> Array:
+        """Fit a similarity; see `shared_similarity`."""
+        ...
+
+    def staying(self, before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
+        """Tell which places turn with most; see `staying`."""
+        ...
+
+    def shared_stretch(self, before: Array, after: Array, size: Array) -> Array:
+        """Change of distances; see `shared_stretch`."""
+        ...
+
+
+def shared_similarity(before: Array, after: Array) -> Array:
+    """Fit a similarity to the motion that most points share.
+
+    Parameters
+    ----------
+    before, after : (N, 2) arrays
+        Points in both frames, px.
+
+    Returns
+    -------
+    (2, 3) array
+        Rotation times scale, and shift in px. That of no motion where half of the points rest, or
+        too few agree.
+    """
+    flow = after - before
+    rest = np.eye(2, 3)
+    if len(flow) < LEAST_CORNERS:
+        return rest
+    if (np.hypot(flow[:, 0], flow[:, 1]) < AGREEING_PX).mean() >= STILL_SHARE:
+        return rest
+    # A zoom or a roll spreads the flow over the image, hence the wide neighbourhood.
+    apart = np.linalg.norm(flow[:, np.newaxis] - flow, axis=2)
+    densest = int((apart < 3 * AGREEING_PX).sum(axis=1).argmax())
+    agreeing = apart[densest] < 5 * AGREEING_PX
+    if agreeing.sum() < LEAST_CORNERS:
+        return rest
+    return _robust_similarity(before[agreeing], after[agreeing])
+
+
+def _robust_similarity(before: Array, after: Array) -> Array:
+    """Fit by least squares, reweighted so that points far off count little."""
+    weights = np.ones(len(before))
+    found = np.empty((2, 3))
+    for _ in range(FITS):
+        total = weights.sum()
+        middle, target = weights @ before / total, weights @ after / total
+        x, y = before - middle, after - target
+        spread = float(weights @ (x**2).sum(axis=1)) + 1e-9
+        along = float(weights @ (x * y).sum(axis=1)) / spread
+        across = float(weights @ (x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0])) / spread
+        turn = np.array([[along, -across], [across, along]])
+        found[:, :2], found[:, 2] = turn, target - turn @ middle
+        residual = np.linalg.norm(after - (before @ turn.T + found[:, 2]), axis=1)
+        scale = max(1.5 * float(np.median(residual)), AGREEING_PX / 2)
+        weights = 1 / (1 + (residual / scale) ** 2) ** 2
+    return found
+
+
+def shared_turn(before: Array, after: Array, strayed: float) -> Array:
+    """Linear map (2, 2) that most places (N, 2) in a box have moved by: a vehicle that turns.
+
+    It has no shift, so that points which stay behind with an occluder do not fit into it. Those
+    that are `strayed` off count half.
+    """
+    turn = np.eye(2)
+    for _ in range(TURN_FITS):
+        off = after - before @ turn
+        weighted = before / (1 + (off**2).sum(axis=1) / strayed**2)[:, np.newaxis]
+        kept = TURN_INERTIA * np.eye(2)
+        turn = np.linalg.solve(weighted.T @ before + kept, weighted.T @ after + kept)
+    return turn
+
+
+def staying(before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
+    """Tell which of the places (N, 2) that are alive turn with most of these.
+
+    Parameters
+    ----------
+    before, after : (N, 2) arrays
+        Places in the box when they were chosen, and now, in sizes of the box.
+    alive : (N,) array
+        False for places that count as lost already.
+    strayed : float
+        Distance from where it should be from which on a place does not stay.
+    """
+    turn = shared_turn(before[alive], after[alive], strayed)
+    off = after - before @ turn
+    return np.asarray(alive & (np.hypot(off[:, 0], off[:, 1]) < strayed))
+
+
+def shared_stretch(before: Array, after: Array, size: Array) -> Array:
+    """Median change of the log distance of points (N, 2) along x and y, of a box of a size."""
+    change = np.zeros(2)
+    if len(before) < FEWEST_POINTS:
+        return change
+    half = len(before) // 2
+    for axis in (0, 1):
+        # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.
+        order = before[:, axis].argsort(kind="stable")
+        low, high = order[:half], order[-half:]
+        old, new = before[high, axis] - before[low, axis], after[high, axis] - after[low, axis]
+        far = old > APART * size[axis]
+        if far.sum() >= FEWEST_POINTS // 2:
+            ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
+            change[axis] = float(np.median(np.log(ratio)))
+    return np.clip(change, -LARGEST_STRETCH, LARGEST_STRETCH)
