@@ -26,6 +26,7 @@ import time
 from collections import deque
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -34,6 +35,7 @@ from geometry_msgs.msg import PointStamped, PolygonStamped
 from rcl_interfaces.srv import SetParameters
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import Image, RegionOfInterest
 
@@ -53,11 +55,18 @@ class NodeProcess:
         Name of the variant.
     *assignments : str
         Parameters, ``name:=value``.
+    target : (float, float, float, float) or None
+        Left, top, width, height of the target in px; None gives none.
     """
 
-    def __init__(self, variant: str, *assignments: str) -> None:
+    def __init__(
+        self,
+        variant: str,
+        *assignments: str,
+        target: tuple[float, float, float, float] | None = TARGET,
+    ) -> None:
         os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-        box = zip(("x", "y", "width", "height"), TARGET, strict=True)
+        box = zip(("x", "y", "width", "height"), target or (), strict=target is not None)
         words = [*(f"target.{name}:={value}" for name, value in box), *assignments]
         self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - open as long as the node
         code = (
@@ -76,7 +85,7 @@ class NodeProcess:
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)
         self.modes: list[DiagnosticArray] = []
-        own = f"/{variant}_tracker"
+        self.name = own = f"/{variant}_tracker"
         self._node.create_subscription(
             DiagnosticArray, f"{own}/mode", self.modes.append, QoSProfile(depth=100)
         )
@@ -105,6 +114,17 @@ class NodeProcess:
     def _is_loading(self) -> bool:
         values = self.modes[-1].status[0].values
         return any(pair.value.startswith(NOT_READY) for pair in values)
+
+    def collect(self, kind: type, name: str) -> list[Any]:
+        """Subscribe to an output of the node; returns the list that messages are appended to."""
+        received: list[Any] = []
+        topic = f"{self.name}/{name}"
+        self._node.create_subscription(kind, topic, received.append, QoSProfile(depth=100))
+        return received
+
+    def publisher(self, kind: type, topic: str) -> Publisher:
+        """Make a publisher of the tester."""
+        return self._node.create_publisher(kind, topic, QoSProfile(depth=100))
 
     def publish(self, message: object) -> None:
         """Send an image or a target."""
@@ -161,8 +181,13 @@ class NodeProcess:
     @property
     def log(self) -> str:
         """The last of what the node said."""
+        return self.output[-4000:]
+
+    @property
+    def output(self) -> str:
+        """All that the node said."""
         self._log.seek(0)
-        return self._log.read()[-4000:]
+        return self._log.read()
 
     def end(self) -> None:
         """End the node with a signal.
@@ -176,8 +201,7 @@ class NodeProcess:
         status = self._process.wait(TIMEOUT)
         self._executor.shutdown()
         rclpy.try_shutdown()
-        self._log.seek(0)
-        text = self._log.read()
+        text = self.output
         if status or "Traceback" in text:
             raise SystemExit(f"the node ended with {status}:\n{text[-4000:]}")
 

@@ -16,11 +16,14 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from built_messages import missing
 
 pytestmark = pytest.mark.ros
 
@@ -29,7 +32,7 @@ ROBUSTNESS = Path(__file__).resolve().parents[1] / "robustness"
 
 def run(start_process, script: str, *words: str) -> str:
     process = start_process(str(ROBUSTNESS / script), *words)
-    status = process.wait(60)
+    status = process.wait(120)
     assert status == 0, process.output
     return process.output
 
@@ -62,3 +65,17 @@ def test_a_few_vehicles_come_and_go(start_process):
     told = run(start_process, "traffic_soak.py", "--vehicles", "200")
     assert "200 vehicles in" in told
     assert "; twice: 0" in told
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("detector", ["topic", "motion"])
+def test_a_few_vehicles_come_and_go_before_the_node(start_process, detector):
+    if detector == "topic" and find_spec("vision_msgs") is None and (reason := missing()):
+        pytest.skip(f"vision_msgs is not installed, and cannot be built: {reason}")
+    told = run(
+        start_process, "traffic_node_soak.py", "--vehicles", "60", "--minutes", "0.4",
+        "--detector", detector,
+    )  # fmt: skip
+    assert "images without an answer: 0" in told
+    assert "; twice: 0" in told
+    assert "MB at most" in told

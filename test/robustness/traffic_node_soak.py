@@ -1,0 +1,360 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Run the node of many vehicles for an hour while ten thousand vehicles come and go.
+
+    python test/robustness/traffic_node_soak.py --vehicles 10000 --minutes 60
+
+Vehicles drive through in lanes, under a bridge that hides each of them for a few images. A
+detector publishes their boxes (vision_msgs, built from its definitions where it is not installed),
+misses some, and sees what is not there; with `--detector motion` the node finds them itself. Once
+in a while the detector fails: a flood of ten thousand boxes, boxes that cannot be used, stamps of
+no image, silence. Prints what was answered, which numbers were given and counted, what the node
+said, and how the resident memory went. Exit status 1 if an image stayed unanswered, was rejected or
+answered twice, a number was issued twice, a vehicle never had one, or memory grew; a traceback or
+an end that is not clean ends it with the node's log.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import io
+import math
+import os
+import re
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterator
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray
+from lanes import Corners, Numbers, Road, Sighting, Traffic
+from node_process import NodeProcess
+from sensor_msgs.msg import Image, PointCloud2
+from std_msgs.msg import Header
+from visualization_msgs.msg import MarkerArray
+
+from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
+
+MB = 1e6
+WIDTH, HEIGHT = 320, 180
+BRIDGE = slice(150, 180)
+"""Columns under the bridge: a vehicle of 32 px is hidden for a few images."""
+LEAST = 3.0
+"""Least width in px that the detector sees of a vehicle that enters."""
+LINE = 260
+"""Column of the line at which vehicles are counted, px."""
+SETTLED = 600.0
+"""Seconds until memory has to stay as it is; a shorter run shows its second half."""
+GROWTH = 2.0
+"""MB that the resident memory may grow by from then on: 200 bytes for each vehicle."""
+FAULT_EVERY = 20.0
+SILENCE = 2.0
+"""Seconds between two failures of the detector, and how long a silence lasts."""
+FLOOD = 10_000
+CONFIRMED = (1, 2, 3)
+"""Modes in ~/tracks of vehicles that have had enough evidence."""
+FORMATS = {2: "u1", 6: "<u4", 7: "<f4"}
+"""numpy's words for the datatypes of sensor_msgs/PointField that ~/tracks has."""
+
+
+def vision(folder: Path) -> Any:
+    """Import vision_msgs.msg, built in `folder` from its definitions where it is not installed."""
+    if find_spec("vision_msgs") is None:
+        sys.path.append(str(Path(__file__).resolve().parents[1] / "ros"))
+        built = import_module("built_messages")
+        with contextlib.redirect_stdout(io.StringIO()):  # each file that is written
+            path = str(built.build("vision_msgs", built.VISION, folder))
+        sys.path.append(path)
+        # For the node's process.
+        known = os.environ.get("PYTHONPATH")
+        os.environ["PYTHONPATH"] = os.pathsep.join([path, *([known] if known else [])])
+    return import_module("vision_msgs.msg")
+
+
+def sightings(cloud: PointCloud2) -> list[Sighting]:
+    """Read ~/tracks by the fields that the message itself names."""
+    kind = np.dtype(
+        {
+            "names": [one.name for one in cloud.fields],
+            "formats": [FORMATS[one.datatype] for one in cloud.fields],
+            "offsets": [one.offset for one in cloud.fields],
+            "itemsize": cloud.point_step,
+        }
+    )
+    points = np.frombuffer(bytes(cloud.data), kind)
+    return [
+        Sighting(int(one["id"]), float(one["x"]), float(one["y"]), int(one["mode"]) in CONFIRMED)
+        for one in points
+    ]
+
+
+class Detector:
+    """Publishes boxes, right ones and faulty ones.
+
+    Parameters
+    ----------
+    node : NodeProcess
+        The node.
+    messages : module
+        vision_msgs.msg.
+    """
+
+    def __init__(self, node: NodeProcess, messages: Any) -> None:
+        self._messages = messages
+        self._topic = node.publisher(messages.Detection2DArray, "detections")
+        rows = np.random.default_rng(3).uniform(0, 150, (FLOOD, 4))
+        self._flood = self._message(Header(), rows)
+
+    def publish(self, header: Header, boxes: np.ndarray) -> None:
+        """Publish boxes (left, top, width, height) of an image."""
+        self._topic.publish(self._message(header, boxes))
+
+    def flood(self, header: Header, _: np.ndarray) -> None:
+        """Publish far too many boxes."""
+        self._flood.header = header
+        self._topic.publish(self._flood)
+
+    def unusable(self, header: Header, boxes: np.ndarray) -> None:
+        """Publish the right boxes, each twice, among some that cannot be used."""
+        nan, huge = math.nan, 1e300
+        bad = [
+            (nan, 5, 9, 9),
+            (40, 40, -20, -10),
+            (5, 5, 0, 0),
+            (5e3, 5, 9, 9),
+            (-huge, 5, huge, 9),
+        ]
+        self.publish(header, np.concatenate([boxes, bad, boxes]))
+
+    def stray(self, header: Header, boxes: np.ndarray) -> None:
+        """Publish the right boxes, and many under stamps that no image has."""
+        for step in range(120):
+            other = Header(frame_id=header.frame_id)
+            other.stamp.sec, other.stamp.nanosec = header.stamp.sec + 10_000, step
+            self.publish(other, boxes[:1])
+        self.publish(header, boxes)
+
+    def _message(self, header: Header, boxes: np.ndarray) -> Any:
+        made = self._messages.Detection2DArray(header=header)
+        for x, y, width, height in boxes.tolist():
+            one = self._messages.Detection2D()
+            one.bbox.center.position.x, one.bbox.center.position.y = x + width / 2, y + height / 2
+            one.bbox.size_x, one.bbox.size_y = width, height
+            result = self._messages.ObjectHypothesisWithPose()
+            result.hypothesis.class_id, result.hypothesis.score = "car", 0.8
+            one.results = [result]
+            made.detections.append(one)
+        return made
+
+
+class Soak:
+    """Images at a rate, answers as they come.
+
+    Parameters
+    ----------
+    node : NodeProcess
+        The node.
+    detector : Detector or None
+        Publishes detections; None where the node finds vehicles itself.
+    road : Road
+        Vehicles and their ways.
+    total : int
+        Number of vehicles.
+    rate : float
+        Images per second.
+    seed : int
+        Seed of the traffic and the detector's mistakes.
+    """
+
+    def __init__(
+        self,
+        node: NodeProcess,
+        detector: Detector | None,
+        road: Road,
+        total: int,
+        rate: float,
+        seed: int,
+    ) -> None:
+        self._node, self._detector, self._road, self._rate = node, detector, road, rate
+        self.traffic = Traffic(road, total, seed)
+        self.numbers = Numbers(road, total)
+        self.answers: Counter[str] = Counter()
+        self.waiting: dict[int, float] = {}
+        self.latencies: list[float] = []
+        self.sizes: list[tuple[float, int]] = []
+        self.counted = ""
+        self._corners: dict[int, Corners] = {}
+        self._tracks = node.collect(PointCloud2, "tracks")
+        self._counts = node.collect(DiagnosticArray, "counts")
+        self._others = [
+            node.collect(DiagnosticArray, "modes"),
+            node.collect(MarkerArray, "markers"),
+        ]
+        self._faults = self._drawn_faults()
+
+    def _drawn_faults(self) -> Iterator[str]:
+        while True:
+            yield from ("flood", "unusable", "stray", "silence")
+
+    def begin(self) -> None:
+        """Wait until the node answers an image of the empty road."""
+        self._first = self._image(0, self._empty(), self._empty())
+        self._node.begin(self._first)
+        self._hear()
+
+    def run(self) -> None:
+        """Show images until all vehicles have gone, and wait for the last answers."""
+        began, number, empty = time.monotonic(), 0, self._empty()
+        while not self.traffic.is_over:
+            number += 1
+            corners = self.traffic.step(number)
+            image = self._image(number, self._road.painted(empty, corners), empty)
+            key = stamp_ns(image.header)
+            self.waiting[key], self._corners[key] = time.monotonic(), corners
+            self._node.publish(image)
+            if self._detector is not None:
+                self._detect(self._detector, number, image.header, corners)
+            if number % round(10 * self._rate) == 0:
+                self.sizes.append((time.monotonic() - began, self._node.resident))
+            while (left := began + number / self._rate - time.monotonic()) > 0:
+                self._node.spin(min(left, 0.01))
+                self._hear()
+        for _ in range(100):
+            self._node.spin(0.02)
+            self._hear()
+        self.numbers.judge((), {})
+
+    def _empty(self) -> np.ndarray:
+        empty = self._road.empty()
+        empty[:, BRIDGE] = 60
+        return empty
+
+    def _image(self, number: int, frame: np.ndarray, empty: np.ndarray) -> Image:
+        frame[:, BRIDGE] = empty[:, BRIDGE]
+        header = Header(frame_id="camera")
+        nanoseconds = round(number * 1e9 / self._rate)
+        header.stamp.sec, header.stamp.nanosec = 1000 + nanoseconds // 10**9, nanoseconds % 10**9
+        return image_message(header, frame)
+
+    def _detect(self, detector: Detector, number: int, header: Header, corners: Corners) -> None:
+        boxes = self.traffic.detect(corners)
+        middle = boxes[:, 0] + boxes[:, 2] / 2
+        is_hidden = (middle >= BRIDGE.start) & (middle < BRIDGE.stop)
+        boxes = boxes[~is_hidden & (boxes[:, 2] >= LEAST)]
+        since = number % round(FAULT_EVERY * self._rate)
+        if since == 0:
+            self._fault = next(self._faults)
+            self.answers[f"fault: {self._fault}"] += 1
+        if number < FAULT_EVERY * self._rate or since > SILENCE * self._rate:
+            detector.publish(header, boxes)
+        elif self._fault != "silence":
+            fault = getattr(detector, self._fault) if since == 0 else detector.publish
+            fault(header, boxes)
+
+    def _hear(self) -> None:
+        now = time.monotonic()
+        while self._tracks:
+            cloud = self._tracks.pop(0)
+            self.numbers.judge(sightings(cloud), self._corners.pop(stamp_ns(cloud.header), {}))
+        while self._counts:
+            self.counted = self._counts.pop(0).status[0].message
+        for messages in self._others:
+            messages.clear()
+        while self._node.modes:
+            answer = self._node.modes.pop(0)
+            if answer.header == self._first.header:
+                continue  # it was sent until the node answered
+            sent = self.waiting.pop(stamp_ns(answer.header), None)
+            if sent is None:
+                self.answers["second answers"] += 1
+            else:
+                self.latencies.append(now - sent)
+            self.answers[f"mode: {answer.status[0].message}"] += 1
+
+
+def growth(sizes: list[tuple[float, int]]) -> float:
+    """Print how the resident memory went; returns by how many MB it grew once settled."""
+    times, memory = np.array(sizes).T
+    since = min(SETTLED, times[-1] / 2)
+    settled = memory[times >= since] / MB
+    print(
+        f"resident memory {settled[0]:.1f} MB after {since / 60:.1f} minutes, {settled[-1]:.1f} MB "
+        f"at the end ({settled[-1] - settled[0]:+.1f} MB), {settled.max():.1f} MB at most"
+    )
+    return float(settled[-1] - settled[0]) if times[-1] > SETTLED else 0.0
+
+
+def report(soak: Soak, seconds: float, output: str) -> bool:
+    """Print what came of it; returns False if something is wrong."""
+    images = len(soak.latencies) + len(soak.waiting)
+    print(f"{soak.traffic.begun} vehicles in {images} images, {seconds:.0f} s")
+    print(f"images without an answer: {len(soak.waiting)}")
+    for answer, count in sorted(soak.answers.items()):
+        print(f"  {answer:18} {count}")
+    soak.numbers.report()
+    print(f"counted at the line: {soak.counted}")
+    middle, high, most = np.percentile(np.array(soak.latencies) * 1e3, [50, 95, 99])
+    print(f"answers after {middle:.1f} ms (p50), {high:.1f} ms (p95), {most:.1f} ms (p99)")
+    said = Counter(re.sub(r"\[.*\]: |\d+", "", line) for line in output.splitlines())
+    for sentence, count in said.most_common():
+        print(f"  the node said {count} times: {sentence}")
+    grown = growth(soak.sizes)
+    second = soak.answers["second answers"] + soak.answers["mode: REJECTED"]
+    missing = (soak.numbers.of == 0).any()
+    return not (soak.waiting or second or soak.numbers.reissued or missing or grown > GROWTH)
+
+
+def main() -> None:
+    """Run as asked."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--vehicles", type=int, default=10_000)
+    parser.add_argument("--minutes", type=float, default=60.0)
+    parser.add_argument("--rate", type=float, default=12.0, help="images per second")
+    parser.add_argument("--detector", choices=("topic", "motion"), default="topic")
+    parser.add_argument("--seed", type=int, default=0)
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="traffic_soak_") as folder:
+        is_good = run(args, Path(folder))
+    raise SystemExit(0 if is_good else 1)
+
+
+def run(args: argparse.Namespace, folder: Path) -> bool:
+    """Run and report; returns False if something is wrong."""
+    messages = vision(folder) if args.detector == "topic" else None
+    every = args.minutes * 60 * args.rate / args.vehicles
+    road = Road(WIDTH, HEIGHT, lanes=6, size=(32.0, 20.0), speed=5.0, every=every)
+    lines = folder / "lines.yaml"
+    lines.write_text(f"lines: {{exit: {{from: [{LINE}, {HEIGHT}], to: [{LINE}, 0]}}}}\n")
+    words = [f"detector.kind:={args.detector}", f"lines:={lines}", "queue_depth:=20"]
+    node = NodeProcess("traffic", *words, target=None)
+    detector = None if messages is None else Detector(node, messages)
+    soak = Soak(node, detector, road, args.vehicles, args.rate, args.seed)
+    soak.begin()
+    began = time.monotonic()
+    soak.run()
+    is_good = report(soak, time.monotonic() - began, node.output)
+    node.end()
+    return is_good
+
+
+if __name__ == "__main__":
+    main()
