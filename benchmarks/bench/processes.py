@@ -78,6 +78,11 @@ class NodeProcess:
         raise InputError(f"the node {' '.join(words)} ended at once: {''.join(said)[-2000:]}")
 
     @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
+    @property
     def cpu_seconds(self) -> float:
         """CPU time of the whole process so far, of all its threads."""
         return time.clock_gettime((~self._process.pid << 3) | 2)  # Linux: CPU clock of a process

@@ -90,3 +90,62 @@ def test_the_folder_of_ones_choice_is_used(copy, tmp_path):
     index.write_bytes(b"torn")
     told = run(copy, tmp_path / "cache", NUMBA_CACHE_DIR=str(folder))
     assert told.startswith("8 0 compiled kernels cannot be kept on disk (")
+
+
+FIRST_START = """
+from vehicle_pf_tracker.image.kernels.choice import load_kernels
+load_kernels("numba")
+from vehicle_pf_tracker.image.kernels.numba_windows import window_pixels
+print(len(window_pixels.stats.cache_hits), len(window_pixels.stats.cache_misses))
+"""
+
+
+@pytest.mark.slow
+def test_a_first_start_lets_another_process_compile(tmp_path):
+    pytest.importorskip("numba", reason="numba is not installed")
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    command = [sys.executable, "-c", FIRST_START]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["1", "0"]  # loaded: somebody else has compiled it
+
+
+def test_pages_of_a_library_are_released_and_come_again_when_needed():
+    pytest.importorskip("llvmlite", reason="numba is not installed")
+    if not Path("/proc/self/smaps").exists():
+        pytest.skip("this is not Linux")
+    code = (
+        "import llvmlite.binding as llvm\n"
+        "from vehicle_pf_tracker.image.kernels.llvm_memory import release_memory\n"
+        "def resident():\n"
+        "    return int(open('/proc/self/statm').read().split()[1]) * 4096 / 1e6\n"
+        "text = 'define i32 @twice(i32 %x) { %y = add i32 %x, %x ret i32 %y }'\n"
+        "before_use = str(llvm.parse_assembly(text))\n"
+        "full = resident(); release_memory(); less = resident()\n"
+        "assert str(llvm.parse_assembly(text)) == before_use\n"
+        "print(full - less)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert float(done.stdout) > 20  # LLVM's initialisers alone touch 40 MB
+
+
+def test_pages_that_were_written_to_stay():
+    code = (
+        "from vehicle_pf_tracker.image.kernels.llvm_memory import _unwritten_mappings\n"
+        "import cv2\n"
+        "found = set(_unwritten_mappings('cv2'))\n"
+        "rows, sizes = [], {}\n"
+        "for line in [*open('/proc/self/smaps'), '0-0 end']:\n"
+        "    word = line.split()[0]\n"
+        "    if word.endswith(':'):\n"
+        "        sizes[word] = line.split()[1]; continue\n"
+        "    if rows and 'cv2' in rows[-1]:\n"
+        "        place = tuple(int(part, 16) for part in rows[-1].split()[0].split('-'))\n"
+        "        is_own = sizes['Anonymous:'] != '0' or 'w' in rows[-1].split()[1]\n"
+        "        assert (place in found) == (not is_own), rows[-1]\n"
+        "    rows.append(line)\n"
+        "print(len(found))\n"
+    )
+    if not Path("/proc/self/smaps").exists():
+        pytest.skip("this is not Linux")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert int(done.stdout) >= 1

@@ -22,11 +22,15 @@ import importlib.util
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.kernels.interface import Kernels
+from vehicle_pf_tracker.image.kernels.llvm_memory import compile_elsewhere, release_memory
 from vehicle_pf_tracker.image.kernels.opencv import OpenCvKernels
 
 CHOICES = ("auto", "opencv", "numba")
 
 _NUMBA = "vehicle_pf_tracker.image.kernels.numba_kernels"
+_JIT = "vehicle_pf_tracker.image.kernels.numba_jit"
+_FIRST = "vehicle_pf_tracker.image.kernels.numba_cells"
+"""The kernels that all others need: a small part, which tells whether the cache is filled."""
 
 
 def load_kernels(choice: str) -> Kernels:
@@ -65,7 +69,13 @@ def takes_long(choice: str) -> bool:
 @functools.cache
 def _load_numba() -> Kernels:
     # Imported late: it takes half a second, and only here is it known to be needed.
+    importlib.import_module(_FIRST)
+    jit = importlib.import_module(_JIT)
+    if jit.has_filled_cache():
+        compile_elsewhere(_NUMBA)
     kernels: Kernels = importlib.import_module(_NUMBA).NumbaKernels()
+    jit.drop_intermediate_code()
+    release_memory()
     return kernels
 
 
