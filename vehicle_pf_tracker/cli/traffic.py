@@ -37,6 +37,7 @@ from vehicle_pf_tracker.evaluation.following import Pictures
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
 from vehicle_pf_tracker.evaluation.run_folder import RUN, versions
 from vehicle_pf_tracker.evaluation.traffic.detection_file import DetectionFile
+from vehicle_pf_tracker.evaluation.traffic.detector_choice import detector_maker
 from vehicle_pf_tracker.evaluation.traffic.following import Target, TrafficRun
 from vehicle_pf_tracker.evaluation.traffic.summary import limited
 from vehicle_pf_tracker.evaluation.traffic.track_files import TRACKS, track_files
@@ -49,7 +50,6 @@ from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
-from vehicle_pf_tracker.trackers.traffic.detector_choice import detector_maker
 from vehicle_pf_tracker.trackers.traffic.detector_parameters import MODEL, MOTION, NONE, TOPIC
 from vehicle_pf_tracker.trackers.traffic.session import Detector, TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker

@@ -18,9 +18,9 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.evaluation.traffic.drawing import identity_colour
 from vehicle_pf_tracker.evaluation.traffic.path_picture import PathPicture
 from vehicle_pf_tracker.evaluation.traffic.summary import TrafficSummary, limited
-from vehicle_pf_tracker.trackers.traffic.drawing import identity_colour
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 MODES = {

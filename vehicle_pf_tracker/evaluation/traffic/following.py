@@ -28,13 +28,13 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.evaluation.following import RATE_FRAMES, Pictures, frame_rate_of
 from vehicle_pf_tracker.evaluation.mode_spans import clock_words
+from vehicle_pf_tracker.evaluation.traffic.drawing import annotated
 from vehicle_pf_tracker.evaluation.traffic.path_picture import PathPicture
 from vehicle_pf_tracker.evaluation.traffic.summary import TrafficSummary
 from vehicle_pf_tracker.evaluation.traffic.track_files import TrackFiles
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.drawing import annotated
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 

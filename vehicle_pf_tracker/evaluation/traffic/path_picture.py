@@ -28,10 +28,10 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.output_files import write_picture
+from vehicle_pf_tracker.evaluation.traffic.drawing import draw_counts, identity_colour
 from vehicle_pf_tracker.image.lettering import line_width, write_words
 from vehicle_pf_tracker.image.outlines import draw_box, pixels_at
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
-from vehicle_pf_tracker.trackers.traffic.drawing import draw_counts, identity_colour
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 _PLACES = 16

@@ -28,6 +28,7 @@ from std_msgs.msg import Header
 from visualization_msgs.msg import MarkerArray
 
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.evaluation.traffic.drawing import annotated
 from vehicle_pf_tracker.image.lettering import line_width
 from vehicle_pf_tracker.image.outlines import Colour, draw_box
 from vehicle_pf_tracker.parameters.configuration import NodeParameters
@@ -48,7 +49,6 @@ from vehicle_pf_tracker.ros.traffic.track_messages import (
     tracks_message,
 )
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
-from vehicle_pf_tracker.trackers.traffic.drawing import annotated
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 
 _RELIABLE = QoSProfile(depth=10)

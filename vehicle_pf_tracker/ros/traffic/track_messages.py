@@ -26,8 +26,8 @@ from sensor_msgs.msg import PointCloud2, PointField
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
+from vehicle_pf_tracker.evaluation.traffic.drawing import NEUTRAL, identity_colour
 from vehicle_pf_tracker.ros.messages import LEVELS, key_values, packed
-from vehicle_pf_tracker.trackers.traffic.drawing import NEUTRAL, identity_colour
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 CODES: Mapping[TrackMode, int] = MappingProxyType(

@@ -12,14 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Detection by a network of the user's, with ONNX Runtime (the extra `onnx`)."""
+"""Detection by a network that somebody else has loaded, told apart by the form of its outputs."""
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import cv2
 import numpy as np
@@ -55,16 +53,59 @@ _MOST_BOXES = 3000
 """Best boxes of which overlapping ones are suppressed; that takes the square of their number."""
 
 
-class OnnxDetector:
-    """Network in an ONNX file, whose form is told from its outputs.
+class Tensor(Protocol):
+    """Input or output of a network, as ONNX Runtime describes it."""
+
+    @property
+    def name(self) -> str:
+        """Name to run it by."""
+        ...
+
+    @property
+    def type(self) -> str:
+        """Type of its elements, such as ``tensor(float)``."""
+        ...
+
+    @property
+    def shape(self) -> Sequence[int | str | None]:
+        """Its sizes; words and None where they are open."""
+        ...
+
+
+class Network(Protocol):
+    """Loaded network: the part of ONNX Runtime's InferenceSession that is used."""
+
+    def get_inputs(self) -> Sequence[Tensor]:
+        """Describe the inputs."""
+        ...
+
+    def get_outputs(self) -> Sequence[Tensor]:
+        """Describe the outputs."""
+        ...
+
+    def get_modelmeta(self) -> Any:
+        """Return what its author noted; ``custom_metadata_map`` may have names of classes."""
+        ...
+
+    def run(self, names: Sequence[str], inputs: Mapping[str, Array]) -> Sequence[Array]:
+        """Compute the outputs of these names."""
+        ...
+
+
+class NetworkDetector:
+    """Detector by a network, whose form is told from its outputs.
 
     Boxes that overlap are suppressed across classes, since a van that is a car and a truck at once
     is one vehicle.
 
     Parameters
     ----------
+    network : Network
+        The network.
+    name : str
+        Name of the network in errors, such as its file.
     parameters : DetectorParameters
-        The file, its classes, thresholds.
+        Its classes, thresholds.
 
     Attributes
     ----------
@@ -76,14 +117,13 @@ class OnnxDetector:
     Raises
     ------
     InputError
-        If ONNX Runtime is not installed, the file cannot be used, or it has no such classes.
+        If the network has another form, or no such classes.
     """
 
-    def __init__(self, parameters: DetectorParameters) -> None:
+    def __init__(self, network: Network, name: str, parameters: DetectorParameters) -> None:
         self.disturbed = self.is_blind = False
         self._parameters = parameters
-        self._path = Path(parameters.model)
-        self._session = _open(self._path)
+        self._network, self._name = network, name
         self._input, self._type, self._is_planar, self._fixed = self._read_input()
         size = self._size(parameters.input_size, parameters.input_size)
         # One run on grey: many files leave the shapes of their outputs open.
@@ -93,7 +133,7 @@ class OnnxDetector:
             self._names = self._class_names(class_count(self.form, outputs))
             self._classes = self._chosen_classes()
         except InputError as error:
-            raise InputError(f"the network {self._path}: {error}") from None
+            raise InputError(f"the network {self._name}: {error}") from None
 
     def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
         """Find vehicles; `tracks` are not used."""
@@ -106,13 +146,13 @@ class OnnxDetector:
 
     def _read_input(self) -> tuple[str, Any, bool, tuple[int | None, int | None]]:
         """Return name and type of the input, whether its colours are planes, and its fixed size."""
-        inputs = self._session.get_inputs()
+        inputs = self._network.get_inputs()
         shape = list(inputs[0].shape)
         is_image = len(inputs) == 1 and len(shape) == 4 and inputs[0].type in _TYPES
         is_planar = is_image and shape[1] == 3
         if not is_image or not (is_planar or shape[3] == 3):
             raise InputError(
-                f"the network {self._path} takes no images: its one input must be (1, 3, height, "
+                f"the network {self._name} takes no images: its one input must be (1, 3, height, "
                 f"width) or (1, height, width, 3), and is {shape}"
             )
         sides = shape[2:4] if is_planar else shape[1:3]
@@ -140,13 +180,13 @@ class OnnxDetector:
             values = values / self._type(255)
         if self._is_planar:
             values = values.transpose(2, 0, 1)
-        names = [output.name for output in self._session.get_outputs()]
+        names = [output.name for output in self._network.get_outputs()]
         batch = np.ascontiguousarray(values[None], dtype=self._type)
         try:
-            outputs = self._session.run(names, {self._input: batch})
+            outputs = self._network.run(names, {self._input: batch})
         except Exception as error:  # ONNX Runtime's errors have no base of their own
             reason = " ".join(str(error).split())[:200]
-            raise InputError(f"the network {self._path} cannot be run: {reason}") from None
+            raise InputError(f"the network {self._name} cannot be run: {reason}") from None
         return dict(zip(names, outputs, strict=True))
 
     def _class_names(self, count: int | None) -> dict[int, str]:
@@ -156,7 +196,7 @@ class OnnxDetector:
             if count is not None and len(words) != count:
                 raise InputError(f"it has {count} classes, and detector.names {len(words)} names")
             return class_names.numbered(tuple(words))
-        metadata = self._session.get_modelmeta().custom_metadata_map
+        metadata = self._network.get_modelmeta().custom_metadata_map
         in_file = class_names.parse_metadata(metadata.get("names", ""))
         if in_file:
             return in_file
@@ -192,23 +232,3 @@ class OnnxDetector:
         """Return the indices of the boxes that no better one overlaps."""
         kept = cv2.dnn.NMSBoxes(boxes.tolist(), scores.tolist(), 0.0, self._parameters.overlap)
         return sorted(int(index) for index in np.asarray(kept).ravel())
-
-
-def _open(path: Path) -> Any:
-    """Load a network."""
-    try:
-        runtime = importlib.import_module("onnxruntime")
-    except ImportError:
-        raise InputError(
-            "networks need ONNX Runtime: install the extra [onnx], "
-            "pip install 'vehicle_pf_tracker[onnx]'"
-        ) from None
-    if not path.is_file():
-        raise InputError(f"there is no network {path}")
-    options = runtime.SessionOptions()
-    options.log_severity_level = 3  # errors: it warns of every unused weight
-    try:
-        return runtime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
-    except Exception as error:  # ONNX Runtime's errors have no base of their own
-        reason = " ".join(str(error).split())[:200]
-        raise InputError(f"the network {path} cannot be loaded: {reason}") from None

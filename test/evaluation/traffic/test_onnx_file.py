@@ -22,8 +22,8 @@ import pytest
 from onnx_networks import BLUE, RED
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.traffic.detector_choice import detector_maker
 from vehicle_pf_tracker.trackers.traffic.detector_parameters import DetectorParameters
-from vehicle_pf_tracker.trackers.traffic.onnx_detector import OnnxDetector
 
 GREY = 50
 
@@ -31,7 +31,7 @@ GREY = 50
 def detector(path, **parameters):
     pytest.importorskip("onnxruntime")
     values = {"min_score": 0.5, "input_size": networks.SIDE, **parameters}
-    return OnnxDetector(DetectorParameters(kind="model", model=str(path), **values))
+    return detector_maker(DetectorParameters(kind="model", model=str(path), **values))()
 
 
 def picture(*squares, size=(128, 64)):
@@ -179,4 +179,4 @@ def test_a_file_that_does_not_do_is_one_sentence(tmp_path, make, parameters, sai
 def test_without_onnx_runtime_the_extra_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "onnxruntime", None)
     with pytest.raises(InputError, match=r"vehicle_pf_tracker\[onnx\]"):
-        OnnxDetector(DetectorParameters(kind="model", model=str(tmp_path / "net.onnx")))
+        detector_maker(DetectorParameters(kind="model", model=str(tmp_path / "net.onnx")))

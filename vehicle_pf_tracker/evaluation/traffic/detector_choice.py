@@ -17,13 +17,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
+from vehicle_pf_tracker.evaluation.traffic.onnx_file import open_network
 from vehicle_pf_tracker.trackers.traffic.detector_parameters import (
     MODEL,
     MOTION,
     DetectorParameters,
 )
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
+from vehicle_pf_tracker.trackers.traffic.network_detector import NetworkDetector
 from vehicle_pf_tracker.trackers.traffic.session import Detector
 
 
@@ -38,11 +41,7 @@ def detector_maker(parameters: DetectorParameters) -> Callable[[], Detector] | N
     if parameters.kind == MOTION:
         return MotionDetector
     if parameters.kind == MODEL:
-        # onnxruntime is an extra, and takes a second to load.
-        from vehicle_pf_tracker.trackers.traffic.onnx_detector import (  # noqa: PLC0415
-            OnnxDetector,
-        )
-
-        network = OnnxDetector(parameters)
+        path = Path(parameters.model)
+        network = NetworkDetector(open_network(path), str(path), parameters)
         return lambda: network  # it keeps nothing between images
     return None

@@ -19,16 +19,16 @@ import pytest
 from traffic_samples import vehicle
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.image.outlines import draw_box
-from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, CountingZone
-from vehicle_pf_tracker.trackers.traffic.counting import Counter
-from vehicle_pf_tracker.trackers.traffic.drawing import (
+from vehicle_pf_tracker.evaluation.traffic.drawing import (
     NEUTRAL,
     annotated,
     draw_counts,
     draw_vehicle,
     identity_colour,
 )
+from vehicle_pf_tracker.image.outlines import draw_box
+from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, CountingZone
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
 BLACK = np.zeros((240, 320, 3), np.uint8)
