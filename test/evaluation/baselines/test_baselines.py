@@ -91,8 +91,8 @@ def test_a_target_has_to_be_set_first():
 
 def test_a_dead_worker_is_named():
     with Baseline("mil", PYTHON) as baseline:
-        baseline._process.kill()
-        baseline._process.wait()
+        baseline._worker._process.kill()
+        baseline._worker._process.wait()
         with pytest.raises(InputError, match=r"the baseline mil, run by .* ended: status -9"):
             baseline.start(np.zeros((2000, 2000, 3), np.uint8), TARGET)
 

@@ -16,15 +16,11 @@
 
 from __future__ import annotations
 
-import contextlib
-import json
 import os
-import subprocess
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,8 +29,8 @@ from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
+from vehicle_pf_tracker.evaluation.baselines.worker_process import WorkerProcess
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
-from vehicle_pf_tracker.evaluation.processes import wait_or_kill
 
 VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 """Environment variable that names the interpreter."""
@@ -135,21 +131,10 @@ class Baseline:
         words = [f"{key}={path}" for key, path in _checked_models(name, models).items()]
         self.name = name
         self._box: Box | None = None
-        self._python = str(baseline_python(python))
-        command = [self._python, "-I", str(_WORKER), name, *words]
-        self._log = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process
-        try:
-            self._process = subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._log
-            )
-        except OSError as error:
-            self._log.close()
-            raise InputError(f"cannot run {self._python}: {error.strerror}") from error
-        try:
-            self.opencv = str(self._answer()["opencv"])
-        except BaseException:
-            self.close()
-            raise
+        self._worker = WorkerProcess(
+            f"the baseline {name}", baseline_python(python), _WORKER, [name, *words]
+        )
+        self.opencv = str(self._worker.greeting["opencv"])
 
     def start(self, frame: Frame, box: Box) -> BaselineAnswer:
         """Start anew on `box` (rounded to whole px, as these trackers require) of `frame`.
@@ -179,13 +164,7 @@ class Baseline:
 
     def close(self) -> None:
         """End the process."""
-        assert self._process.stdin is not None
-        with contextlib.suppress(BrokenPipeError):  # it died; what was under way is lost
-            self._process.stdin.close()
-        wait_or_kill(self._process)
-        if self._process.stdout is not None:
-            self._process.stdout.close()
-        self._log.close()
+        self._worker.close()
 
     def __enter__(self) -> Baseline:
         return self
@@ -195,40 +174,13 @@ class Baseline:
 
     def _ask(self, frame: Frame, **request: object) -> BaselineAnswer:
         width, height = frame_size(frame)
-        header = json.dumps({"height": height, "width": width, **request}).encode() + b"\n"
-        assert self._process.stdin is not None
-        try:
-            self._process.stdin.write(header)
-            self._process.stdin.write(np.ascontiguousarray(frame).data)
-            self._process.stdin.flush()
-        except BrokenPipeError:
-            raise self._death() from None
-        answer = self._answer()
+        size = {"height": height, "width": width}
+        answer = self._worker.ask({**size, **request}, np.ascontiguousarray(frame))
         found = answer["box"] is not None
         box = Box(*answer["box"]) if found else self._box
         assert box is not None  # a start answers with a box
         self._box = box
         return BaselineAnswer(box, found, float(answer["seconds"]))
-
-    def _answer(self) -> dict[str, Any]:
-        assert self._process.stdout is not None
-        line = self._process.stdout.readline()
-        if not line:
-            raise self._death()
-        answer: dict[str, Any] = json.loads(line)
-        if "error" in answer:
-            raise InputError(f"the baseline {self.name} cannot go on: {answer['error']}")
-        return answer
-
-    def _death(self) -> InputError:
-        status = self._process.wait()
-        self._log.seek(0)
-        lines = self._log.read().decode(errors="replace").strip().splitlines()
-        reason = lines[-1] if lines else f"status {status}"
-        return InputError(
-            f"the baseline {self.name}, run by {self._python}, ended: {reason}; "
-            "`make baselines` builds an environment that has what it needs"
-        )
 
 
 def unknown_baseline(name: str, known: Iterable[str]) -> InputError:

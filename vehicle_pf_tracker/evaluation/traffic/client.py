@@ -16,10 +16,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import json
-import subprocess
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -28,9 +24,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines.client import baseline_python, unknown_baseline
-from vehicle_pf_tracker.evaluation.processes import wait_or_kill
+from vehicle_pf_tracker.evaluation.baselines.worker_process import WorkerProcess
 from vehicle_pf_tracker.evaluation.traffic.scorable import scorable
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
@@ -87,23 +82,8 @@ class TrafficWorker:
     """
 
     def __init__(self, python: Path | None = None) -> None:
-        self._python = str(baseline_python(python))
-        self._log = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process
-        try:
-            self._process = subprocess.Popen(
-                [self._python, "-I", str(_WORKER)],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=self._log,
-            )
-        except OSError as error:
-            self._log.close()
-            raise InputError(f"cannot run {self._python}: {error.strerror}") from error
-        try:
-            self.versions: dict[str, str] = self._answer()
-        except BaseException:
-            self.close()
-            raise
+        self._worker = WorkerProcess("the traffic baselines", baseline_python(python), _WORKER)
+        self.versions: dict[str, str] = self._worker.greeting
 
     def score(self, sequence: TrafficSequence, tracks: Array) -> dict[str, float]:
         """Score tracks (frame, identity, left, top, width, height) against a scene's truth.
@@ -142,13 +122,7 @@ class TrafficWorker:
 
     def close(self) -> None:
         """End the process."""
-        assert self._process.stdin is not None
-        with contextlib.suppress(BrokenPipeError):
-            self._process.stdin.close()
-        wait_or_kill(self._process)
-        if self._process.stdout is not None:
-            self._process.stdout.close()
-        self._log.close()
+        self._worker.close()
 
     def __enter__(self) -> TrafficWorker:
         return self
@@ -157,31 +131,4 @@ class TrafficWorker:
         self.close()
 
     def _ask(self, task: str, sequence: TrafficSequence, content: dict[str, Any]) -> Any:
-        request = {task: {"frames": sequence.frame_count, **content}}
-        assert self._process.stdin is not None
-        try:
-            self._process.stdin.write(json.dumps(request).encode() + b"\n")
-            self._process.stdin.flush()
-        except BrokenPipeError:
-            raise self._death() from None
-        return self._answer()
-
-    def _answer(self) -> Any:
-        assert self._process.stdout is not None
-        line = self._process.stdout.readline()
-        if not line:
-            raise self._death()
-        answer = json.loads(line)
-        if "error" in answer:
-            raise InputError(f"the traffic baselines cannot go on: {answer['error']}")
-        return answer
-
-    def _death(self) -> InputError:
-        status = self._process.wait()
-        self._log.seek(0)
-        lines = self._log.read().decode(errors="replace").strip().splitlines()
-        reason = lines[-1] if lines else f"status {status}"
-        return InputError(
-            f"the traffic baselines, run by {self._python}, ended: {reason}; "
-            "`make baselines` builds an environment that has what they need"
-        )
+        return self._worker.ask({task: {"frames": sequence.frame_count, **content}})
