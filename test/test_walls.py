@@ -66,6 +66,21 @@ ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", *MESSAGES}
 ON_A_ROBOT = {"rclpy", *MESSAGES, "numpy", "scipy", "cv2", "yaml", "numba"}
 
 
+WITHOUT_FILES = {"filtering", "trackers"}
+"""Rooms that neither read or write files nor paint."""
+FILES = {"fileinput", "glob", "io", "onnxruntime", "os", "pathlib", "shutil", "tempfile"}
+PAINTING = {"image.lettering", "image.outlines"}
+CALLS = {
+    "": {"open"},
+    "cv2": {
+        "FileStorage", "VideoCapture", "VideoWriter", "circle", "imread", "imwrite", "line",
+        "polylines", "putText", "rectangle",
+    },
+    "np": {"fromfile", "load", "loadtxt", "memmap", "save", "savetxt", "savez"},
+}  # fmt: skip
+"""Functions for files and for painting, by the module that they are called from."""
+
+
 INTERNALS = "ros.rclpy_internals"
 """The one module that may name private parts of rclpy."""
 
@@ -160,6 +175,30 @@ def allowed_here(module: Module, found: Import) -> bool:
         return not found.at_start
     is_room = target.partition(".")[0] in MAY_IMPORT
     return not is_room or covers({module.room, *MAY_IMPORT.get(module.room, ())}, target)
+
+
+def files_and_painting(modules: dict[str, Module]) -> list[str]:
+    """Imports and calls for files or painting, in rooms that have neither."""
+    rows = []
+    for module in modules.values():
+        if module.room not in WITHOUT_FILES:
+            continue
+        rows += [
+            f"{module.at(found.line)} imports {found.name}"
+            for found in module.imports
+            if covers(FILES, found.name) or covers(PAINTING, inside(found.name) or "")
+        ]
+        rows += [
+            f"{module.at(node.lineno)} calls {ast.unparse(node.func)}"
+            for node in ast.walk(module.tree)
+            if isinstance(node, ast.Call) and is_for_files_or_painting(node.func)
+        ]
+    return rows
+
+
+def is_for_files_or_painting(function: ast.expr) -> bool:
+    owner, _, name = ast.unparse(function).rpartition(".")
+    return name in CALLS.get(owner, ())
 
 
 def node_closure(modules: dict[str, Module]) -> set[str]:
@@ -258,6 +297,10 @@ def test_every_room_is_known(modules):
 
 def test_nothing_reaches_through_a_wall(modules):
     assert broken_walls(modules) == []
+
+
+def test_trackers_neither_use_files_nor_paint(modules):
+    assert files_and_painting(modules) == []
 
 
 def test_node_and_replay_do_not_import_each_other(modules):
@@ -366,6 +409,24 @@ def test_checker_sees_a_broken_wall(tmp_path, file, line):
 )
 def test_checker_lets_the_permitted_pass(tmp_path, file, line):
     assert broken_walls(made_up(tmp_path, **{file: line})) == []
+
+
+@pytest.mark.parametrize(
+    ("file", "line", "count"),
+    [
+        ("trackers__apf", "from pathlib import Path", 1),
+        ("trackers__apf", "def late():\n    import os.path", 1),
+        ("trackers__apf", "def read(name):\n    return open(name)", 1),
+        ("trackers__apf", "import cv2\ncv2.putText(picture, 'a', (0, 0), 1, 1, 1)", 1),
+        ("trackers__apf", "from vehicle_pf_tracker.image.lettering import write_words", 1),
+        ("trackers__apf", "from vehicle_pf_tracker.image import outlines", 1),
+        ("filtering__weights", "import numpy as np\nweights = np.load('weights.npy')", 1),
+        ("trackers__apf", "import cv2\ncv2.cvtColor(picture, 1)\nstream.open()\nstream.line()", 0),
+        ("evaluation__drawing", "from pathlib import Path\nopen('a')", 0),
+    ],
+)
+def test_checker_sees_files_and_painting(tmp_path, file, line, count):
+    assert len(files_and_painting(made_up(tmp_path, **{file: line}))) == count
 
 
 def test_checker_follows_the_node_to_what_it_loads(tmp_path):
