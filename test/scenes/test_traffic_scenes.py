@@ -19,11 +19,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+import yaml
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.traffic.scorable import matches
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
+from vehicle_pf_tracker.road.calibration import parse_pairs
+from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import Sprite
 from vehicle_pf_tracker.scenes.flow import Driver, Hold, simulate
@@ -147,6 +150,64 @@ def test_the_lorry_hides_the_car_that_overtakes_it():
     assert total_occlusions(make_traffic_scene("traffic-pair"))[0] == 1
 
 
+PERSPECTIVE = [name for name in TRAFFIC_SCENES if "view" in TRAFFIC_SCENES[name].settings]
+
+
+@pytest.mark.parametrize("name", PERSPECTIVE)
+def test_vehicles_in_perspective_stand_where_the_road_says(name):
+    scene = make_traffic_scene(name, settings={"frames": 200})
+    widths = []
+    for one in scene.truth(150):
+        if one.box == one.whole:  # all of it is in the image
+            left, right = (one.box.x, one.box.x + one.box.width)
+            bottom = one.box.y + one.box.height
+            ends = scene.road.to_road(np.array([[left, bottom], [right, bottom]]))
+            widths.append(np.ptp(ends[:, 0]))
+    assert len(widths) >= 5
+    assert 1.6 < np.median(widths) < 3.5  # m: a car's front, and something of its side
+
+
+def test_lorries_that_overtake_hide_cars_for_some_seconds():
+    scene = make_traffic_scene("traffic-overtaking", settings={"frames": 260})
+    lengths, by = {}, set()
+    for index in range(0, 260, 6):
+        for one in scene.truth(index):
+            if one.visible < 0.1 and min(one.box.width, one.box.height) >= 8:
+                lengths[one.identity] = lengths.get(one.identity, 0) + 6 / 30
+                by.add(one.hidden_by)
+    assert sum(1 <= seconds <= 4 for seconds in lengths.values()) >= 3
+    sizes = {one.identity: one.whole.area for one in scene.truth(200)}
+    assert min(sizes[name] for name in by & set(sizes)) > np.median(list(sizes.values()))
+
+
+def test_who_hides_another_is_nearer_and_painted_later():
+    settings = {"frames": 160, "noise": 0.0, "vehicles": 6}
+    scene = make_traffic_scene("traffic-overtaking", settings=settings)
+    index = 150
+    whole = scene.truth(index)
+    hidden = max((one for one in whole if one.hidden_by), key=lambda one: one.hidden_share)
+    assert hidden.hidden_share > 0.2
+    nearer = next(one for one in whole if one.identity == hidden.hidden_by)
+    assert nearer.depth < hidden.depth
+    order = scene.order(index)
+    assert order.index(hidden.identity - 1) < order.index(nearer.identity - 1)
+
+
+def test_bridges_are_seen_from_the_side_only():
+    with pytest.raises(InputError, match="traffic-jam has bridges in the view from the side only"):
+        make_traffic_scene("traffic-jam", settings=["bridges=1"])
+
+
+def test_a_scene_in_perspective_has_its_road(tmp_path):
+    scene = make_traffic_scene("traffic-jam", settings={"frames": 2, "vehicles": 4})
+    write_mot_folder(scene, tmp_path / "jam", 0)
+    text = yaml.safe_load((tmp_path / "jam" / "road.yaml").read_text())
+    pairs = parse_pairs(text["/**"]["ros__parameters"]["road.pairs"])
+    plane = RoadPlane.of_pairs(pairs, None, margin=0.1, coarsest=1.0)
+    points = np.array([[100.0, 300.0], [400.0, 200.0]])
+    assert plane.to_road(points) == pytest.approx(scene.road.to_road(points), rel=1e-6)
+
+
 def test_the_seed_decides_everything():
     small = {"vehicles": 4, "frames": 8}
     runs = [
@@ -250,6 +311,11 @@ def test_a_folder_holds_the_scene(tmp_path):
     np.testing.assert_allclose(sequence.truth, rows, atol=0.0051)
     assert sequence.hidden.tolist() == hidden
     assert any(hidden)
+    table = (tmp_path / "b" / "gt" / "occluders.csv").read_text().splitlines()
+    assert table[0] == "frame,id,depth,hidden_by,share"
+    assert len(table) == 1 + len(rows)
+    names = {line.split(",")[3] for line, out in zip(table[1:], hidden, strict=True) if out}
+    assert names == {"scene"}  # the bridge
     first = next(sequence.frames()).astype(float)
     assert np.abs(first - next(scene.frames())[0]).mean() < 4
     good = sequence.detections["good"]

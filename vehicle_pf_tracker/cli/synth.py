@@ -41,9 +41,9 @@ from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.scenes.scene import Scene
 from vehicle_pf_tracker.scenes.traffic_catalogue import (
     TRAFFIC_SCENES,
-    TrafficSceneParameters,
     make_traffic_scene,
 )
+from vehicle_pf_tracker.scenes.traffic_settings import TrafficSceneParameters
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -20,16 +20,22 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import cv2
+import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.output_folder import whole_folder
+from vehicle_pf_tracker.road.calibration import format_pairs
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.scenes.simulated_detectors import SIMULATED_DETECTORS, detect
 from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, VehicleTruth
 
+OCCLUDERS_HEADER = "frame,id,depth,hidden_by,share"
 JPEG_QUALITY = 95
 """Quality of the images: OpenCV's default, at which edges of vehicles stay sharp."""
+_ROAD_FROM = 0.5
+"""Row of the farthest pairs of a road, of the image's height: clearly below its horizon."""
 LEAST_SIDE = 8.0
 """Sides of a box inside the image, px, below which a vehicle has no truth but is ignored."""
 
@@ -73,6 +79,8 @@ def write_mot_folder(
                 progress(number, scene.frame_count)
             (partial / "seqinfo.ini").write_text(_information(scene, folder.resolve().name))
             _write_tables(scene, truths, partial, seed)
+            if scene.road is not None:
+                (partial / "road.yaml").write_text(_road(scene.road, scene.width, scene.height))
     except OSError as error:
         raise InputError(f"cannot write {folder}: {error.strerror}") from error
 
@@ -92,11 +100,27 @@ def _information(scene: TrafficScene, name: str) -> str:
     )
 
 
+def _road(plane: RoadPlane, width: int, height: int) -> str:
+    """Return a parameter file with pairs of the road: a grid below the horizon."""
+    columns, rows = np.meshgrid(np.linspace(0, width, 3), np.linspace(_ROAD_FROM, 1, 3) * height)
+    pixels = np.stack([columns, rows], axis=-1).reshape(-1, 2)
+    pairs = tuple(
+        Pair((u, v), (x, y))
+        for (u, v), (x, y) in zip(pixels.tolist(), plane.to_road(pixels).tolist(), strict=True)
+    )
+    return f'/**:\n  ros__parameters:\n    road.pairs: "{format_pairs(pairs)}"\n'
+
+
 def _write_tables(
     scene: TrafficScene, truths: Sequence[Sequence[VehicleTruth]], folder: Path, seed: int
 ) -> None:
     boxes = [(frame, one) for frame, now in enumerate(truths, start=1) for one in now]
     _write(folder / "gt" / "gt.txt", (truth_row(*one) for one in boxes if _is_judged(one[1])))
+    judged = [pair for pair in boxes if _is_judged(pair[1])]
+    _write(
+        folder / "gt" / "occluders.csv",
+        (OCCLUDERS_HEADER, *(_occluder(*pair) for pair in judged)),
+    )
     _write(folder / "ignore.txt", (_ignored(*one) for one in boxes if not _is_judged(one[1])))
     for name, detector in SIMULATED_DETECTORS.items():
         found = detect(detector, truths, (scene.width, scene.height), seed)
@@ -108,6 +132,12 @@ def truth_row(frame: int, one: VehicleTruth) -> str:
     box = one.box
     place = f"{box.x:.2f},{box.y:.2f},{box.width:.2f},{box.height:.2f}"
     return f"{frame},{one.identity},{place},1,1,{one.visible:.3f}"
+
+
+def _occluder(frame: int, one: VehicleTruth) -> str:
+    """Return the row of `occluders.csv`."""
+    hidden_by = "" if one.hidden_by is None else one.hidden_by
+    return f"{frame},{one.identity},{one.depth},{hidden_by},{one.hidden_share:.3f}"
 
 
 def _is_judged(one: VehicleTruth) -> bool:

@@ -40,6 +40,8 @@ from vehicle_pf_tracker.scenes.vehicles import TYRE
 
 _OVERSAMPLING = 4
 """Cells drawn per pixel and axis; a frame draws every vehicle anew, at its own distance."""
+_MOST_CELLS = 500_000
+"""Cells of a vehicle beyond which it is drawn more coarsely: one at the camera fills the image."""
 _TREAD = 0.2
 """Width of a tyre, m."""
 
@@ -199,8 +201,9 @@ def draw(placed: tuple[Array, _Solid], camera: RoadCamera, opacity: float) -> Sp
     corners, solid = placed
     pixels = camera.project(corners)
     box = bounds(pixels)
-    columns = math.ceil(box.width * _OVERSAMPLING)
-    rows = math.ceil(box.height * _OVERSAMPLING)
+    fineness = min(_OVERSAMPLING, math.sqrt(_MOST_CELLS / box.area))
+    columns = math.ceil(box.width * fineness)
+    rows = math.ceil(box.height * fineness)
     cells = (pixels - (box.x, box.y)) * (columns / box.width, rows / box.height)
     nearness = 1 / camera.depth(corners)
     colour = np.zeros((rows, columns, 3), np.uint8)

@@ -24,16 +24,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.scenes.cameras import Camera
-from vehicle_pf_tracker.scenes.compositing import Image
 from vehicle_pf_tracker.scenes.drive import PAINTS
 from vehicle_pf_tracker.scenes.perspective import Drive, RoadCamera, RoadVehicle, looking
 from vehicle_pf_tracker.scenes.randomness import stream
+from vehicle_pf_tracker.scenes.road_ground import RoadMarks, ground_picture
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
-from vehicle_pf_tracker.scenes.textures import asphalt, grass
 from vehicle_pf_tracker.scenes.vehicles import car, saloon, suv
 
 WIDTH, HEIGHT = 640, 480
@@ -57,12 +55,12 @@ _LENSES = {
     "none": ("none", ()),
     "barrel": ("plumb_bob", (-0.28, 0.09, 0.0004, -0.0006, 0.0)),
 }
-_MARK = (214, 214, 206)
-_SKY = (186, 200, 214)
-_CELL = 0.06
-"""Size of a texture's cell on the ground, m."""
-_TILE = 512
-"""Cells of a texture before it is mirrored."""
+_EDGE = 1.5 * LANE_WIDTH
+_MARKS = RoadMarks(
+    tar=((-_EDGE - 1, _EDGE + 1),),
+    dashed=(-LANE_WIDTH / 2, LANE_WIDTH / 2),
+    solid=(-_EDGE, _EDGE),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +108,7 @@ def road(parameters: RoadSceneParameters, seed: int) -> Scene:
         height=HEIGHT,
         frame_rate=parameters.frame_rate,
         frame_count=count,
-        backdrop=lambda: _backdrop(camera, stream(seed, "ground")),
+        backdrop=lambda: ground_picture(camera, (WIDTH, HEIGHT), _MARKS, stream(seed, "ground")),
         actors=(*others, *target),
         target=len(others) + 1,
         camera=Camera(parameters.noise, seed),
@@ -156,39 +154,3 @@ def _others(way: float, camera: RoadCamera, rng: np.random.Generator) -> list[Ac
         pace = way * float(rng.uniform(0.8, 1.2))
         actors += _vehicle(kind, place, pace, camera, rng)
     return actors
-
-
-def _backdrop(camera: RoadCamera, rng: np.random.Generator) -> Image:
-    """Draw the ground as the mean of two by two points in each pixel."""
-    tar, green = asphalt((_TILE, _TILE), rng), grass((_TILE, _TILE), rng)
-    plane, total = camera.plane, np.zeros((HEIGHT, WIDTH, 3))
-    for down in (0.25, 0.75):
-        for right in (0.25, 0.75):
-            rows, columns = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.0
-            pixels = np.stack([columns + right, rows + down], axis=-1)
-            ideal = plane.ideal(pixels)
-            ground = plane.homography.to_road(ideal)
-            below = (plane.homography.nearness(ideal) > 1e-3)[..., np.newaxis]
-            total += np.where(below, _ground(np.where(below, ground, 0.0), tar, green), _SKY)
-    return (total / 4).astype(np.float32)
-
-
-def _ground(points: Array, tar: Image, green: Image) -> Array:
-    """Colour of road points (…, 2)."""
-    x, y = np.moveaxis(points, -1, 0)
-    edge = 1.5 * LANE_WIDTH
-    colour = np.where((np.abs(x) < edge + 1)[..., np.newaxis], _sampled(tar, x, y),
-                      _sampled(green, x, y))  # fmt: skip
-    dashed = (np.abs(np.abs(x) - LANE_WIDTH / 2) < 0.07) & (y % 12 < 4)
-    solid = np.abs(np.abs(x) - edge) < 0.09
-    return np.where((dashed | solid)[..., np.newaxis], _MARK, colour)
-
-
-def _sampled(tile: Image, x: Array, y: Array) -> Image:
-    """Look a texture up at road points; it goes on mirrored."""
-    columns, rows = (
-        np.abs((np.floor(place / _CELL).astype(np.intp) % (2 * _TILE)) - _TILE) % _TILE
-        for place in (x, y)
-    )
-    sampled: Image = tile[rows, columns]
-    return sampled

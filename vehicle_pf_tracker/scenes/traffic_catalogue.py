@@ -27,88 +27,29 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.table import (
     from_mapping,
-    parameter,
     parse_assignments,
     specs,
 )
 from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import Image
-from vehicle_pf_tracker.scenes.flow import Driver, Hold, simulate
 from vehicle_pf_tracker.scenes.obstacles import bridge
 from vehicle_pf_tracker.scenes.randomness import check_seed, stream
 from vehicle_pf_tracker.scenes.roads import Carriageway, Lane, countryside
 from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.traffic import PAINTS, Vehicle, any_car
+from vehicle_pf_tracker.scenes.traffic_drivers import draw_lorries, drive
+from vehicle_pf_tracker.scenes.traffic_perspective import perspective_scene
 from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene
+from vehicle_pf_tracker.scenes.traffic_settings import TrafficSceneParameters
 from vehicle_pf_tracker.scenes.vehicles import lorry
 
 WIDTH, HEIGHT = 640, 360
 SCALE = 7.0
 """px per metre: a car is about 30 px long, a lorry 80."""
-KMH = 3.6
-"""km/h in a m/s."""
 _TOP = 66
 """First row of asphalt, px."""
 _MEDIAN = 34
 """Rows between the two carriageways, px."""
-_FIRST = (0.0, 0.3)
-"""Place of each lane's first vehicle in the beginning, in widths of the image: traffic comes in."""
-_SPREAD = (0.88, 1.12)
-"""Wanted speeds, in mean speeds."""
-_LORRIES_AHEAD = 0.4
-"""Place of the first lorry before the first cars, in widths of the image, where they overtake."""
-_SLOW = 0.5
-"""Speed in the lane of lorries: cars pass a lorry 10.6 m long in a second and a half."""
-_LORRY_GAP = 2.5
-"""Mean gap between lorries, in mean gaps: most cars pass one in the image."""
-_GAPS = (0.5, 1.5)
-"""Shortest and longest gap between two vehicles in the beginning, in mean gaps."""
-
-
-@dataclass(frozen=True, slots=True)
-class TrafficSceneParameters:
-    """Parameters of every scene with many vehicles."""
-
-    vehicles: int = parameter(
-        20, "more vehicles in both directions together", minimum=2, maximum=80
-    )
-    directions: int = parameter(2, "1: all drive to the right", minimum=1, maximum=2)
-    lanes: int = parameter(
-        3, "more lanes of each direction: more vehicles beside each other", minimum=1, maximum=4
-    )
-    speed: float = parameter(
-        55.0, "faster vehicles move farther between two frames",
-        minimum=10.0, maximum=130.0, unit="km/h",
-    )  # fmt: skip
-    gap: float = parameter(
-        18.0, "mean gap in the beginning; shorter ones pack vehicles", minimum=4.0, maximum=200.0,
-        unit="m",
-    )  # fmt: skip
-    lorries: float = parameter(
-        0.1,
-        "share of lorries, which drive in the nearest lane and hide others",
-        minimum=0.0,
-        maximum=1.0,
-    )
-    bridges: int = parameter(
-        0, "bridges, each of which hides every vehicle once", minimum=0, maximum=5
-    )
-    bridge_width: float = parameter(
-        50.0, "wider bridges hide vehicles for longer", minimum=10.0, maximum=200.0, unit="px"
-    )
-    flow: str = parameter(
-        "free", "queue: a red light holds all for 6 s; waves: short holds again and again",
-        choices=("free", "queue", "waves"),
-    )  # fmt: skip
-    changing: bool = parameter(False, "drivers overtake slower ones")
-    frames: int = parameter(400, "a longer scene", minimum=2, maximum=5000, unit="frames")
-    noise: float = parameter(
-        2.0, "more makes histograms differ from frame to frame",
-        minimum=0.0, maximum=60.0, unit="levels of 255",
-    )  # fmt: skip
-    frame_rate: float = parameter(
-        30.0, "more frames on the same way", minimum=5.0, maximum=240.0, unit="frames/s"
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,6 +87,49 @@ TRAFFIC_SCENES: dict[str, TrafficSceneKind] = {
     "traffic-lorries": TrafficSceneKind(
         {"vehicles": 24, "lanes": 2, "lorries": 0.25, "gap": 12.0, "frames": 500},
         "lorries hide several cars at once",
+    ),
+    "traffic-gantry": TrafficSceneKind(
+        {
+            "vehicles": 20,
+            "view": "gantry",
+            "mixed": True,
+            "lanes": 2,
+            "lorries": 0.25,
+            "lorry_speed": 0.8,
+            "gap": 12.0,
+            "changing": True,
+            "frames": 360,
+        },
+        "in perspective; lorries among cars hide those behind them",
+    ),
+    "traffic-overtaking": TrafficSceneKind(
+        {
+            "vehicles": 16,
+            "view": "mast",
+            "directions": 1,
+            "lanes": 2,
+            "lorries": 0.25,
+            "lorry_speed": 1.3,
+            "speed": 50.0,
+            "gap": 14.0,
+            "frames": 360,
+        },
+        "in perspective; lorries overtake cars and hide them for 1 to 3 s",
+    ),
+    "traffic-jam": TrafficSceneKind(
+        {
+            "vehicles": 24,
+            "view": "gantry",
+            "mixed": True,
+            "lanes": 3,
+            "directions": 1,
+            "lorries": 0.15,
+            "lorry_speed": 0.9,
+            "flow": "queue",
+            "gap": 9.0,
+            "frames": 420,
+        },
+        "in perspective; a queue at a red light, in which each hides parts of the next",
     ),
     "traffic-bridge": TrafficSceneKind(
         {"vehicles": 16, "bridges": 1, "bridge_width": 90.0}, "a bridge hides every vehicle once"
@@ -208,6 +192,8 @@ def _check_names(scene: str, names: Mapping[str, object] | Sequence[str]) -> Non
 
 
 def _build(name: str, parameters: TrafficSceneParameters, seed: int) -> TrafficScene:
+    if parameters.view != "side":
+        return perspective_scene(name, parameters, seed)
     far = Carriageway(_TOP, parameters.lanes, SCALE, rightward=True)
     near = Carriageway(far.rows.stop + _MEDIAN, parameters.lanes, SCALE, rightward=False)
     count = parameters.vehicles if parameters.directions == 1 else (parameters.vehicles + 1) // 2
@@ -250,17 +236,10 @@ def _direction(
 ) -> list[tuple[Actor, Actor]]:
     """Make the vehicles of one direction: shadow and body of each."""
     lane = Lane(0.0, SCALE, road.rightward)
-    is_lorry = rng.permutation(np.arange(count) < round(parameters.lorries * count)).tolist()
+    is_lorry = draw_lorries(count, parameters, rng)
     bodies = [_lorry(lane, rng) if large else any_car(lane, rng) for large in is_lorry]
-    drivers = _drivers(bodies, is_lorry, parameters, rng)
-    flow = simulate(
-        drivers,
-        parameters.lanes,
-        parameters.frames,
-        parameters.frame_rate,
-        _holds(parameters),
-        changing=parameters.changing,
-    )
+    lengths = [body.size[0] / SCALE for body in bodies]
+    flow = drive(lengths, is_lorry, parameters, WIDTH / SCALE, rng)
     return [
         body.on(_Way(road, body.size, flow.front[number], flow.lane[number]))
         for number, body in enumerate(bodies)
@@ -270,37 +249,6 @@ def _direction(
 def _lorry(lane: Lane, rng: np.random.Generator) -> Vehicle:
     cab, load, stripe = (PAINTS[number] for number in rng.choice(len(PAINTS), 3, replace=False))
     return Vehicle(lorry(cab, load, stripe), lane)
-
-
-def _drivers(
-    bodies: list[Vehicle],
-    is_lorry: list[bool],
-    parameters: TrafficSceneParameters,
-    rng: np.random.Generator,
-) -> list[Driver]:
-    """Place vehicles one behind the other; where there are lorries, the nearest lane is theirs."""
-    slow = parameters.lanes - 1 if any(is_lorry) and parameters.lanes > 1 else parameters.lanes
-    ahead = rng.uniform(*_FIRST, parameters.lanes + 1) * WIDTH / SCALE
-    ahead[slow] += _LORRIES_AHEAD * WIDTH / SCALE
-    drivers, car_count = [], 0
-    for body, large in zip(bodies, is_lorry, strict=True):
-        lane = slow % parameters.lanes if large else car_count % min(slow, parameters.lanes)
-        car_count += not large
-        length = body.size[0] / SCALE
-        speed = parameters.speed / KMH * rng.uniform(*_SPREAD) * (_SLOW if lane == slow else 1.0)
-        drivers.append(Driver(lane, float(ahead[lane]), length, float(speed)))
-        gap = parameters.gap * rng.uniform(*_GAPS) * (_LORRY_GAP if lane == slow else 1.0)
-        ahead[lane] -= length + gap
-    return drivers
-
-
-def _holds(parameters: TrafficSceneParameters) -> tuple[Hold, ...]:
-    visible = WIDTH / SCALE
-    if parameters.flow == "queue":
-        return (Hold(0.75 * visible, 2.0, 8.0),)
-    if parameters.flow == "waves":
-        return tuple(Hold(0.85 * visible, begin, begin + 2.5) for begin in range(1, 200, 6))
-    return ()
 
 
 class _Way:

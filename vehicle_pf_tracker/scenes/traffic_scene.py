@@ -21,8 +21,12 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.scenes.compositing import Image, PixelWindow, overlap, paint
 from vehicle_pf_tracker.scenes.scene import Actor, Eye
+
+SCENERY = "scene"
+"""Stands for whatever hides a vehicle and is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +43,21 @@ class VehicleTruth:
         Its whole box.
     visible : float
         Share of it that is not hidden by others, of what is inside the image.
+    depth : int
+        Number of vehicles in the image that are nearer.
+    hidden_by : int or "scene" or None
+        Identity of the vehicle that hides most of it, "scene" if that is an obstacle.
+    hidden_share : float
+        Share that this one hides.
     """
 
     identity: int
     box: Box
     whole: Box
     visible: float
+    depth: int = 0
+    hidden_by: int | str | None = None
+    hidden_share: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +77,16 @@ class TrafficScene:
     backdrop : callable
         Draws what never moves and hides nothing.
     vehicles : tuple of (Actor, Actor)
-        Shadow and body of each vehicle. The lower a body stands, the nearer it is.
+        Shadow and body of each vehicle.
     obstacles : tuple of Actor
         What stands in front of all vehicles, in painting order.
     camera : Eye
         Takes the picture; it must not move.
+    order : callable or None
+        Indices of the vehicles of a frame, far to near; None: the lower a body stands, the
+        nearer it is.
+    road : RoadPlane or None
+        Exact map from pixels to the road, where the scene is in perspective.
     """
 
     name: str
@@ -80,6 +98,8 @@ class TrafficScene:
     vehicles: tuple[tuple[Actor, Actor], ...]
     obstacles: tuple[Actor, ...]
     camera: Eye
+    order: Callable[[int], list[int]] | None = None
+    road: RoadPlane | None = None
 
     def frames(self) -> Iterator[tuple[Frame, tuple[VehicleTruth, ...]]]:
         """Render every frame in order, with its truth."""
@@ -97,18 +117,24 @@ class TrafficScene:
 
     def truth(self, index: int) -> tuple[VehicleTruth, ...]:
         """Exact truth about every vehicle in the image of frame `index`, by identity."""
-        order = self._far_to_near(index)
+        inside = [
+            (number, box, whole)
+            for number in reversed(self._far_to_near(index))
+            if (box := self._cut(whole := self.vehicles[number][1].path(index))) is not None
+        ]
+        nearer: list[tuple[int | str, Actor]] = [(SCENERY, actor) for actor in self.obstacles]
         found = []
-        for depth, number in enumerate(order):
-            nearer = (*(self.vehicles[other][1] for other in order[depth + 1 :]), *self.obstacles)
-            whole = self.vehicles[number][1].path(index)
-            box = self._cut(whole)
-            if box is not None:
-                visible = self._visible(self.vehicles[number][1], nearer, index)
-                found.append(VehicleTruth(number + 1, box, whole, visible))
+        for depth, (number, box, whole) in enumerate(inside):
+            body = self.vehicles[number][1]
+            visible, hidden_by, share = self._visible(body, nearer, index)
+            found.append(VehicleTruth(number + 1, box, whole, visible, depth, hidden_by, share))
+            nearer.append((number + 1, body))
         return tuple(sorted(found, key=lambda one: one.identity))
 
     def _far_to_near(self, index: int) -> list[int]:
+        if self.order is not None:
+            return self.order(index)
+
         def foot(number: int) -> float:
             box = self.vehicles[number][1].path(index)
             return box.y + box.height
@@ -122,14 +148,26 @@ class TrafficScene:
         inside = left < right and top < bottom
         return Box(left, top, right - left, bottom - top) if inside else None
 
-    def _visible(self, body: Actor, nearer: tuple[Actor, ...], index: int) -> float:
+    def _visible(
+        self, body: Actor, nearer: list[tuple[int | str, Actor]], index: int
+    ) -> tuple[float, int | str | None, float]:
+        """Share in sight; what hides most of the rest, and its share."""
         box = body.path(index)
         window = PixelWindow.of(box, self.width, self.height)
         own = body.seen(index).coverage(box, window)
+        total = float(own.sum())
+        if total <= 0:  # a corner of the box may hold nothing of the silhouette
+            return 0.0, None, 0.0
         seen = own
-        for actor in nearer:
+        shares: dict[int | str, float] = {}
+        for name, actor in nearer:
             place = actor.path(index)
             if actor.hides and overlap(place, box):
-                seen = seen * (1 - actor.seen(index).coverage(place, window))
-        # A corner of the box may hold nothing of the silhouette.
-        return round(float(seen.sum() / own.sum()), 9) if own.sum() > 0 else 0.0
+                cover = actor.seen(index).coverage(place, window)
+                seen = seen * (1 - cover)
+                shares[name] = shares.get(name, 0.0) + float((own * cover).sum()) / total
+        visible = round(float(seen.sum()) / total, 9)
+        most = max(shares, key=lambda name: shares[name], default=None)
+        if most is None or shares[most] <= 0:
+            return visible, None, 0.0
+        return visible, most, min(round(shares[most], 9), 1.0)

@@ -1,0 +1,221 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Scenes with many vehicles in perspective: a road seen from a gantry or a mast.
+
+Vehicles grow as they come, and hide what drives behind them on the road.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.road.lens import Lens
+from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes.perspective import RoadCamera, RoadVehicle, looking
+from vehicle_pf_tracker.scenes.randomness import stream
+from vehicle_pf_tracker.scenes.road_ground import RoadMarks, ground_picture
+from vehicle_pf_tracker.scenes.scene import Actor
+from vehicle_pf_tracker.scenes.solids import Face
+from vehicle_pf_tracker.scenes.traffic import PAINTS
+from vehicle_pf_tracker.scenes.traffic_drivers import draw_lorries, drive
+from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene
+from vehicle_pf_tracker.scenes.traffic_settings import TrafficSceneParameters
+from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, tinted, van
+
+WIDTH, HEIGHT = 640, 360
+LANE_WIDTH = 3.5
+MEDIAN = 4.0
+"""Width between the two carriageways, m."""
+NEAR, FAR = 33.0, 140.0
+"""Stretch (y) that is in the image, m: a car is 50 px wide there, and 12 px."""
+_LOWEST = 8.0
+"""Least y of a vehicle's middle, m: below the image, and all of a lorry is before the camera."""
+_FARTHEST = 170.0
+"""Largest y of a vehicle's middle that is shown, m: there the road goes over a crest."""
+_AHEAD = 110.0
+"""Distance that the camera looks at, m: the horizon is in the image, the near end at its border."""
+_SHOULDER = 1.0
+"""Asphalt beside the outer lines, m."""
+_CARS = (
+    (car, (0.68, 2.95)),
+    (saloon, (0.85, 3.7)),
+    (saloon, (0.85, 3.7)),
+    (van, (1.0, 4.5)),
+)
+"""Makers and axles (m from the rear) of the kinds of vehicles to choose from."""
+_LORRY_AXLES = (1.0, 2.2, 7.1, 9.4)
+
+
+class _OnRoad:
+    """A vehicle of the flow, on the plane of the road.
+
+    Parameters
+    ----------
+    faces, axles : sequence of Face, sequence of float
+        The vehicle as seen from its near side, and places of its axles, m from the rear.
+    """
+
+    def __init__(self, faces: Sequence[Face], axles: Sequence[float]) -> None:
+        corners = np.concatenate([np.asarray(face.points) for face in faces])
+        self.faces, self.axles = faces, axles
+        self.length, self.width = np.ptp(corners[:, :2], axis=0).tolist()
+        self.x = self.y = np.zeros(1)
+
+    def place(self, x: Array, y: Array) -> None:
+        """Set its way: the middle's position in each frame, m."""
+        self.x, self.y = x, np.where(y < _FARTHEST, np.maximum(y, _LOWEST), _LOWEST)
+
+    def at(self, frame: float) -> tuple[float, float]:
+        """Give its middle's position in `frame`; constant before the first and after the last."""
+        index = min(max(round(frame), 0), len(self.x) - 1)
+        return float(self.x[index]), float(self.y[index])
+
+
+def perspective_scene(name: str, parameters: TrafficSceneParameters, seed: int) -> TrafficScene:
+    """Make the scene `name`.
+
+    Raises
+    ------
+    InputError
+        If there are to be bridges.
+    """
+    if parameters.bridges:
+        raise InputError(f"the scene {name} has bridges in the view from the side only")
+    camera = camera_over(parameters, seed)
+    count = parameters.vehicles if parameters.directions == 1 else (parameters.vehicles + 1) // 2
+    coming = _direction(count, True, parameters, stream(seed, "coming traffic"))
+    going = _direction(
+        parameters.vehicles - count, False, parameters, stream(seed, "going traffic")
+    )
+    vehicles = [*coming, *going]
+    return TrafficScene(
+        name=name,
+        width=WIDTH,
+        height=HEIGHT,
+        frame_rate=parameters.frame_rate,
+        frame_count=parameters.frames,
+        backdrop=lambda: ground_picture(
+            camera, (WIDTH, HEIGHT), _marks(parameters), stream(seed, "ground")
+        ),
+        vehicles=tuple(
+            _actors(vehicle, -1 if number < count else 1, camera)
+            for number, vehicle in enumerate(vehicles)
+        ),
+        obstacles=(),
+        camera=Camera(parameters.noise, seed),
+        order=_order(vehicles, float(camera.pose.position[0])),
+        road=camera.plane,
+    )
+
+
+def camera_over(parameters: TrafficSceneParameters, seed: int) -> RoadCamera:
+    """Return the camera of the scene of this seed."""
+    rng = stream(seed, "camera over traffic")
+    focal = float(rng.uniform(950, 1050))
+    lens = Lens((focal, focal), (WIDTH / 2 - 0.5, HEIGHT / 2 - 0.5))
+    middle = float(np.mean([lane for way in (-1, 1)[: parameters.directions]
+                            for lane in _lanes(way, parameters)]))  # fmt: skip
+    # A mast stands inside of the inner lanes: seen from there, lorries in them hide the others.
+    x = float(rng.uniform(3, 5)) if parameters.view == "mast" else middle
+    place = (x + float(rng.uniform(-1, 1)), 0.0, float(rng.uniform(8.2, 9)))
+    return RoadCamera(lens, looking(place, (middle, _AHEAD)))
+
+
+def _lanes(way: int, parameters: TrafficSceneParameters) -> list[float]:
+    """Middles (x, m) of the lanes of one direction, the first the inner one but for a mast."""
+    lanes = [way * (MEDIAN / 2 + LANE_WIDTH * (number + 0.5)) for number in range(parameters.lanes)]
+    return lanes[::-1] if parameters.view == "mast" else lanes
+
+
+def _marks(parameters: TrafficSceneParameters) -> RoadMarks:
+    inner, outer = MEDIAN / 2, MEDIAN / 2 + LANE_WIDTH * parameters.lanes
+    ways = (-1, 1)[: parameters.directions]
+    between = [inner + LANE_WIDTH * number for number in range(1, parameters.lanes)]
+    return RoadMarks(
+        tar=tuple(
+            (min(way * (inner - _SHOULDER), way * (outer + _SHOULDER)),
+             max(way * (inner - _SHOULDER), way * (outer + _SHOULDER)))
+            for way in ways
+        ),
+        dashed=tuple(way * x for way in ways for x in between),
+        solid=tuple(way * x for way in ways for x in (inner, outer)),
+    )  # fmt: skip
+
+
+def _direction(
+    count: int, coming: bool, parameters: TrafficSceneParameters, rng: np.random.Generator
+) -> list[_OnRoad]:
+    """Make the vehicles of one direction with their ways; those that come drive on the left."""
+    is_lorry = draw_lorries(count, parameters, rng)
+    vehicles = [_lorry(rng) if large else _car(rng) for large in is_lorry]
+    lengths = [vehicle.length for vehicle in vehicles]
+    flow = drive(lengths, is_lorry, parameters, FAR - NEAR, rng)
+    lanes = _lanes(-1 if coming else 1, parameters)
+    for number, vehicle in enumerate(vehicles):
+        x = np.interp(flow.lane[number], np.arange(len(lanes)), lanes)
+        middle = flow.front[number] - vehicle.length / 2
+        vehicle.place(x, FAR - middle if coming else NEAR + middle)
+    return vehicles
+
+
+def _car(rng: np.random.Generator) -> _OnRoad:
+    paint = tinted(PAINTS[rng.integers(len(PAINTS))], rng.uniform(0.9, 1.08))
+    maker, axles = _CARS[rng.integers(len(_CARS))]
+    return _OnRoad(maker(paint), axles)
+
+
+def _lorry(rng: np.random.Generator) -> _OnRoad:
+    cab, load, stripe = (PAINTS[number] for number in rng.choice(len(PAINTS), 3, replace=False))
+    # From the side no end of the box is seen.
+    ends = [
+        Face(((x, 0.0, 1.1), (x, 0.0, 4.0), (x, 2.5, 4.0), (x, 2.5, 1.1)), load) for x in (0, 8.3)
+    ]
+    return _OnRoad([*ends, *lorry(cab, load, stripe)], _LORRY_AXLES)
+
+
+def _actors(vehicle: _OnRoad, way: int, camera: RoadCamera) -> tuple[Actor, Actor]:
+    heading = way * math.pi / 2
+    return RoadVehicle(vehicle.faces, vehicle.axles, heading, vehicle.at, camera).actors()
+
+
+def _order(vehicles: Sequence[_OnRoad], camera_x: float) -> Callable[[int], list[int]]:
+    """Order of painting, far to near.
+
+    Of two vehicles one behind the other the farther one is painted first, of two side by side
+    the one that is farther to the side: the plane between them has the camera on the other side.
+    """
+
+    def order(index: int) -> list[int]:
+        x, y = np.array([vehicle.at(index) for vehicle in vehicles]).reshape(-1, 2).T
+        aside = np.abs(x - camera_x) - [vehicle.width / 2 for vehicle in vehicles]
+        half = np.array([vehicle.length / 2 for vehicle in vehicles])
+        behind = y[:, np.newaxis] - half[:, np.newaxis] >= y + half
+        beside = (~behind & ~behind.T) & (aside[:, np.newaxis] > aside)
+        first = behind | beside
+        left, ordered = list(range(len(vehicles))), []
+        while left:
+            waits = first[np.ix_(left, left)].sum(axis=0)
+            # Zero but for a circle of vehicles, in which none hides all the others.
+            chosen = left[min(range(len(left)), key=lambda n: (waits[n], -y[left[n]]))]
+            ordered.append(chosen)
+            left.remove(chosen)
+        return ordered
+
+    return order
