@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.parameter_options import parse_box
 from vehicle_pf_tracker.cli.replay_progress import progress_view
+from vehicle_pf_tracker.cli.shared_options import add_ros_args
 from vehicle_pf_tracker.evaluation.estimates import write_estimates
 from vehicle_pf_tracker.evaluation.output_files import make_folder
 from vehicle_pf_tracker.recordings.reader import Recording
@@ -101,10 +102,7 @@ def _add_tracking_arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, metavar="DIR",
         help="write what the nodes answered: estimates.csv, in a folder for each of several nodes",
     )  # fmt: skip
-    add(
-        "--ros-args", nargs=argparse.REMAINDER, default=[], metavar="...",
-        help="all words after this go to ROS",
-    )  # fmt: skip
+    add_ros_args(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -21,6 +21,7 @@ import math
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.parameter_options import parse_box
+from vehicle_pf_tracker.cli.shared_options import add_ros_args
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,10 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--timeout", type=_positive, default=10.0, metavar="S",
         help="longest wait for the node in seconds (default: 10)",
     )  # fmt: skip
-    add(
-        "--ros-args", nargs=argparse.REMAINDER, default=[], metavar="...",
-        help="all words after this go to ROS",
-    )  # fmt: skip
+    add_ros_args(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -40,6 +40,14 @@ def add_workers(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def add_ros_args(parser: argparse.ArgumentParser) -> None:
+    """Add the option after which all words are ROS's."""
+    parser.add_argument(
+        "--ros-args", nargs=argparse.REMAINDER, default=[], metavar="...",
+        help="all words after this go to ROS",
+    )  # fmt: skip
+
+
 def positive(text: str) -> int:
     """Read an integer >= 1."""
     return _at_least(1, text)
