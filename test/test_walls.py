@@ -335,8 +335,8 @@ def test_no_class_of_ours_hides_a_private_name_of_rclpys_classes(modules):
     }
     assert "_parameter_overrides" in theirs
     heirs = (
-        "ros.node.managed_node", "ros.node.tracker_node", "ros.node.image_executor",
-        "ros.traffic.traffic_node",
+        "ros.node.managed_node", "ros.node.image_node", "ros.node.tracker_node",
+        "ros.node.image_executor", "ros.traffic.traffic_node",
     )  # fmt: skip
     for name in heirs:
         assert not names_defined(modules[name].tree) & theirs, name

@@ -84,7 +84,7 @@ def test_overrides_are_read_the_public_way_as_by_the_list(bench, monkeypatch):
             node = bench.add(
                 TrackerNode(find_variant("pf"), context=bench.context, parameter_overrides=given)
             )
-            tables.append(node._table.configuration)
+            tables.append(node.table.configuration)
             bench.remove(node)
     assert tables[0] == tables[1]
     assert tables[0].tracker.num_particles == 33

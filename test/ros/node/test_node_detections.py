@@ -165,7 +165,7 @@ def test_a_node_starts_on_a_detection(bench):
     rig.node._on_detection(detection(32.0 + 2, 59.0))
     assert rig.play(frames[1:], first=1) == ["TRACKING"] * 2
     rig.node._on_detection(detection(theta=1.0))
-    assert rig.node._diagnostics._health.refused_targets == 1
+    assert rig.node.diagnostics._health.refused_targets == 1
 
 
 def test_without_the_package_there_are_no_such_topics(bench, monkeypatch):

@@ -66,13 +66,13 @@ def test_a_publisher_that_dies_and_returns_is_heard_again(bench, other_bench):
     bench.node.destroy_publisher(rig.camera)
     bench.wait_for(lambda: rig.node.count_publishers("/image") == 0)
     camera = other_bench.publisher(Image, "image", QoSProfile(depth=10))
-    bench.wait_for(lambda: rig.node._diagnostics.source.publisher_count == 1)
+    bench.wait_for(lambda: rig.node.diagnostics.source.publisher_count == 1)
     for index in range(4, 12):
         before = len(rig.modes)
         camera.publish(image_message(header(index), frames[index]))
         bench.wait_for(lambda: len(rig.modes) > before)  # noqa: B023 - called at once
     assert [answer.status[0].message for answer in rig.modes] == ["TRACKING"] * 12
-    assert rig.node._diagnostics._health.dropped == 0
+    assert rig.node.diagnostics._health.dropped == 0
 
 
 def test_at_200_hz_images_are_dropped_and_counted_and_memory_stays(bench, start_node):

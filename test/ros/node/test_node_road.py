@@ -231,7 +231,7 @@ def test_frames_of_pixel_outputs_can_be_marked(bench):
     assert places[0].header.frame_id == "road"
     # What goes out may come back in.
     publisher = bench.publisher(PolygonStamped, f"{NODE}/set_box")
-    health = rig.node._diagnostics._health
+    health = rig.node.diagnostics._health
     publisher.publish(boxes[0])
     bench.wait_for(lambda: rig.node._stream._asked is not None)
     assert health.refused_targets == 0

@@ -138,7 +138,7 @@ def test_every_parameter_set_at_run_time_reaches_the_next_estimate(bench, varian
             assert result.successful, (name, value, result.reason)
             twin.set(**{name: value})
             assert rig.node.get_parameter(name).value == value
-            assert rig.node._table.configuration == twin.configuration
+            assert rig.node.table.configuration == twin.configuration
             show()
 
 
@@ -199,7 +199,7 @@ def test_a_dumped_node_can_be_made_again(bench, tmp_path, monkeypatch, variant):
     assert result.successful, result.reason
     path = tmp_path / "dump.yaml"
     path.write_text(dump(bench, f"/{node.get_name()}"))
-    before, configuration = values(node), node._table.configuration
+    before, configuration = values(node), node.table.configuration
     bench.remove(node)
     warnings = []
     monkeypatch.setattr(TrackerNode, "_warn_of", lambda _, sentences: warnings.extend(sentences))

@@ -207,7 +207,7 @@ def test_qos_can_be_overridden(make):
         *("-p", "qos_overrides./image.subscription.reliability:=reliable"),
         *("-p", "qos_overrides./image.subscription.depth:=7"),
     )
-    assert str(node._diagnostics.source) == "/image (raw, reliable, keep last 7)"
+    assert str(node.diagnostics.source) == "/image (raw, reliable, keep last 7)"
 
 
 def test_what_tuning_writes_is_taken_as_it_is(make, tmp_path, log):
@@ -285,12 +285,12 @@ def test_a_whole_number_does_for_a_real_one(rig, setter):
     ],
 )
 def test_a_set_is_all_or_nothing_and_says_why(rig, setter, values, words):
-    before = rig.node._table.configuration
+    before = rig.node.table.configuration
     result = setter.together(**values)
     assert not result.successful
     assert words in result.reason
     assert value(rig.node, "num_particles") == 200
-    assert rig.node._table.configuration is before
+    assert rig.node.table.configuration is before
     assert rig.show_frame(road(1)[0], 0).status[0].message == "TRACKING"
 
 
@@ -312,9 +312,9 @@ def test_a_drawn_seed_is_told(bench):
     rig = Rig(bench, overrides(seed=-1))
     first = rig.node._stream.facts["seed"]
     assert first >= 0
-    assert rig.node._diagnostics.facts["seed"] == first
+    assert rig.node.diagnostics.facts["seed"] == first
     assert Setter(bench).together(seed=12).successful
-    assert rig.node._diagnostics.facts["seed"] == 12
+    assert rig.node.diagnostics.facts["seed"] == 12
 
 
 def test_the_services_describe_and_get(rig, bench):

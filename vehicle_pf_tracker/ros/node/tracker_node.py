@@ -30,13 +30,10 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.road.poses import PoseTree
 from vehicle_pf_tracker.ros.detections import detection_type
-from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
-from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
-from vehicle_pf_tracker.ros.node.image_input import ImageInput, image_topic
-from vehicle_pf_tracker.ros.node.managed_node import ManagedNode
+from vehicle_pf_tracker.ros.node.image_input import image_topic
+from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.outputs import Outputs
-from vehicle_pf_tracker.ros.node.parameters import ParameterTable, unknown_overrides
 from vehicle_pf_tracker.ros.node.stream import Stream
 from vehicle_pf_tracker.ros.node.target_messages import (
     box_of_detection,
@@ -44,7 +41,6 @@ from vehicle_pf_tracker.ros.node.target_messages import (
     box_of_polygon,
     box_of_region,
 )
-from vehicle_pf_tracker.ros.rclpy_internals import missing
 from vehicle_pf_tracker.ros.road_messages import ImageLens
 from vehicle_pf_tracker.trackers.registry import Variant
 
@@ -52,7 +48,7 @@ _POLL = 0.1
 """Interval of the check for loaded kernels while no image asks for them, s."""
 
 
-class TrackerNode(ManagedNode):
+class TrackerNode(ImageNode):
     """Managed node of one variant; active at once unless the parameter `autostart` is false.
 
     Parameters
@@ -75,26 +71,16 @@ class TrackerNode(ManagedNode):
         self._outputs: Outputs | None = None
         self._target_inputs: list[Subscription] = []
         self._cameras = CameraInputs(self, self._take_lens, self._take_poses)
-        try:
-            defaults = Configuration.of(variant)
-            self._table = ParameterTable(self, defaults, self._check, self._reconfigure)
-            self._diagnostics = Diagnostics(self)
-            self._warn_of_release()
-            self._warn_of(unknown_overrides(self, qos=False))
-            if self._table.configuration.node.autostart:
-                self.start()
-        except InputError:
-            self.destroy_node()
-            raise
+        self.begin(Configuration.of(variant))
 
     def configure(self) -> None:
         """Make the session and the outputs."""
-        configuration = self._table.configuration
+        configuration = self.table.configuration
         topic = image_topic(self, configuration.node.image_transport)
         self._outputs = Outputs(self, topic)
-        health = self._diagnostics.begin()
+        health = self.diagnostics.begin()
         self._stream = Stream(self, self._variant, configuration, self._outputs, health)
-        self._diagnostics.facts = {"variant": self._variant.name, **self._stream.facts}
+        self.diagnostics.facts = {"variant": self._variant.name, **self._stream.facts}
         self._is_told_ready = False
         # Steady, because simulated time may stand still while kernels are loaded.
         self._poll = self.create_timer(
@@ -105,11 +91,9 @@ class TrackerNode(ManagedNode):
     def activate(self) -> None:
         """Open the inputs."""
         assert self._stream is not None
-        own = self._table.configuration.node
-        source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
-        self._warn_of(unknown_overrides(self, qos=True))
-        self._diagnostics.listen_to(source)
-        self._cameras.open(self._table.configuration.session.road)
+        self.open_images()
+        self.warn_of_overrides()
+        self._cameras.open(self.table.configuration.session.road)
         self._target_inputs = [
             self.create_subscription(RegionOfInterest, "~/set_target", self._on_region, 10),
             self.create_subscription(PolygonStamped, "~/set_box", self._on_polygon, 10),
@@ -124,7 +108,7 @@ class TrackerNode(ManagedNode):
 
     def deactivate(self) -> None:
         """Close the inputs: an inactive node pays nothing for images."""
-        self._diagnostics.cease()
+        self.diagnostics.cease()
         self._cameras.close()
         while self._target_inputs:
             self.destroy_subscription(self._target_inputs.pop())
@@ -138,11 +122,8 @@ class TrackerNode(ManagedNode):
         self._outputs = self._stream = None
 
     def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
-        if self._stream is None or self._diagnostics.source is None:
-            return  # taken just before the node was deactivated
-        age = self.get_clock().now().nanoseconds - stamp_ns(message.header)
-        self._diagnostics.arrived(info, age * 1e-9)
-        self._stream.take(message)
+        if self._stream is not None and self.note_arrival(message, info):
+            self._stream.take(message)
 
     def _on_region(self, message: RegionOfInterest) -> None:
         self._set_target(lambda stream: box_of_region(message))
@@ -161,7 +142,7 @@ class TrackerNode(ManagedNode):
     @property
     def _suffix(self) -> str:
         """Addition to the images' frame_id in outputs, which inputs may have too."""
-        return self._table.configuration.node.output_frame_suffix
+        return self.table.configuration.node.output_frame_suffix
 
     def _take_lens(self, found: ImageLens) -> None:
         if self._stream is not None:
@@ -191,11 +172,11 @@ class TrackerNode(ManagedNode):
 
     def _await_kernels(self) -> None:
         """Log once that the node is ready: active, and with kernels."""
-        source = self._diagnostics.source
+        source = self.diagnostics.source
         if self._stream is None or not self._stream.get_ready():
             return
         self._poll.cancel()
-        self._diagnostics.facts.update(self._stream.facts)
+        self.diagnostics.facts.update(self._stream.facts)
         if source is not None and not self._is_told_ready:
             self._is_told_ready = True
             kernels = self._stream.facts["kernels"]
@@ -209,15 +190,7 @@ class TrackerNode(ManagedNode):
     def _reconfigure(self, configuration: Configuration) -> None:
         if self._stream is not None:
             self._stream.reconfigure(configuration)
-            self._diagnostics.facts.update(self._stream.facts)
+            self.diagnostics.facts.update(self._stream.facts)
             self._poll.reset()
-        if self._diagnostics.source is not None:
+        if self.diagnostics.source is not None:
             self._cameras.open(configuration.session.road)
-
-    def _warn_of_release(self) -> None:
-        for loss in missing(self):
-            self.get_logger().warning(f"this release of rclpy is not one of those tried: {loss}")
-
-    def _warn_of(self, sentences: list[str]) -> None:
-        for sentence in sentences:
-            self.get_logger().warning(f"ignored: {sentence}")

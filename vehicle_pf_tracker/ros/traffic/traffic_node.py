@@ -32,13 +32,9 @@ from vehicle_pf_tracker.core.box import check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.detections import detections_type
-from vehicle_pf_tracker.ros.messages import stamp_ns
-from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
-from vehicle_pf_tracker.ros.node.image_input import ImageInput, image_topic, subscribe
-from vehicle_pf_tracker.ros.node.managed_node import ManagedNode
-from vehicle_pf_tracker.ros.node.parameters import ParameterTable, unknown_overrides
+from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
+from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.target_messages import box_of_region, check_frame_id
-from vehicle_pf_tracker.ros.rclpy_internals import missing
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.stream import TrafficStream
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles, plane_of
@@ -50,7 +46,7 @@ _LOOK_EVERY = 0.02
 """Interval in s in which images that wait for detections are looked at."""
 
 
-class TrafficNode(ManagedNode):
+class TrafficNode(ImageNode):
     """Managed node `traffic_tracker`; active at once unless the parameter `autostart` is false.
 
     Parameters
@@ -69,23 +65,11 @@ class TrafficNode(ManagedNode):
         self._stream: TrafficStream | None = None
         self._outputs: TrafficOutputs | None = None
         self._inputs: list[Subscription] = []
-        try:
-            defaults = Configuration.of(TRAFFIC)
-            self._table = ParameterTable(self, defaults, self._check, self._reconfigure)
-            self._diagnostics = Diagnostics(self)
-            for loss in missing(self):
-                words = f"this release of rclpy is not one of those tried: {loss}"
-                self.get_logger().warning(words)
-            self._warn_of(unknown_overrides(self, qos=False))
-            if self._table.configuration.node.autostart:
-                self.start()
-        except InputError:
-            self.destroy_node()
-            raise
+        self.begin(Configuration.of(TRAFFIC))
 
     def configure(self) -> None:
         """Make session, detector and outputs."""
-        configuration = self._table.configuration
+        configuration = self.table.configuration
         plane_of(configuration.session.road)
         if configuration.tracker.detector.kind == TOPIC and detections_type() is None:
             raise InputError(
@@ -94,7 +78,7 @@ class TrafficNode(ManagedNode):
             )
         topic = image_topic(self, configuration.node.image_transport)
         self._outputs = TrafficOutputs(self, topic)
-        health = self._diagnostics.begin()
+        health = self.diagnostics.begin()
         try:
             self._stream = TrafficStream(self, configuration, self._outputs, health)
         except Exception:  # of whatever a network raises: `cleanup` relies on what follows
@@ -102,7 +86,7 @@ class TrafficNode(ManagedNode):
             self._outputs = None
             raise
         self._tell_drawn_seed()
-        self._diagnostics.facts = {"variant": TRAFFIC.name, **self._stream.facts}
+        self.diagnostics.facts = {"variant": TRAFFIC.name, **self._stream.facts}
         # Steady, because simulated time may stand still while an image waits.
         clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._look_timer = self.create_timer(_LOOK_EVERY, self._look, clock=clock)
@@ -114,28 +98,25 @@ class TrafficNode(ManagedNode):
 
     def activate(self) -> None:
         """Open the inputs."""
-        configuration = self._table.configuration
-        own = configuration.node
-        source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
-        self._diagnostics.listen_to(source)
+        source = self.open_images()
         self._inputs += [
             self.create_subscription(RegionOfInterest, "~/add_target", self._on_region, 10),
             self.create_subscription(PointStamped, "~/clicked_point", self._on_point, 10),
             self.create_subscription(Int64, "~/select", self._on_select, 10),
         ]
-        detector = configuration.tracker.detector.kind
+        detector = self.table.configuration.tracker.detector.kind
         if detector == TOPIC:
             # As many as images may wait: a detector may answer several at once.
             qos = QoSProfile(depth=MOST_WAITING)
             topic = self.resolve_topic_name("detections")
             take = self._on_detections
             self._inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
-        self._warn_of(unknown_overrides(self, qos=True))
+        self.warn_of_overrides()
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
 
     def deactivate(self) -> None:
         """Close the inputs: an inactive node pays nothing for images."""
-        self._diagnostics.cease()
+        self.diagnostics.cease()
         while self._inputs:
             self.destroy_subscription(self._inputs.pop())
         if self._stream is not None:
@@ -151,12 +132,9 @@ class TrafficNode(ManagedNode):
         self._outputs = self._stream = None
 
     def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
-        if self._stream is None or self._diagnostics.source is None:
-            return  # taken just before the node was deactivated
-        age = self.get_clock().now().nanoseconds - stamp_ns(message.header)
-        self._diagnostics.arrived(info, age * 1e-9)
-        self._stream.take(message)
-        self._after_step(self._stream)
+        if self._stream is not None and self.note_arrival(message, info):
+            self._stream.take(message)
+            self._after_step(self._stream)
 
     def _on_detections(self, message: bytes) -> None:
         if self._stream is not None:
@@ -169,7 +147,7 @@ class TrafficNode(ManagedNode):
             self._after_step(self._stream)
 
     def _after_step(self, stream: TrafficStream) -> None:
-        self._diagnostics.facts.update(stream.facts)
+        self.diagnostics.facts.update(stream.facts)
         if not stream.is_waiting:
             self._look_timer.cancel()
         elif self._look_timer.is_canceled():
@@ -186,7 +164,7 @@ class TrafficNode(ManagedNode):
     def _on_point(self, message: PointStamped) -> None:
         def choose(vehicles: Vehicles) -> None:
             assert self._stream is not None
-            suffix = self._table.configuration.node.output_frame_suffix
+            suffix = self.table.configuration.node.output_frame_suffix
             check_frame_id("~/clicked_point", message.header, self._stream.frame_id, suffix)
             point = message.point.x, message.point.y
             if not all(map(math.isfinite, point)):
@@ -231,7 +209,7 @@ class TrafficNode(ManagedNode):
 
     @property
     def _target(self) -> object:
-        return self._table.configuration.session.target.box
+        return self.table.configuration.session.target.box
 
     def _reconfigure(self, configuration: Configuration) -> None:
         if self._stream is not None:
@@ -239,13 +217,9 @@ class TrafficNode(ManagedNode):
             self._stream.reconfigure(configuration)
             if self._stream.vehicles.session.tracker.seed != before:
                 self._tell_drawn_seed()
-            self._diagnostics.facts.update(self._stream.facts)
+            self.diagnostics.facts.update(self._stream.facts)
 
     def _tell_drawn_seed(self) -> None:
-        if self._stream is not None and self._table.configuration.tracker.seed < 0:
+        if self._stream is not None and self.table.configuration.tracker.seed < 0:
             seed = self._stream.vehicles.session.tracker.seed
             self.get_logger().info(f"drew the seed {seed}; set it to repeat this run")
-
-    def _warn_of(self, sentences: list[str]) -> None:
-        for sentence in sentences:
-            self.get_logger().warning(f"ignored: {sentence}")
