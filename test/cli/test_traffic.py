@@ -48,7 +48,7 @@ zones:
 class Follower:
     """Stand-in of the tracker: the k-th detection is vehicle k, hidden where it is missing."""
 
-    def __init__(self, parameters=None):
+    def __init__(self, parameters=None, road=None):
         self.parameters, self.frame_period, self.seed = parameters, 0.0, 7
         self._boxes, self._given, self._next = {}, {}, 100
 

@@ -174,7 +174,7 @@ class _Setup:
         """Make the run; its first frame has the number `first`."""
         parameters, settings = self.configuration.tracker, self.configuration.session
         session = TrafficSession(
-            TrafficTracker(parameters),
+            TrafficTracker(parameters, self.plane),
             self.make_detector,
             frame_rate=parameters.frame_rate,
             reset_on_time_jump=settings.reset_on_time_jump,
@@ -223,7 +223,7 @@ def _lines(configuration: Configuration) -> Path | None:
 
 
 def _plane(road: RoadParameters) -> RoadPlane | None:
-    """Return the road that speeds are measured on; its lens and pose cannot come from topics."""
+    """Return the calibrated road; its lens and pose cannot come from topics."""
     if not road.is_set:
         return None
     if road.from_camera_info or road.from_tf:

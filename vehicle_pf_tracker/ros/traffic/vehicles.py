@@ -71,7 +71,7 @@ class Vehicles:
         parameters = configuration.tracker
         self._configuration = configuration
         self.session = TrafficSession(
-            TrafficTracker(parameters),
+            TrafficTracker(parameters, plane_of(configuration.session.road)),
             detector_maker(parameters.detector),
             frame_rate=parameters.frame_rate,
             reset_on_time_jump=configuration.session.reset_on_time_jump,
@@ -170,7 +170,10 @@ class Vehicles:
             frame_rate=configuration.tracker.frame_rate,
             reset_on_time_jump=configuration.session.reset_on_time_jump,
         )
-        if configuration.session.road != before.road and self.counter is not None:
+        if configuration.session.road == before.road:
+            return
+        self.session.tracker.road = plane_of(configuration.session.road)
+        if self.counter is not None:
             totals = self.counter.totals
             self.counter = self._counter()
             assert self.counter is not None
@@ -217,7 +220,7 @@ class Vehicles:
 
 
 def plane_of(road: RoadParameters) -> RoadPlane | None:
-    """Return the road that speeds are measured on; its lens and pose cannot come from topics.
+    """Return the calibrated road; its lens and pose cannot come from topics.
 
     Raises
     ------

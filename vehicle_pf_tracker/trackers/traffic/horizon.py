@@ -26,6 +26,7 @@ from collections import deque
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.road.plane import RoadPlane
 
 _LEAST_WAY = 0.15
 """Scatter of a vehicle's lower edges, from the highest to the lowest, of the image's height, from
@@ -63,6 +64,24 @@ class Growth:
             return _HIGHEST
         row = (total - widths / slope) / count / height
         return float(min(max(row, _HIGHEST), _LOWEST))
+
+
+def calibrated_row(road: RoadPlane, size: tuple[int, int]) -> float:
+    """Row of a calibrated road's horizon in the image's middle column, of the image's height.
+
+    Parameters
+    ----------
+    road : RoadPlane
+        Map from the image to the road.
+    size : (int, int)
+        Width and height of the image.
+    """
+    width, height = size
+    across, down, level = road.homography.matrix[2].tolist()
+    if down <= 0:  # it looks straight down, or stands on its head
+        return _HIGHEST
+    row = -(across * width / 2 + level) / down / height
+    return float(min(max(row, _HIGHEST), _LOWEST))
 
 
 class Horizon:

@@ -24,15 +24,16 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.association import GATE, assign, edge_costs
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
-from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
+from vehicle_pf_tracker.trackers.traffic.horizon import Horizon, calibrated_row
 from vehicle_pf_tracker.trackers.traffic.measuring import deviations, first_state, is_cut, measure
-from vehicle_pf_tracker.trackers.traffic.occlusion import cover
+from vehicle_pf_tracker.trackers.traffic.occlusion import cover, nearest_first
 from vehicle_pf_tracker.trackers.traffic.overlaps import areas, clipped, intersections
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
@@ -71,15 +72,23 @@ class TrafficTracker:
     ----------
     parameters : TrafficParameters, optional
         Parameters; None: the defaults.
+    road : RoadPlane, optional
+        Calibrated road, which tells the horizon and which vehicle is nearer; None: both are taken
+        from the boxes.
 
     Attributes
     ----------
+    road : RoadPlane or None
+        Road in use; it can be replaced between two frames, and counts for new vehicles.
     frame_period : float
         Nominal frame period in s, from which seconds become frames.
     """
 
-    def __init__(self, parameters: TrafficParameters | None = None) -> None:
+    def __init__(
+        self, parameters: TrafficParameters | None = None, road: RoadPlane | None = None
+    ) -> None:
         self.parameters = parameters or TrafficParameters()
+        self.road = road
         self.frame_period = DEFAULT_PERIOD
         self._restart_random()
         self._last_identity = 0
@@ -117,7 +126,7 @@ class TrafficTracker:
         self._look(frame)
         for track in self._tracks:
             track.predict(elapsed)
-        self._tracks.sort(key=lambda track: (-track.state.edges[3], track.identity))
+        self._tracks = nearest_first(self._tracks, self.road)
         cover(self._tracks, self._size, self.parameters.occlusions)
         normals = self._rng.standard_normal((self.parameters.num_particles, 3))
         if detections is not None:
@@ -278,7 +287,10 @@ class TrafficTracker:
             focal=_FOCAL * width,
         )
         noise = self.parameters.detections.edge_noise
-        horizon = self._horizon.row(motion.horizon) * height
+        row = self._horizon.row(motion.horizon)
+        if self.road is not None:
+            row = calibrated_row(self.road, self._size)
+        horizon = row * height
         # A horizon below the box would have it drive on the sky.
         horizon = min(horizon, float(edges[Edge.BOTTOM]) - 1)
         self._last_identity += 1
