@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import dataclass
 
@@ -95,6 +96,12 @@ class View:
         exact = (positions - self.patch.centre) * self.steps + len(self.response) / 2
         return np.minimum(np.maximum(np.rint(exact), 0), last).astype(np.intp)
 
+    def offsets(self) -> Array:
+        """Offsets (m, m, 2) of all places from the patch's centre, px."""
+        places = np.arange(len(self.response)) - len(self.response) / 2
+        columns, rows = np.meshgrid(places / self.steps[0], places / self.steps[1])
+        return np.stack([columns, rows], axis=-1)
+
     def at(self, position: Array) -> float:
         """Response at the place nearest to a position in px."""
         column, row = self.places(position).tolist()
@@ -156,6 +163,12 @@ class Appearance:
     @kernels.setter
     def kernels(self, kernels: Kernels) -> None:
         self._kernels = self._filter.kernels = kernels
+
+    def twin(self) -> Appearance:
+        """Copy with what is learnt up to now; the two learn separately from then on."""
+        twin = copy.copy(self)
+        twin._filter = copy.copy(self._filter)
+        return twin
 
     def patch(self, frame: Frame, position: Array, size: Array, *, wide: bool = False) -> Patch:
         """Cut the surroundings of a box of this centre and size (px) out of a frame."""

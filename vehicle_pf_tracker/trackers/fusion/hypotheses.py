@@ -23,6 +23,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, normalise
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion
 
 FASTEST_GROWTH = 0.04
@@ -101,6 +102,14 @@ class Hypotheses:
         """Standard deviation of the positions along the axis where it is larger, px."""
         variance = self.weights @ (self.positions - self.mean) ** 2
         return float(np.sqrt(variance.max()))
+
+    def moved(self, camera: CameraMotion) -> Hypotheses:
+        """Move positions and velocities with the background."""
+        return replace(
+            self,
+            positions=camera.apply(self.positions),
+            velocities=camera.apply_to_velocities(self.velocities),
+        )
 
     def narrowed(self, centre: Array, share: float) -> Hypotheses:
         """Draw positions towards `centre`, and velocities towards zero, to a share of theirs."""

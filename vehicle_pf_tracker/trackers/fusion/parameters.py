@@ -104,6 +104,9 @@ class VehicleMotionParameters:
     perspective: bool = parameter(
         True, "Off: a hidden vehicle keeps speed and size, though it drives into depth."
     )
+    turns: bool = parameter(
+        True, "Off: a vehicle that turns fast before a standing camera is taken to be hidden."
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +160,9 @@ class VisibilityParameters:
         maximum=0.5,
         unit="per frame",
         tuned=(0.01, 0.2),
+    )
+    second_look: bool = parameter(
+        True, "Off: a return is final, though the vehicle may appear at a likelier place after."
     )
     learning_points: float = parameter(
         0.4,

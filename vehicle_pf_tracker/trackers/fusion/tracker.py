@@ -17,6 +17,7 @@
 Per frame: move with the camera, predict, observe, judge visibility, and then either
 
 - visible: climb to the peak, follow the size, learn; or
+- turning: follow the outline of what moves, learn fast; or
 - hidden: predict along the road, learn nothing, and wait until hypotheses gather evidence.
 
 The filter response at each hypothesis is a calibrated log-likelihood ratio of visible against
@@ -30,25 +31,20 @@ from dataclasses import replace
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import Box, Position
-from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.camera_motion import CameraFlow, CameraMotion
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.small_grey import small_grey
 from vehicle_pf_tracker.image.window import is_outside, keep_inside
-from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
-from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
-from vehicle_pf_tracker.trackers.fusion.hypotheses import (
-    ACROSS_LANES,
-    DOUBT,
-    Hypotheses,
-    hidden_hypotheses,
-)
+from vehicle_pf_tracker.trackers.base import Outcome
+from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.frozen_track import FrozenTrack
+from vehicle_pf_tracker.trackers.fusion.hypotheses import ACROSS_LANES, DOUBT, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
-from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
-from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
+from vehicle_pf_tracker.trackers.fusion.track import Seen, Track
+from vehicle_pf_tracker.trackers.fusion.turning import TurningBranch
 from vehicle_pf_tracker.trackers.fusion.visibility import (
     CLIMB_FREELY,
     CLIMB_ON_PATH,
@@ -62,76 +58,26 @@ _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
 _WIDE_FROM = 0.5
 """Spread of the hypotheses, of the size, from which a wide patch is searched."""
-_STRONG = 0.8
-"""Probability of visibility from which the size is followed."""
-_WEAK_RESPONSE = 0.6
-"""Response below which sizes are not followed: a half-hidden vehicle looks smaller."""
-_LEAST_LEARNT = 0.5
-"""Response below which nothing is learnt: what is there differs in more than it agrees."""
-_WHOLE = 0.8
-"""Survival of points from which their spread tells the size: what an occluder covers, shrinks."""
-_LEAST_SIDE, _LARGEST_SHARE = 3.0, 1.5
-"""Bounds of the sides: px, and share of the image."""
-_NEW_VELOCITY = 3.0
-"""Spread of the first velocities in units of the change per frame: none is known yet."""
 _MEASURED_SPREAD = 0.3
 """Spread of the hypotheses after a first motion was measured, of the one before: about a px."""
 
 
-class FusionTracker(ParticleTracker[FusionParameters]):
+class FusionTracker(Track):
     """The flagship."""
-
-    _particles: Hypotheses
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `Tracker.start`."""
-        self._size = np.array([box.width, box.height], float)
-        self._position = np.array(box.centre, float)
-        self._velocity = np.zeros(2)
-        self._frames = 0
         self._set_off = False
-        self._visible = True
-        self._sightings = Sightings()
-        self._points = SurfacePoints(self.kernels)
-        self._camera = CameraFlow(self.kernels)
-        self._camera.measure(small_grey(frame), box)
-        estimate = super().start(frame, box)
-        self._points.keep(self._appearance.patch(frame, self._position, self._size))
-        return estimate
+        self._frozen: FrozenTrack | None = None
+        self._turning = TurningBranch()
+        return super().start(frame, box)
 
     def reconfigure(self, parameters: FusionParameters) -> None:
         """Take new parameters; see `Tracker.reconfigure`."""
-        recoloured = parameters.filter.colour != self.parameters.filter.colour
+        before = self._appearance if self._target is not None else None
         super().reconfigure(parameters)
-        if self._target is not None:
-            self._appearance.kernels = self._points.kernels = self._camera.kernels = self.kernels
-            self._particles = self._particles.resampled(self._rng, parameters.num_particles)
-            if recoloured:
-                self._learn()
-
-    def _learn(self) -> None:
-        """Train a filter on the first frame's target."""
-        target, window = self.target, self.parameters.window
-        box = target.box
-        learnt = np.array([window.width or box.width, window.height or box.height])
-        self._padding = learnt / np.array([box.width, box.height])
-        options = self.parameters.filter
-        self._appearance = Appearance(self.kernels, learnt, options.penalty, colour=options.colour)
-        patch = self._appearance.patch(target.patch, np.array(target.centre), learnt)
-        self._appearance.learn_first(patch)
-
-    def _scatter(self, centre: Position) -> Array:
-        count, motion, extent = self.parameters.num_particles, self.parameters.motion, self._extent
-        spread = self._rng.normal(size=(2, count, 2)) * extent
-        velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
-        positions = np.asarray(centre) + spread[0] * motion.position_sigma
-        self._particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - DOUBT)
-        return np.asarray(positions)
-
-    @property
-    def _extent(self) -> float:
-        """Geometric mean of the sides of the box, px."""
-        return float(np.sqrt(self._size.prod()))
+        if before is not None and self._appearance is not before:
+            self._frozen = None  # what it had learnt is of another kind now
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         _ = self.target  # says what is wrong before the start
@@ -151,8 +97,11 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             )
         was_visible = self._visible
         self._visible = self._particles.probability_visible > 0.5
-        if self._visible:
-            self._take_sighting(frame, view, position, response, elapsed, again=not was_visible)
+        seen = Seen(view, position, response, again=not was_visible)
+        if self._follow_turn(frame, view, elapsed):
+            self._visible, self._frozen = True, None
+        elif self._visible:
+            self._take_sighting(frame, self._looked_at_again(frame, seen), elapsed)
         elif was_visible:
             self._enter_occlusion()
         if not self._visible:
@@ -171,15 +120,16 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         camera = CameraMotion()
         if self.parameters.motion.camera:
             box = Box.around((self._position[0], self._position[1]), *self._size.tolist())
-            camera = self._camera.measure(small_grey(frame), box)
+            small = small_grey(frame)
+            camera = self._camera.measure(small, box)
+            if self.parameters.motion.turns:
+                self._turning.keep(small, still=camera.still)
         self._sightings.pass_time(elapsed, camera)
         if not camera.still:
             self._position = camera.apply(self._position)
-            self._particles = replace(
-                self._particles,
-                positions=camera.apply(self._particles.positions),
-                velocities=camera.apply_to_velocities(self._particles.velocities),
-            )
+            self._particles = self._particles.moved(camera)
+        if self._frozen is not None:
+            self._frozen.pass_time(elapsed, camera)
 
     def _take_first_motion(self, frame: Frame) -> None:
         """Give the hypotheses the velocity of what moves in the first box."""
@@ -201,6 +151,9 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             self._size = self._bounded(frame, self._size * np.exp(growth * elapsed))
         across = 1.0 if self._visible else ACROSS_LANES
         driven = self._particles.driven(self._rng, elapsed, sigmas, across=across)
+        if self._frozen is not None:
+            hidden = motion.hidden_position_sigma, motion.hidden_velocity_sigma
+            self._frozen.drive(self._rng, elapsed, hidden)
         rates = self.parameters.visibility
         driven = driven.passed(elapsed, rates.hiding_rate, rates.return_rate)
         left_image = is_outside(frame, *driven.mean.tolist())
@@ -208,11 +161,6 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         return left_image
 
     # Observe
-
-    @property
-    def _learnt_size(self) -> Array:
-        """Size in px of the part that the filter has learnt, which may be padded."""
-        return np.asarray(self._size * self._padding)
 
     def _observe(self, frame: Frame, elapsed: float) -> View:
         """Weigh the hypotheses by the filter's response where they are, or close by."""
@@ -246,104 +194,62 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     # Visible
 
-    def _take_sighting(
-        self, frame: Frame, view: View, position: Array, response: float, elapsed: float, *,
-        again: bool,
-    ) -> None:  # fmt: skip
-        """Follow position, velocity and size to the peak, and learn."""
-        self._gather(frame, position, elapsed, again=again)
-        surely = self._particles.probability_visible > _STRONG
-        if surely and response > _WEAK_RESPONSE:
-            self._follow_size(frame, again=again)
-        self._sightings.add(self._position, self._size, response)
-        if again:
-            self._points.restart()
-        if surely and response > CLEAR_RESPONSE:
-            self._points.learn_usual()
-        if self.parameters.visibility.points_slope:
-            self._points.renew(self._position, self._size)
-        self._learn_appearance(frame, view, response)
+    def _follow_turn(self, frame: Frame, view: View, elapsed: float) -> bool:
+        """Follow a vehicle that was in doubt, and turned; tell whether it did."""
+        turned = self._turning.follow(elapsed, view)
+        if turned is not None:
+            self._take_turn(frame, view, turned)
+        elif self._visible:
+            self._turning.end()
+        return turned is not None
 
-    def _gather(self, frame: Frame, position: Array, elapsed: float, *, again: bool) -> None:
-        """Centre the hypotheses on the sighting; their velocities take on the displacement."""
-        particles, motion = self._particles, self.parameters.motion
-        moved = (position - self._position) / max(elapsed, 1e-3)
-        if again:
-            count, velocity = self.parameters.num_particles, particles.mean_velocity
-            spread = self._rng.normal(size=(count, 2)) * motion.position_sigma * self._extent
-            still = np.zeros(count)
-            velocities = np.repeat(velocity[np.newaxis], count, axis=0)
-            visible = particles.probability_visible
-            self._particles = Hypotheses.around(position + spread, velocities, still, visible)
-        else:
-            gain = 1.0 if self._frames == 1 else motion.gain
-            velocities = particles.velocities + gain * (moved - particles.velocities)
-            centred = particles.positions + (position - particles.mean)
-            self._particles = replace(particles, positions=centred, velocities=velocities)
-        inside = keep_inside(frame, self._particles.positions)
-        self._particles = replace(self._particles, positions=inside)
-        self._position = position
-        self._velocity = self._particles.mean_velocity
-
-    def _follow_size(self, frame: Frame, *, again: bool) -> None:
-        options = self.parameters.size
-
-        def peak(size: Array) -> float:
-            return self._appearance.response_at(frame, self._position, size * self._padding)
-
-        size = self._size
-        if not again and options.step and self._points.survival > _WHOLE:
-            size = size * np.exp(options.points_gain * self._points.stretch)
-        self._size = self._bounded(frame, searched_size(size, self._frames, peak, options))
-
-    def _learn_appearance(self, frame: Frame, view: View, response: float) -> None:
-        """Train the filter, the less the less surely the vehicle is visible."""
-        options = self.parameters.filter
-        whole = self._points.survival > self.parameters.visibility.learning_points
-        if response <= _LEAST_LEARNT or not whole:
-            return
-        visible = self._particles.probability_visible
-        rate = max(options.level_rate, 1 / (self._frames + 1)) * visible
-        self._appearance.learn_usual(response, rate)
-        stiffness = options.stiffness / visible
-        self._appearance.learn(frame, view, self._position, self._learnt_size, stiffness)
+    def _looked_at_again(self, frame: Frame, seen: Seen) -> Seen:
+        """Compare a return with other places for a while; the likelier place."""
+        frozen = self._frozen
+        if frozen is None or not self.parameters.visibility.second_look:
+            self._frozen = None
+            return seen
+        if seen.again:
+            frozen.take_return(self._appearance, self._sightings)
+        frozen.take_response(seen.response)
+        if seen.again:
+            return seen
+        options = self.parameters.visibility
+        found = frozen.likelier_place(frame, seen.position, self._padding, options)
+        if frozen.is_over or found is not None:
+            self._frozen = None
+        if found is None:
+            return seen
+        view, position = found
+        self._thaw(frozen, 1 - DOUBT)
+        return Seen(view, self._kept_inside(frame, position), view.at(position), again=True)
 
     # Hidden
 
     def _enter_occlusion(self) -> None:
         """Predict from the last clear sightings: the occluder has dragged later ones along."""
+        frozen = self._frozen
+        if frozen is not None and frozen.can_undo:
+            frozen.undo_return()
+            self._thaw(frozen, DOUBT)
+            return
         fitted = self._sightings.fit(perspective=self.parameters.motion.perspective)
         if fitted is None:
-            self._particles = replace(
-                self._particles, visible=np.full(len(self._particles.visible), DOUBT)
-            )
+            hidden = np.full(len(self._particles.visible), DOUBT)
+            self._particles = replace(self._particles, visible=hidden)
             return
         motion, last = fitted
+        if self.parameters.motion.turns:
+            self._turning.begin(motion, last)
         self._size = last.size * motion.scale_at(last.age)
-        sigma = self.parameters.motion.hidden_velocity_sigma
-        count = self.parameters.num_particles
+        sigma, count = self.parameters.motion.hidden_velocity_sigma, self.parameters.num_particles
         self._particles = hidden_hypotheses(self._rng, motion, last.age, count, self._extent, sigma)
+        self._frozen = FrozenTrack(self._appearance, self._sightings, self._particles, self._size)
 
-    # Report
-
-    def _bounded(self, frame: Frame, size: Array) -> Array:
-        return np.clip(size, _LEAST_SIDE, _LARGEST_SHARE * max(frame_size(frame)))
-
-    def _kept_inside(self, frame: Frame, position: Array) -> Array:
-        return np.asarray(keep_inside(frame, position))
-
-    def _outcome(self, frame: Frame, response: float, left_image: bool) -> Outcome:
-        particles = self._particles
-        positions = keep_inside(frame, particles.positions)
-        (x, y), (vx, vy) = self._position.tolist(), self._velocity.tolist()
-        return Outcome(
-            Cloud(positions, particles.weights), (x, y), (vx, vy),
-            "visible" if self._visible else "occluded", particles.probability_visible,
-            {"response": min(max(response, 0.0), 1.0), "points": min(self._points.survival, 1.0)},
-            left_image=left_image,
-        )  # fmt: skip
-
-    def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
-        width, height = self._size.tolist()
-        estimate = super()._estimate(outcome, mode, confidence, began)
-        return replace(estimate, box=Box.around(outcome.position, width, height))
+    def _thaw(self, frozen: FrozenTrack, visible: float) -> None:
+        """Return to the track of before the occlusion, as it was predicted."""
+        self._size = frozen.size
+        self._appearance, self._sightings = frozen.appearance, frozen.sightings
+        self._appearance.kernels = self.kernels
+        doubts = np.full(len(frozen.particles.visible), visible)
+        self._particles = replace(frozen.particles, visible=doubts)

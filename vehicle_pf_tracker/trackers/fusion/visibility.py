@@ -34,7 +34,7 @@ _HIGHEST_RESPONSE = 1.2
 _PEAK_REACH = 6
 """Places of the response around the mean within which its peak is the estimate: a third of the
 target's side."""
-_SAME_VEHICLE = 0.5
+SAME_VEHICLE = 0.5
 """Distance from the best hypothesis, of the size, within which others mean the same vehicle."""
 
 
@@ -106,7 +106,7 @@ def likeliest_peak(view: View, particles: Hypotheses, extent: float) -> tuple[Ar
     votes = particles.weights * particles.visible
     best = particles.positions[int(votes.argmax())]
     apart = np.linalg.norm(particles.positions - best, axis=1)
-    votes = np.where(apart < _SAME_VEHICLE * extent, votes, 0.0)
+    votes = np.where(apart < SAME_VEHICLE * extent, votes, 0.0)
     return view.peak_near(votes @ particles.positions / votes.sum(), _PEAK_REACH)
 
 

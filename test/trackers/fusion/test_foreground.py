@@ -1,0 +1,93 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Outlines of what moves before a still background: rectangles on noise, to the pixel."""
+
+import cv2
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.image.small_grey import SmallGrey
+from vehicle_pf_tracker.trackers.fusion.foreground import Foreground
+
+SIZE = np.array([24.0, 14.0])
+
+
+def road(seed=0):
+    noise = np.random.default_rng(seed).integers(60, 140, (120, 200)).astype(np.uint8)
+    return cv2.GaussianBlur(noise, (0, 0), 2.0)
+
+
+def scene(*boxes, zoom=1.0, level=230):
+    """A road with bright rectangles, each of left, top, right and bottom px."""
+    picture = road()
+    for left, top, right, bottom in boxes:
+        picture[top:bottom, left:right] = level
+    return SmallGrey(picture, zoom)
+
+
+def watched(zoom=1.0, frames=40):
+    foreground = Foreground()
+    for time in range(frames):
+        left = 20 + 2 * time
+        foreground.keep(scene((left, 50, left + 24, 64), zoom=zoom), still=True)
+    return foreground, np.array([20 + 2 * (frames - 1) + 12, 57]) / zoom
+
+
+@pytest.mark.parametrize("zoom", [1.0, 0.5])
+def test_the_outline_is_that_of_what_moves(zoom):
+    foreground, centre = watched(zoom)
+    outline = foreground.outline(centre, SIZE / zoom)
+    assert outline.centre == pytest.approx(centre, abs=1 / zoom)
+    assert outline.size == pytest.approx(SIZE / zoom, abs=2 / zoom)
+
+
+def test_a_box_of_some_frames_ago_is_seen_there():
+    foreground, centre = watched()
+    before = centre - (6, 0)
+    assert foreground.outline(before, SIZE, ago=3).centre == pytest.approx(before, abs=1)
+
+
+def test_nothing_moves_beside_the_vehicle():
+    foreground, centre = watched()
+    assert foreground.outline(centre - (60, 0), SIZE) is None
+
+
+def test_what_reaches_out_of_the_neighbourhood_has_no_outline():
+    """A wall of moving pixels is no vehicle of the box's size."""
+    foreground, centre = watched()
+    foreground.keep(scene((0, 30, 200, 90)), still=True)
+    assert foreground.outline(centre, SIZE) is None
+
+
+def test_a_moving_camera_leaves_no_background():
+    foreground, centre = watched()
+    foreground.keep(scene((100, 50, 124, 64)), still=False)
+    assert foreground.outline(centre, SIZE) is None
+
+
+def test_a_few_frames_are_no_background():
+    foreground, centre = watched(frames=12)
+    assert foreground.outline(centre, SIZE) is None
+
+
+def test_frames_of_another_size_are_no_background():
+    foreground, centre = watched()
+    foreground.keep(SmallGrey(road()[:100], 1.0), still=True)
+    assert foreground.outline(centre, SIZE) is None
+
+
+@pytest.mark.parametrize("centre", [(0.0, 0.0), (199.0, 119.0), (-50.0, 60.0), (500.0, 500.0)])
+def test_boxes_at_and_beyond_the_border_have_no_outline(centre):
+    assert watched()[0].outline(np.array(centre), SIZE) is None

@@ -1,0 +1,117 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The turning branch: rectangles that turn, are cut by a wall, or run into another one."""
+
+import math
+
+import cv2
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.image.canonical_patch import Patch
+from vehicle_pf_tracker.image.small_grey import SmallGrey
+from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting
+from vehicle_pf_tracker.trackers.fusion.turning import TurningBranch
+
+SIZE = np.array([26.0, 16.0])
+SPEED = 2.0
+START = np.array([30.0, 100.0])
+DOUBT = 40
+"""Frame in which the doubt begins; the turn begins with it."""
+
+
+def road():
+    noise = np.random.default_rng(0).integers(60, 140, (160, 240)).astype(np.uint8)
+    return cv2.GaussianBlur(noise, (0, 0), 2.0)
+
+
+ROAD = road()
+
+
+def view(response):
+    """Every place has the same response."""
+    blank = np.zeros((8, 8), np.uint8)
+    patch = Patch(np.dstack([blank] * 3), blank, START, np.ones(2))
+    return View(patch, None, np.full((8, 8), response, np.float32))
+
+
+def path(turns):
+    """Centres by frame: straight, then to the left by `turns` rad per frame."""
+    centre, heading, centres = START.copy(), 0.0, []
+    for time in range(80):
+        centres.append(centre.copy())
+        heading -= turns if time >= DOUBT else 0.0
+        centre = centre + SPEED * np.array([math.cos(heading), math.sin(heading)])
+    return centres
+
+
+def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda time: True):
+    """Run the branch from the doubt on; what it gives, frame by frame, and the true centres."""
+    branch, centres, given = TurningBranch(), path(turns), []
+    for time, centre in enumerate(centres):
+        picture = ROAD.copy()
+        left, top = np.rint(centre - SIZE / 2).astype(int)
+        picture[top : top + 16, left : left + 26] = 230
+        paint(picture, time)
+        branch.keep(SmallGrey(picture, 1.0), still=still(time))
+        if time > DOUBT:
+            given.append(branch.follow(1.0, view(response)))
+        elif time == DOUBT:
+            motion = PerspectiveMotion(centre, np.array([SPEED, 0.0]), 0.0)
+            branch.begin(motion, Sighting(0.0, centre, SIZE))
+    return given, centres[DOUBT + 1 :]
+
+
+def test_a_vehicle_that_turns_is_followed_by_its_outline():
+    given, centres = drive(turns=0.08)
+    first = next(i for i, turned in enumerate(given) if turned)
+    assert first < 16
+    for turned, centre in list(zip(given, centres, strict=True))[first : first + 10]:
+        assert turned.position == pytest.approx(centre, abs=1.5)
+        assert turned.size == pytest.approx(SIZE, abs=2.5)
+    assert given[first + 5].velocity[1] < -0.5
+
+
+def test_a_vehicle_that_drives_straight_on_does_not_turn():
+    assert not any(drive(turns=0.0)[0])
+
+
+def wall(picture, _time):
+    picture[:, 140:] = ROAD[:, 140:]  # hides what is behind
+
+
+def test_a_wall_that_cuts_the_outline_is_no_turn():
+    assert not any(drive(turns=0.0, paint=wall)[0])
+
+
+def lorry(picture, time):
+    """It comes from behind, and merges with the vehicle six frames after the doubt began."""
+    right = int(START[0] + SPEED * DOUBT - 13 + 4 * (time - DOUBT - 6) + 2 * 6)
+    picture[70:112, max(right - 90, 0) : max(right, 0)] = 200
+
+
+def test_a_lorry_that_runs_into_the_outline_ends_the_branch():
+    assert not any(drive(turns=0.0, paint=lorry)[0])
+
+
+def test_a_camera_that_moves_ends_the_branch():
+    assert not any(drive(turns=0.08, still=lambda time: time != DOUBT + 1)[0])
+
+
+def test_the_turn_is_over_when_the_filter_knows_the_vehicle_again():
+    given = [turned is not None for turned in drive(turns=0.08, response=0.9)[0]]
+    assert sum(given) == 8
+    assert not any(given[given.index(True) + 8 :])

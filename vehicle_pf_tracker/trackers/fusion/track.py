@@ -1,0 +1,243 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The track of `fusion`: what is known of the vehicle, and how a sighting changes it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Box, Position
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.camera_motion import CameraFlow
+from vehicle_pf_tracker.image.small_grey import small_grey
+from vehicle_pf_tracker.image.window import keep_inside
+from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
+from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, Hypotheses
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
+from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
+from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
+from vehicle_pf_tracker.trackers.fusion.turning import Turned
+
+_TURNING_STIFFNESS = 0.5
+"""Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
+turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
+_LEAST_LEVEL, _TURNING_LEVEL_RATE = 0.3, 0.3
+"""Least response that the usual one follows in a turn, and how fast: a new level in 3 frames."""
+_STRONG = 0.8
+"""Probability of visibility from which the size is followed."""
+_WEAK_RESPONSE = 0.6
+"""Response below which sizes are not followed: a half-hidden vehicle looks smaller."""
+_LEAST_LEARNT = 0.5
+"""Response below which nothing is learnt: what is there differs in more than it agrees."""
+_WHOLE = 0.8
+"""Survival of points from which their spread tells the size: what an occluder covers, shrinks."""
+_LEAST_SIDE, _LARGEST_SHARE = 3.0, 1.5
+"""Bounds of the sides: px, and share of the image."""
+_NEW_VELOCITY = 3.0
+"""Spread of the first velocities in units of the change per frame: none is known yet."""
+
+
+class Seen(NamedTuple):
+    """Where the vehicle was found in the present frame.
+
+    Attributes
+    ----------
+    view : View
+        The response around it.
+    position : (2,) array
+        Centre, px.
+    response : float
+        Height of the peak there, relative to the usual one.
+    again : bool
+        True for a vehicle that was hidden before.
+    """
+
+    view: View
+    position: Array
+    response: float
+    again: bool
+
+
+class Track(ParticleTracker[FusionParameters]):
+    """Position, size, motion and appearance; the algorithm is in `tracker.py`."""
+
+    _particles: Hypotheses
+
+    def start(self, frame: Frame, box: Box) -> Estimate:
+        """Learn the target; see `Tracker.start`."""
+        self._size = np.array([box.width, box.height], float)
+        self._position = np.array(box.centre, float)
+        self._velocity = np.zeros(2)
+        self._frames = 0
+        self._visible = True
+        self._sightings = Sightings()
+        self._points = SurfacePoints(self.kernels)
+        self._camera = CameraFlow(self.kernels)
+        self._camera.measure(small_grey(frame), box)
+        estimate = super().start(frame, box)
+        self._points.keep(self._appearance.patch(frame, self._position, self._size))
+        return estimate
+
+    def reconfigure(self, parameters: FusionParameters) -> None:
+        """Take new parameters; see `Tracker.reconfigure`."""
+        recoloured = parameters.filter.colour != self.parameters.filter.colour
+        super().reconfigure(parameters)
+        if self._target is not None:
+            self._appearance.kernels = self._points.kernels = self._camera.kernels = self.kernels
+            self._particles = self._particles.resampled(self._rng, parameters.num_particles)
+            if recoloured:
+                self._learn()
+
+    def _learn(self) -> None:
+        """Train a filter on the first frame's target."""
+        target, window = self.target, self.parameters.window
+        box = target.box
+        learnt = np.array([window.width or box.width, window.height or box.height])
+        self._padding = learnt / np.array([box.width, box.height])
+        options = self.parameters.filter
+        self._appearance = Appearance(self.kernels, learnt, options.penalty, colour=options.colour)
+        patch = self._appearance.patch(target.patch, np.array(target.centre), learnt)
+        self._appearance.learn_first(patch)
+
+    def _scatter(self, centre: Position) -> Array:
+        count, motion, extent = self.parameters.num_particles, self.parameters.motion, self._extent
+        spread = self._rng.normal(size=(2, count, 2)) * extent
+        velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
+        positions = np.asarray(centre) + spread[0] * motion.position_sigma
+        self._particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - DOUBT)
+        return np.asarray(positions)
+
+    @property
+    def _extent(self) -> float:
+        """Geometric mean of the sides of the box, px."""
+        return float(np.sqrt(self._size.prod()))
+
+    @property
+    def _learnt_size(self) -> Array:
+        """Size in px of the part that the filter has learnt, which may be padded."""
+        return np.asarray(self._size * self._padding)
+
+    # A sighting
+
+    def _take_sighting(self, frame: Frame, seen: Seen, elapsed: float) -> None:
+        """Follow position, velocity and size to the peak, and learn."""
+        self._gather(frame, seen.position, elapsed, again=seen.again)
+        surely = self._particles.probability_visible > _STRONG
+        if surely and seen.response > _WEAK_RESPONSE:
+            self._follow_size(frame, again=seen.again)
+        self._sightings.add(self._position, self._size, seen.response)
+        if seen.again:
+            self._points.restart()
+        if surely and seen.response > CLEAR_RESPONSE:
+            self._points.learn_usual()
+        if self.parameters.visibility.points_slope:
+            self._points.renew(self._position, self._size)
+        self._learn_appearance(frame, seen.view, seen.response)
+
+    def _gather(self, frame: Frame, position: Array, elapsed: float, *, again: bool) -> None:
+        """Centre the hypotheses on the sighting; their velocities take on the displacement."""
+        particles, motion = self._particles, self.parameters.motion
+        moved = (position - self._position) / max(elapsed, 1e-3)
+        if again:
+            visible = particles.probability_visible
+            self._particles = self._gathered(position, particles.mean_velocity, visible)
+        else:
+            gain = 1.0 if self._frames == 1 else motion.gain
+            velocities = particles.velocities + gain * (moved - particles.velocities)
+            centred = particles.positions + (position - particles.mean)
+            self._particles = replace(particles, positions=centred, velocities=velocities)
+        inside = keep_inside(frame, self._particles.positions)
+        self._particles = replace(self._particles, positions=inside)
+        self._position = position
+        self._velocity = self._particles.mean_velocity
+
+    def _gathered(self, position: Array, velocity: Array, visible: float) -> Hypotheses:
+        """Draw hypotheses around a position, all of one velocity."""
+        count, motion = self.parameters.num_particles, self.parameters.motion
+        spread = self._rng.normal(size=(count, 2)) * motion.position_sigma * self._extent
+        velocities = np.repeat(velocity[np.newaxis], count, axis=0)
+        return Hypotheses.around(position + spread, velocities, np.zeros(count), visible)
+
+    def _follow_size(self, frame: Frame, *, again: bool) -> None:
+        options = self.parameters.size
+
+        def peak(size: Array) -> float:
+            return self._appearance.response_at(frame, self._position, size * self._padding)
+
+        size = self._size
+        if not again and options.step and self._points.survival > _WHOLE:
+            size = size * np.exp(options.points_gain * self._points.stretch)
+        self._size = self._bounded(frame, searched_size(size, self._frames, peak, options))
+
+    def _learn_appearance(self, frame: Frame, view: View, response: float) -> None:
+        """Train the filter, the less the less surely the vehicle is visible."""
+        options = self.parameters.filter
+        whole = self._points.survival > self.parameters.visibility.learning_points
+        if response <= _LEAST_LEARNT or not whole:
+            return
+        visible = self._particles.probability_visible
+        rate = max(options.level_rate, 1 / (self._frames + 1)) * visible
+        self._appearance.learn_usual(response, rate)
+        stiffness = options.stiffness / visible
+        self._appearance.learn(frame, view, self._position, self._learnt_size, stiffness)
+
+    def _take_turn(self, frame: Frame, view: View, turned: Turned) -> None:
+        """Follow a vehicle that turns by its outline, and learn fast what it looks like now."""
+        response = view.at(turned.position)
+        self._position = self._kept_inside(frame, turned.position)
+        self._size = self._bounded(frame, turned.size)
+        gathered = self._gathered(self._position, turned.velocity, 1 - DOUBT)
+        inside = keep_inside(frame, gathered.positions)
+        self._particles = replace(gathered, positions=inside)
+        self._velocity = turned.velocity
+        self._sightings.add(self._position, self._size, 1.0)
+        self._points.restart()
+        if self.parameters.visibility.points_slope:
+            self._points.renew(self._position, self._size)
+        self._appearance.learn_usual(min(max(response, _LEAST_LEVEL), 1.0), _TURNING_LEVEL_RATE)
+        # Without a spectrum the cells are measured again, at the size that the outline tells.
+        bare = replace(view, spectrum=None)
+        self._appearance.learn(frame, bare, self._position, self._learnt_size, _TURNING_STIFFNESS)
+
+    # Report
+
+    def _bounded(self, frame: Frame, size: Array) -> Array:
+        return np.clip(size, _LEAST_SIDE, _LARGEST_SHARE * max(frame_size(frame)))
+
+    def _kept_inside(self, frame: Frame, position: Array) -> Array:
+        return np.asarray(keep_inside(frame, position))
+
+    def _outcome(self, frame: Frame, response: float, left_image: bool) -> Outcome:
+        particles = self._particles
+        positions = keep_inside(frame, particles.positions)
+        (x, y), (vx, vy) = self._position.tolist(), self._velocity.tolist()
+        return Outcome(
+            Cloud(positions, particles.weights), (x, y), (vx, vy),
+            "visible" if self._visible else "occluded", particles.probability_visible,
+            {"response": min(max(response, 0.0), 1.0), "points": min(self._points.survival, 1.0)},
+            left_image=left_image,
+        )  # fmt: skip
+
+    def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
+        width, height = self._size.tolist()
+        estimate = super()._estimate(outcome, mode, confidence, began)
+        return replace(estimate, box=Box.around(outcome.position, width, height))

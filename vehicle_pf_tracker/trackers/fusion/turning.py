@@ -1,0 +1,182 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The turning branch: in doubt, a vehicle that leaves its path is followed by its outline.
+
+In a fast turn response and points end as they do behind an occluder, and the track is frozen and
+predicted straight on. Beside it the outline of what moves is followed. Where an occluder stands the
+outline is cut from one side, and where one drives by it becomes larger at once; only a vehicle that
+turns moves as a whole to one side of the predicted path.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.small_grey import SmallGrey
+from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.foreground import Foreground, Outline
+from vehicle_pf_tracker.trackers.fusion.perspective import (
+    CLEAR_RESPONSE,
+    PerspectiveMotion,
+    Sighting,
+)
+
+_ASIDE = 0.15
+"""Distance of both sides from the predicted path, of the size, that proves a turn."""
+_ACROSS = 0.25
+"""Velocity to that side, of the speed: that of a heading changed by 15 degrees. What a wall leaves
+of an outline may lie aside, but it does not move there."""
+_CONFIRMED = 2
+"""Frames in a row that prove it: single outlines jump with the noise at their rim."""
+_LARGEST_CHANGE = 1.3
+"""Largest change of width or height in a frame; a merged outline changes by more."""
+_LEAST_COVERED, _MOST_COVERED = 0.6, 2.0
+"""Area of the outline in the last clear sighting, of the box, between which it is the vehicle's."""
+_FURTHEST = 40.0
+"""Frames after the doubt began within which a turn is proven."""
+_CALM = 8
+"""Clear frames after which the turn is over."""
+_VELOCITY_GAIN = 0.3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Turned:
+    """The vehicle in a turn.
+
+    Attributes
+    ----------
+    position, size : (2,) arrays
+        Centre, and width and height, px.
+    velocity : (2,) array
+        px per frame.
+    """
+
+    position: Array
+    size: Array
+    velocity: Array
+
+
+@dataclass(slots=True, eq=False)
+class _Branch:
+    """State since the doubt began."""
+
+    motion: PerspectiveMotion
+    size: Array
+    margins: tuple[Array, Array]
+    outline: Outline
+    velocity: Array
+    age: float
+    aside: int = 0
+    proven: bool = False
+    calm: int = 0
+
+
+class TurningBranch:
+    """Follows outlines while the vehicle is in doubt."""
+
+    def __init__(self) -> None:
+        self._foreground = Foreground()
+        self._branch: _Branch | None = None
+
+    def keep(self, small: SmallGrey, *, still: bool) -> None:
+        """Take the next frame; a camera that moves ends the branch."""
+        self._foreground.keep(small, still=still)
+        if not still:
+            self._branch = None
+
+    def begin(self, motion: PerspectiveMotion, last: Sighting) -> None:
+        """Begin where the vehicle was last seen clearly, of which `last.age` frames passed."""
+        self._branch = None
+        ago = round(last.age)
+        first = self._foreground.outline(last.position, last.size, ago)
+        if first is None:
+            return
+        covered = float(first.size.prod() / last.size.prod())
+        if not _LEAST_COVERED < covered < _MOST_COVERED:
+            return
+        half = last.size / 2
+        margins = (
+            (first.low - (last.position - half)) / last.size,
+            (first.high - (last.position + half)) / last.size,
+        )
+        self._branch = _Branch(motion, last.size, margins, first, motion.velocity, 0.0)
+        for back in range(ago - 1, -1, -1):
+            self._step(1.0, back)
+
+    def follow(self, elapsed: float, view: View) -> Turned | None:
+        """Follow the outline into the present frame; give the vehicle once it is proven to turn.
+
+        `view` tells when the filter has long recognised the vehicle again, which ends the branch.
+        """
+        self._step(elapsed, 0)
+        branch = self._branch
+        if branch is None:
+            return None
+        position, size = _box(branch.outline, branch.margins)
+        branch.aside = branch.aside + 1 if _leaves(branch, position, size) else 0
+        branch.proven |= branch.aside >= _CONFIRMED
+        if not branch.proven:
+            if branch.age > _FURTHEST:
+                self._branch = None
+            return None
+        branch.calm = branch.calm + 1 if view.at(position) > CLEAR_RESPONSE else 0
+        if branch.calm > _CALM:
+            self._branch = None
+            return None
+        return Turned(position, size, branch.velocity)
+
+    def end(self) -> None:
+        """End the branch: the vehicle was found another way."""
+        self._branch = None
+
+    def _step(self, elapsed: float, ago: int) -> None:
+        branch = self._branch
+        if branch is None:
+            return
+        before = branch.outline
+        branch.age += elapsed
+        centre = before.centre + branch.velocity * elapsed
+        after = self._foreground.outline(centre, before.size, ago)
+        change = None if after is None else np.abs(np.log(after.size / before.size)).max()
+        if after is None or change is None or change > np.log(_LARGEST_CHANGE):
+            self._branch = None
+            return
+        if elapsed:
+            moved = (after.centre - before.centre) / elapsed
+            branch.velocity = branch.velocity + _VELOCITY_GAIN * (moved - branch.velocity)
+        branch.outline = after
+
+
+def _leaves(branch: _Branch, position: Array, size: Array) -> bool:
+    """Test whether a box is, and moves, to one side of the predicted one."""
+    velocity = branch.motion.velocity_at(branch.age)
+    speed = float(np.hypot(*velocity))
+    if not speed:
+        return False
+    normal = np.array([-velocity[1], velocity[0]]) / speed
+    predicted = branch.size * branch.motion.scale_at(branch.age)
+    off = float((position - branch.motion.position_at(branch.age)) @ normal)
+    wider = float(np.abs(normal) @ (size - predicted)) / 2
+    aside = (abs(off) - abs(wider)) / float(np.sqrt(predicted.prod()))
+    return aside > _ASIDE and float(branch.velocity @ normal) * np.sign(off) > _ACROSS * speed
+
+
+def _box(outline: Outline, margins: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Centre and size of the box that an outline belongs to."""
+    size = outline.size / (1 + margins[1] - margins[0])
+    return outline.low - margins[0] * size + size / 2, size
