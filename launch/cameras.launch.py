@@ -61,6 +61,8 @@ def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
             "params_file": camera.write_parameters(),
             "image_topic": camera.topic,
             "image_transport": "",
+            "detections_topic": "",
+            "lines": "",
             "namespace": camera.name,
             "name": "",
             **{name: given[name] for name in FOR_ALL},

@@ -71,6 +71,7 @@ def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     own = {
         "image_topic": images.base, "image_transport": images.transport,
         "respawn": "false", "large_images": "false",
+        "detections_topic": "", "lines": "",
     }  # fmt: skip
     passed_on = {name: given[name] for name in PASSED_ON}
     return [

@@ -38,6 +38,14 @@ ARGUMENTS = {
     "params_file": ("", "Parameter YAML; empty takes that of the variant"),
     "image_topic": ("/camera/image_raw", "Images; compressed ones are below it, in /compressed"),
     "image_transport": ("", "raw or compressed; empty leaves it to the parameter file"),
+    "detections_topic": (
+        "", "For traffic: detections (vision_msgs/Detection2DArray) to follow; empty leaves the "
+        "detector to the parameter file",
+    ),
+    "lines": (
+        "", "For traffic: YAML of lines and zones to count at; empty leaves it to the parameter "
+        "file",
+    ),
     "namespace": ("", "Of the node"),
     "name": ("", "Of the node; empty takes VARIANT_tracker"),
     "use_sim_time": ("false", "Follow /clock"),
@@ -65,6 +73,10 @@ def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     own = [Parameter("use_sim_time", is_true(given["use_sim_time"]))]
     if given["image_transport"]:
         own.append(Parameter("image_transport", given["image_transport"]))
+    if given["detections_topic"]:
+        own.append(Parameter("detector.kind", "topic"))
+    if given["lines"]:
+        own.append(Parameter("lines", given["lines"]))
     node = Node(
         package="vehicle_pf_tracker",
         executable=executable,
@@ -74,6 +86,7 @@ def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
         remappings=[
             ("image", given["image_topic"]),
             ("image/compressed", f"{given['image_topic']}/compressed"),
+            *([("detections", topic)] if (topic := given["detections_topic"]) else []),
         ],
         ros_arguments=["--log-level", given["log_level"]],
         additional_env={

@@ -34,9 +34,12 @@ from launch_ros.parameter_descriptions import Parameter
 from launch_ros.utilities import evaluate_parameters
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
+from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
+TRAFFIC_NAMES = set(Configuration.of(TRAFFIC).specs())
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -109,13 +112,55 @@ def test_tracker_starts_the_node_of_the_variant(share):
 
 
 def test_every_argument_has_a_description():
-    for name in ("tracker", "replay", "cameras"):
+    for name in ("tracker", "traffic", "replay", "cameras"):
         path = ROOT / "launch" / f"{name}.launch.py"
         description = get_launch_description_from_python_launch_file(str(path))
         assert isinstance(description, LaunchDescription)
         for entity in description.entities:
             if isinstance(entity, DeclareLaunchArgument):
                 assert entity.description
+
+
+def test_traffic_starts_its_node_on_the_defaults():
+    context, (node,) = started("traffic")
+    node._perform_substitutions(context)
+    assert node.node_name == "/traffic_tracker"
+    assert node.expanded_remapping_rules == [
+        ("image", "/camera/image_raw"),
+        ("image/compressed", "/camera/image_raw/compressed"),
+    ]
+    assert parameters_of(context, node) == {"use_sim_time": False}
+    assert [Path(one).name for one in parameter_files(context, node)] == ["traffic.yaml"]
+
+
+@pytest.mark.parametrize("name", ["traffic", "tracker"])
+def test_traffic_takes_detections_and_lines(name):
+    context, (node,) = started(
+        name, variant="traffic", detections_topic="/yolo/detections", lines="/etc/lines.yaml",
+        image_topic="/gate/image", namespace="gate", log_level="warn",
+    )  # fmt: skip
+    node._perform_substitutions(context)
+    assert node.node_name == "/gate/traffic_tracker"
+    assert ("detections", "/yolo/detections") in node.expanded_remapping_rules
+    assert ("image", "/gate/image") in node.expanded_remapping_rules
+    own = {"use_sim_time": False, "detector.kind": "topic", "lines": "/etc/lines.yaml"}
+    assert parameters_of(context, node) == own
+    assert own.keys() - {"use_sim_time"} <= TRAFFIC_NAMES
+
+
+def test_the_names_of_traffics_arguments_are_those_of_the_tracker():
+    path = ROOT / "launch" / "{}.launch.py"
+    names = [
+        {
+            entity.name
+            for entity in get_launch_description_from_python_launch_file(
+                str(path).format(name)
+            ).entities
+            if isinstance(entity, DeclareLaunchArgument)
+        }
+        for name in ("tracker", "traffic")
+    ]
+    assert names[1] == names[0] - {"variant"}
 
 
 @pytest.mark.parametrize(("given", "expected"), [(None, "1073741824"), ("5", "5")])
