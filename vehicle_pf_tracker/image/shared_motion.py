@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Motion that most of some points share: a background's, and a turning or growing vehicle's.
 
 In numpy; the kernels in numba compute the same, see `image.kernels`.

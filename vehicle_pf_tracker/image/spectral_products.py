@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Products of spectra over all channels: the inner loops of a correlation filter, in numpy.
 
 The kernels in numba do the same in one pass over memory; see `image.kernels`.

@@ -83,3 +83,25 @@ def test_a_thin_first_box_may_grow():
 def test_cut_boxes_are_told():
     assert not is_cut(BOX, SIZE)
     assert is_cut(BOX - (100, 0, 100, 0), SIZE)
+
+
+@pytest.mark.parametrize(
+    ("other", "is_several"),
+    [
+        ((118.0, 98, 142, 114), True),  # farther, where the detection lacks a part
+        ((118.0, 112, 142, 136), False),  # nearer: it hides the part
+        ((101.0, 115, 117, 129), False),  # inside: a part of the same vehicle
+    ],
+)
+def test_a_box_that_was_several_vehicles_becomes_the_nearest_one(track, other, is_several):
+    own = np.array([100.0, 114, 118, 130])
+    for _ in range(3):
+        measure(track, own, 0.05, 2.5, SIZE, np.array([other]))
+    assert (track.state.edges == pytest.approx(own, abs=1)) is is_several
+
+
+def test_a_part_without_another_detection_is_not_taken_for_several(track):
+    own = np.array([100.0, 114, 118, 130])
+    for _ in range(3):
+        measure(track, own, 0.05, 2.5, SIZE)
+    assert track.state.edges[Edge.RIGHT] == pytest.approx(140, abs=1)

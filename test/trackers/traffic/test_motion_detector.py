@@ -108,3 +108,58 @@ def test_a_short_way_tells_no_horizon_and_a_constant_width_none_in_sight():
         flat.add(np.array([80.0, 40, 100, bottom]))
     assert near.horizon(240) is None
     assert flat.horizon(240) == -2.0
+
+
+def test_a_lorry_of_one_colour_does_not_melt_into_the_background():
+    detector = MotionDetector()
+    rng = np.random.default_rng(0)
+    for index in range(120):
+        image = GROUND + rng.integers(0, 5, GROUND.shape)
+        left = max(140 - index, 0) if index >= 30 else 160
+        image[40:90, left : left + 100] = 230
+        found = detector.detect(image.astype(np.uint8))
+    # 100 px at 1 px per frame: each place is hidden for longer than samples are remembered.
+    assert found.boxes == pytest.approx(np.array([[21, 40, 100, 50]]), abs=4)
+
+
+def test_what_a_parked_car_leaves_is_learnt():
+    detector = MotionDetector()
+    rng = np.random.default_rng(0)
+    counts = []
+    for index in range(330):
+        image = GROUND + rng.integers(0, 5, GROUND.shape)
+        if index < 60:
+            image[60:84, 40:76] = PAINT
+        counts.append(len(detector.detect(image.astype(np.uint8))))
+    assert counts[61] == 1
+    assert counts[-1] == 0
+
+
+def test_a_change_of_gain_is_no_motion():
+    detector = MotionDetector()
+    for index, frame in enumerate(frames(60)):
+        found = detector.detect(frame if index < 50 else (frame * 0.85).astype(np.uint8))
+    assert not detector.disturbed
+    assert len(found) == 1
+
+
+def test_vehicles_whose_corners_touch_are_divided():
+    both = mask((20, 20, 50, 44), (48, 43, 78, 67))
+    edges, _ = BlobReader().read(both, np.empty((0, 4)))
+    assert len(edges) == 2
+    assert edges[np.argsort(edges[:, 0])] == pytest.approx(
+        np.array([[20, 20, 50, 44], [48, 43, 78, 67]]), abs=3
+    )
+
+
+def test_pieces_that_look_like_vehicles_are_not_joined_by_one_prediction():
+    both = mask((20, 20, 50, 44), (58, 50, 88, 74))
+    edges, _ = BlobReader().read(both, np.array([[20.0, 20, 88, 74]]))
+    assert len(edges) == 2
+
+
+def test_a_speck_in_a_prediction_does_not_widen_the_box():
+    edges, _ = BlobReader().read(
+        mask((20, 40, 60, 70), (25, 22, 28, 25)), np.array([[20.0, 20, 60, 70]])
+    )
+    assert edges.tolist() == [[20, 40, 60, 70]]

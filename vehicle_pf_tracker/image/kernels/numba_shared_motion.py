@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Shared motion of points, compiled; see `image.shared_motion` for what it is."""
 
 from __future__ import annotations

@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Products of spectra, compiled; see `image.spectral_products` for what they are.
 
 A frequency k along y and its negative are made of the same cosines and sines: cosine - i sine is

@@ -27,16 +27,13 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
 
 GATE = 30.0
 """Largest cost of a pair: the 0.9999 quantile of chi-squared with four degrees of freedom is 23.5,
 and colours may differ."""
 INWARD = np.array([1.0, 1.0, -1.0, -1.0])
 """Sign of a residual (detection less prediction) of left, top, right, bottom that points inward."""
-_PARTIAL = 3.0
-"""Cost of taking a detection for a part of the vehicle."""
-_MISSING = 12.0
-"""Cost of all of the vehicle that the detection lacks."""
 _LEAST_PART = 0.15
 """Smallest share of the vehicle that a detection may show."""
 
@@ -56,7 +53,9 @@ def check_library() -> None:
         )
 
 
-def edge_costs(predicted: Array, deviations: Array, detected: Array) -> Array:
+def edge_costs(
+    predicted: Array, deviations: Array, detected: Array, numbers: TrafficNumbers = SHIPPED
+) -> Array:
     """Cost of each pair by the edges, (tracks, detections).
 
     Parameters
@@ -65,6 +64,8 @@ def edge_costs(predicted: Array, deviations: Array, detected: Array) -> Array:
         Edges of the tracks and their standard deviations, measurement included, px.
     detected : (D, 4) array
         Edges of the detections, px.
+    numbers : TrafficNumbers
+        Costs of detections that show a part of the vehicle.
     """
     inward = (detected[np.newaxis] - predicted[:, np.newaxis]) * INWARD
     normal = inward / deviations[:, np.newaxis]
@@ -73,7 +74,7 @@ def edge_costs(predicted: Array, deviations: Array, detected: Array) -> Array:
     size = (predicted[:, 2:] - predicted[:, :2])[:, np.newaxis]
     lacking = np.maximum(inward, 0.0)
     kept = np.clip(1 - (lacking[..., :2] + lacking[..., 2:]) / size, 0.0, 1.0).prod(axis=2)
-    part = outward + _PARTIAL + _MISSING * (1 - kept)
+    part = outward + numbers.partial + numbers.missing * (1 - kept)
     return np.asarray(np.where(kept > _LEAST_PART, np.minimum(whole, part), whole))
 
 

@@ -20,6 +20,7 @@ predictions of the vehicles that are followed tell.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -28,6 +29,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
 from vehicle_pf_tracker.trackers.traffic.overlaps import areas, intersections
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
@@ -56,6 +58,23 @@ _SPLIT_MARGIN = 1.0
 """Advantage of taking a blob for the several vehicles that are followed there."""
 
 
+_NOTABLE = 0.1
+"""Share of the largest piece from which on another one is part of the vehicle, and no noise."""
+
+
+_OWN = 0.15
+"""Share of a blob from which on a part of it can be a vehicle."""
+_SHAPED = 100
+"""Area in px from which on a blob has a shape."""
+_FULLNESS, _FULLNESS_SPREAD = np.log(0.8), 0.2
+"""Usual logarithm of a vehicle's share of its box, to start from, and its standard deviation."""
+_NECK = 0.6
+"""Depth of a blob's parts, of the deepest place, below which they hang together by a neck only: two
+vehicles of one size whose corners touch."""
+_SECOND = 0.7
+"""Least depth of the other parts, of the deepest: mirrors and shadows are shallower."""
+
+
 @dataclass(frozen=True, slots=True)
 class Piece:
     """Part of a vehicle: edges (4,) in px of the mask, and area in px."""
@@ -65,10 +84,18 @@ class Piece:
 
 
 class BlobReader:
-    """Makes boxes of masks; learns the usual aspect of vehicles."""
+    """Makes boxes of masks; learns the usual shape of vehicles.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    numbers : TrafficNumbers
+        Thresholds.
+    """
+
+    def __init__(self, numbers: TrafficNumbers = SHIPPED) -> None:
+        self._numbers = numbers
         self._aspect = float(_ASPECT)
+        self._fullness = float(_FULLNESS)
 
     def read(self, mask: Mask, predicted: Array) -> tuple[Array, Array]:
         """Find vehicles.
@@ -76,7 +103,7 @@ class BlobReader:
         Parameters
         ----------
         mask : (H, W) array
-            Nonzero where something moves.
+            1 where something moves, else 0.
         predicted : (T, 4) array
             Edges of the vehicles that are followed, px of the mask.
 
@@ -87,32 +114,69 @@ class BlobReader:
         fullness : (N,) array
             Share of each box that moves.
         """
-        count, labels, stats, _ = cv2.connectedComponentsWithStats(mask)
         least = max(_LEAST_AREA * mask.size, _LEAST_PIECE)
         found: list[Piece] = []
         pieces: dict[int, list[Piece]] = {}
-        for index in range(1, count):
-            x, y, width, height, area = stats[index].tolist()
-            if area < _LEAST_PIECE:
-                continue
-            part = labels[y : y + height, x : x + width] == index
-            box = np.array([x, y, x + width, y + height], dtype=np.float64)
+        for part, box in _components(mask):
             common = intersections(box, predicted)
             members = np.flatnonzero(common > _COVERED * areas(predicted))
             if self._is_divided(box, common, predicted, members):
                 found += _divided(part, box, predicted[members])
                 continue
-            self._learn_aspect(box, mask.shape, len(members))
-            piece = Piece(_trimmed(part, x, y), float(area))
-            if len(common) and common.max() > _PIECE * areas(box):
-                pieces.setdefault(int(common.argmax()), []).append(piece)
-            else:
-                found.append(piece)
-        found += [_joined(own) for own in pieces.values()]
+            for piece in self._apart(part, box):
+                self._learn_shape(piece, mask.shape, len(members))
+                inside = intersections(piece.edges, predicted)
+                if len(inside) and inside.max() > _PIECE * areas(piece.edges):
+                    pieces.setdefault(int(inside.argmax()), []).append(piece)
+                else:
+                    found.append(piece)
+        for own in pieces.values():
+            found += self._grouped(own)
         found = [piece for piece in found if piece.area >= least]
         edges = np.array([piece.edges for piece in found]).reshape(-1, 4)
         area = np.array([piece.area for piece in found])
         return edges, area / areas(edges)
+
+    def _apart(self, part: npt.NDArray[np.bool_], box: Array) -> list[Piece]:
+        """Divide a blob at its necks, if its parts look more like vehicles than the whole."""
+        x, y = box[:2].astype(int).tolist()
+        whole = _piece(part, x, y)
+        cores = _cores(part)
+        if len(cores) < 2:
+            return [whole]
+        rows, columns = np.nonzero(part)
+        points = np.column_stack([columns, rows]) + 0.5
+        owners = np.argmin(
+            [((points - core.centre) ** 2).sum(axis=1) / core.area for core in cores], axis=0
+        )
+        parts = []
+        for owner in range(len(cores)):
+            own = np.zeros_like(part)
+            own[rows[owners == owner], columns[owners == owner]] = True
+            if own.any():
+                parts.append(_piece(own, x, y))
+        return parts if self._are_several(parts, whole) else [whole]
+
+    def _grouped(self, pieces: list[Piece]) -> list[Piece]:
+        """Join the pieces in one prediction, unless they look like vehicles of their own."""
+        joined = _joined(pieces)
+        notable = [one for one in pieces if one.area > _OWN * joined.area]
+        if len(notable) > 1 and self._are_several(notable, joined):
+            return notable
+        return [joined]
+
+    def _are_several(self, parts: list[Piece], whole: Piece) -> bool:
+        """Test whether parts of a blob look more like vehicles than the whole does."""
+        if min(one.area for one in parts) < _OWN * whole.area or whole.area < _SHAPED:
+            return False
+        apart = max(self._shape_cost(one) for one in parts)
+        return apart + self._numbers.apart < self._shape_cost(whole)
+
+    def _shape_cost(self, piece: Piece) -> float:
+        """Squared standard deviations of aspect and fullness from the usual ones."""
+        aspect = self._aspect_cost(piece.edges[np.newaxis])[0]
+        fullness = np.log(piece.area / areas(piece.edges)) - self._fullness
+        return float(aspect + (fullness / _FULLNESS_SPREAD) ** 2)
 
     def _is_divided(
         self, box: Array, common: Array, predicted: Array, members: npt.NDArray[np.intp]
@@ -129,12 +193,56 @@ class BlobReader:
     def _aspect_cost(self, edges: Array) -> Array:
         return np.asarray(((_log_aspect(edges) - self._aspect) / _ASPECT_SPREAD) ** 2)
 
-    def _learn_aspect(self, box: Array, shape: tuple[int, ...], members: int) -> None:
+    def _learn_shape(self, piece: Piece, shape: tuple[int, ...], members: int) -> None:
+        box = piece.edges
         sides = box[2:] - box[:2]
         free = box[:2].min() > 1 and box[2] < shape[1] - 1 and box[3] < shape[0] - 1
         if members == 1 and free and sides.min() > _ASPECT_SIDE:
             aspect = float(_log_aspect(box[np.newaxis])[0])
             self._aspect += _ASPECT_RATE * (aspect - self._aspect)
+            fullness = float(np.log(piece.area / areas(box)))
+            self._fullness += _ASPECT_RATE * (fullness - self._fullness)
+
+
+def _piece(part: npt.NDArray[np.bool_], x: int, y: int) -> Piece:
+    """Make a piece of the pixels of a mask whose corner is at (x, y)."""
+    return Piece(_trimmed(part, x, y), float(part.sum()))
+
+
+def _components(mask: Mask) -> Iterator[tuple[npt.NDArray[np.bool_], Array]]:
+    """Divide a mask into what hangs together: pixels within a box (4,), and this box."""
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask)
+    for index in range(1, count):
+        x, y, width, height, area = stats[index].tolist()
+        if area >= _LEAST_PIECE:
+            part = labels[y : y + height, x : x + width] == index
+            yield part, np.array([x, y, x + width, y + height], dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class _Core:
+    """Inner part of a blob: its centre in px from the blob's corner, and its area."""
+
+    centre: Array
+    area: float
+
+
+def _cores(part: npt.NDArray[np.bool_]) -> list[_Core]:
+    """Find the parts of a blob that hang together by necks only."""
+    if min(part.shape) < _ASPECT_SIDE:
+        return []
+    padded = cv2.copyMakeBorder(part.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
+    contours, _ = cv2.findContours(padded, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    cv2.drawContours(padded, contours, -1, 1, cv2.FILLED)
+    depth = cv2.distanceTransform(padded, cv2.DIST_L2, 3)
+    count, labels, stats, centres = cv2.connectedComponentsWithStats(
+        (depth > _NECK * depth.max()).astype(np.uint8)
+    )
+    return [
+        _Core(centres[index] - 0.5, float(stats[index, cv2.CC_STAT_AREA]))
+        for index in range(1, count)
+        if depth[labels == index].max() > _SECOND * depth.max()
+    ]
 
 
 def _log_aspect(edges: Array) -> Array:
@@ -168,6 +276,9 @@ def _trimmed(part: npt.NDArray[np.bool_], x: int, y: int) -> Array:
 
 
 def _joined(pieces: list[Piece]) -> Piece:
+    """Join pieces of one vehicle; specks that happen to be in its prediction are none."""
+    largest = max(piece.area for piece in pieces)
+    pieces = [piece for piece in pieces if piece.area > _NOTABLE * largest]
     edges = np.array([piece.edges for piece in pieces])
     box = np.concatenate([edges[:, :2].min(axis=0), edges[:, 2:].max(axis=0)])
     return Piece(box, sum(piece.area for piece in pieces))

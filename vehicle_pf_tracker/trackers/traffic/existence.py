@@ -22,6 +22,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence, Sample
+from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
 from vehicle_pf_tracker.trackers.traffic.overlaps import (
     areas,
     inside_image,
@@ -31,15 +32,11 @@ from vehicle_pf_tracker.trackers.traffic.overlaps import (
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track
 
-_AGREEMENT = 1.2
-"""Log odds that a detection adds by being where a track predicts it."""
 _LEAST, _MOST = -0.6, 2.0
 """Bounds of the log odds that one detection adds: a few good scores are no proof, and a detector
 that knows little about a vehicle must not hide it for ever."""
 _SCORE_DOUBT = 0.5
 """Log odds per detection that are taken off, in confirming by scores alone."""
-_PROVEN_BY_SCORES = 4.0
-"""Sum of these from which on no drive is asked for."""
 _STRAIGHT = 0.8
 """Straightness of the way of a vehicle; of flickering leaves it is below one half."""
 _STRAIGHT_MATCHES = 15
@@ -49,11 +46,7 @@ _MOVED_MATCHES = 5
 vehicle, and tells nothing about its detections. Taken for false alarms, vehicles that reach the
 next bridge too soon kept those after them from being confirmed, too: of forty, six."""
 _MISSED_TENTATIVE = 1.0
-"""Log odds that a detection missed in plain sight takes off a new vehicle, ..."""
-_MISSED_HELD = 0.3
-"""... off one that its pixels hold, ..."""
-_MISSED_HIDDEN = 0.12
-"""... and off one that may be hidden by something unknown."""
+"""Log odds that a detection missed in plain sight takes off a new vehicle."""
 _ONE_PERIOD = 1.5
 """Nominal periods since pixels held a vehicle in the frame before, at most: stamps jitter."""
 _DOUBLE = 0.3
@@ -84,10 +77,18 @@ class Existence:
         Parameters.
     evidence : DetectionEvidence
         Learns what becomes of detections.
+    numbers : TrafficNumbers
+        Weights of the evidence.
     """
 
-    def __init__(self, parameters: TrafficParameters, evidence: DetectionEvidence) -> None:
+    def __init__(
+        self,
+        parameters: TrafficParameters,
+        evidence: DetectionEvidence,
+        numbers: TrafficNumbers = SHIPPED,
+    ) -> None:
         self.parameters = parameters
+        self._numbers = numbers
         self._evidence = evidence
 
     def detected(self, track: Track, edges: Array, sample: Sample, log_odds: float) -> None:
@@ -95,7 +96,7 @@ class Existence:
         track.unseen = track.undetected = 0.0
         track.hidden_by = None
         track.matches += 1
-        agreement = _AGREEMENT if track.matches > 1 else 0.0
+        agreement = self._numbers.agreement if track.matches > 1 else 0.0
         gain = min(max(log_odds, _LEAST), _MOST) + agreement
         track.log_odds = min(track.log_odds + gain, MOST_EVIDENCE)
         track.strength += min(max(log_odds - _SCORE_DOUBT, _LEAST), _MOST)
@@ -114,7 +115,7 @@ class Existence:
         birth = self.parameters.birth
         if track.matches < birth.matches or track.log_odds < birth.evidence:
             return False
-        if track.strength > _PROVEN_BY_SCORES:
+        if track.strength > self._numbers.proven_by_scores:
             return True
         return track.matches >= _STRAIGHT_MATCHES and self._drives(track)
 
@@ -141,12 +142,12 @@ class Existence:
             if min(track.visible, track.inside) > _PLAIN_SIGHT:
                 track.log_odds -= elapsed * self._missed(track)
 
-    @staticmethod
-    def _missed(track: Track) -> float:
+    def _missed(self, track: Track) -> float:
         if not track.confirmed:
             return _MISSED_TENTATIVE
         # Pixels are asked later in the frame: they held it if they did in the frame before.
-        return _MISSED_HELD if track.unseen <= _ONE_PERIOD else _MISSED_HIDDEN
+        numbers = self._numbers
+        return numbers.missed_held if track.unseen <= _ONE_PERIOD else numbers.missed_hidden
 
     def survivors(
         self, tracks: Sequence[Track], size: tuple[int, int], period: float

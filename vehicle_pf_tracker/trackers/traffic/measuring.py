@@ -24,6 +24,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.association import INWARD
+from vehicle_pf_tracker.trackers.traffic.overlaps import areas, intersections
 from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
@@ -55,6 +56,16 @@ from the front. From the side it is half of it, hence the deviation."""
 _ASPECT_DEVIATION = 0.25
 _IMPLAUSIBLE = 0.6
 """Side of a first box, of the usual one, below which something hides a part: its edges may grow."""
+_INSIDE = 0.7
+"""Share of a detection inside the prediction from which on it can be one of several in it."""
+_BESIDE = 0.1
+"""Share of another detection up to which it overlaps with this one and is still beside it."""
+_NOTABLE = 0.15
+"""Share of the prediction that another detection takes up, from which on it is no fragment."""
+_CROWDED = 3
+"""Detections in a row that tell: one may have been torn apart by chance."""
+NO_OTHERS = np.empty((0, 4))
+"""Edges of other detections where there are none."""
 _OPPOSITE = (Edge.RIGHT, Edge.BOTTOM, Edge.LEFT, Edge.TOP)
 
 
@@ -109,7 +120,12 @@ def first_state(
 
 
 def measure(
-    track: Track, edges: Array, noise: float, covered: float, size: tuple[int, int]
+    track: Track,
+    edges: Array,
+    noise: float,
+    covered: float,
+    size: tuple[int, int],
+    others: Array = NO_OTHERS,
 ) -> bool:
     """Correct a track's state by a detection; True if the whole of the vehicle was measured.
 
@@ -125,8 +141,12 @@ def measure(
         Standard deviations inward from which on an edge is taken to be covered.
     size : (int, int)
         Width and height of the image.
+    others : (N, 4) array
+        Edges of the other detections, px.
     """
     state = track.state
+    if _is_one_of_several(track, edges, others):
+        state.resize(edges)
     predicted = state.edges
     spread = deviations(predicted, noise)
     uncertainty = np.sqrt(np.diag(state.edge_covariance) + spread**2)
@@ -151,6 +171,37 @@ def measure(
         state.measure(edge, float(edges[edge]), float(spread[edge]))
     track.partial = 0 if whole else track.partial + 1
     return whole
+
+
+def _is_one_of_several(track: Track, edges: Array, others: Array) -> bool:
+    """Test whether what was taken for one vehicle is several, of which this is the nearest.
+
+    Vehicles that enter the image side by side are one blob, and drive apart later. The detection of
+    one is then no part of a larger vehicle whose rest is hidden: the rest is there, behind it.
+
+    Parameters
+    ----------
+    track : Track
+        Track, predicted into this frame.
+    edges : (4,) array
+        Edges of its detection, px.
+    others : (N, 4) array
+        Edges of the other detections.
+    """
+    predicted = track.state.edges
+    own = areas(others)
+    beside = (
+        (intersections(predicted, others) > _NOTABLE * areas(predicted))
+        & (intersections(edges, others) < _BESIDE * own)
+        & (others[:, Edge.BOTTOM] < edges[Edge.BOTTOM])
+    )
+    known = intersections(predicted, edges[np.newaxis])[0] > _INSIDE * areas(edges)
+    track.crowded = track.crowded + 1 if known and beside.any() else 0
+    if track.crowded < _CROWDED:
+        return False
+    track.crowded = 0
+    track.sides = edges[2:] - edges[:2]
+    return True
 
 
 def is_cut(edges: Array, size: tuple[int, int]) -> bool:

@@ -23,33 +23,17 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame, check_frame
+from vehicle_pf_tracker.trackers.traffic.background import Background
 from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
 
 _WIDEST = 400
 """Width in px above which the image is halved: finer says nothing more about vehicles."""
-_RATE = 0.03
-"""Rate per image at which samples of the background are renewed: some 30 images, so that leaves and
-light do not stay foreground for long."""
-_WARM_UP = 15
-"""Frames in which the background is learnt and nothing is reported."""
-_THRESHOLD = 400.0
-"""Squared distance of colours, three channels together, from which on a pixel has changed."""
-_SHADOW = 0.35
-"""Least brightness of a shadow, of the background's."""
-_RESTORED_EVERY = 3
-"""Images between two in which the background is restored where vehicles are: a second pass."""
-_VEHICLE = 255
-"""Value that OpenCV marks what moves by; shadows have another."""
-_CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (7, 7))
+_CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
 """Holes and gaps up to this size are closed: windscreens show the sky."""
-_HELD = (TrackMode.TRACKING, TrackMode.TENTATIVE)
-"""Modes of tracks where the background is restored. New ones count: a vehicle that nobody knows yet
-would melt in before it is confirmed."""
-_SEEDS = 2**31
-"""Number of seeds that OpenCV takes."""
 _ALL_MOVES = 0.5
 """Share of the image that moves from which on it is the camera that does, or the light."""
 
@@ -61,6 +45,8 @@ class MotionDetector:
     ----------
     seed : int
         Seed of the choice of samples that the background is made of.
+    numbers : TrafficNumbers
+        Thresholds.
 
     Attributes
     ----------
@@ -72,12 +58,12 @@ class MotionDetector:
         the background is learnt from.
     """
 
-    def __init__(self, seed: int = 0) -> None:
-        self._seed = seed
+    def __init__(self, seed: int = 0, numbers: TrafficNumbers = SHIPPED) -> None:
+        self._seed, self._numbers = seed, numbers
         self.disturbed = False
         self.is_blind = False
-        self._blobs = BlobReader()
-        self._shape: tuple[int, ...] = ()
+        self._blobs = BlobReader(numbers)
+        self._shape: tuple[int, ...] = (0, 0)
         self._restart()
 
     def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
@@ -88,7 +74,7 @@ class MotionDetector:
         frame : Frame
             RGB image.
         tracks : sequence of TrackEstimate
-            Estimates of the frame before; the background is restored where they stand.
+            Estimates of the frame before; the background is not learnt where they stand.
 
         Returns
         -------
@@ -99,52 +85,38 @@ class MotionDetector:
         if small.shape != self._shape:
             self._shape = small.shape
             self._restart()
-        self._count += 1
         self.disturbed = False
-        self.is_blind = self._count <= _WARM_UP
+        self.is_blind = not self._background.is_known
         if self.is_blind:
-            self._apply(small, -1)
+            self._background.begin(small)
             return Detections.none()
-        mask = self._apply(small, _RATE)
-        followed = [one for one in tracks if one.mode in (TrackMode.TRACKING, TrackMode.OCCLUDED)]
-        if self._count % _RESTORED_EVERY == 0:
-            self._restore(small, [one for one in tracks if one.mode in _HELD], zoom)
-        moving = np.where(mask == _VEHICLE, mask, 0).astype(np.uint8)
-        if np.count_nonzero(moving) > _ALL_MOVES * moving.size:
+        changed = self._background.compare(small)
+        if np.count_nonzero(changed) > _ALL_MOVES * changed.size:
             self.disturbed = self.is_blind = True
             self._restart()
             return Detections.none()
-        moving = np.asarray(cv2.medianBlur(moving, 3), np.uint8)
+        moving = np.asarray(cv2.medianBlur(changed.astype(np.uint8), 3), np.uint8)
         moving = np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED), np.uint8)
+        tracked = [one for one in tracks if one.mode is TrackMode.TRACKING]
+        self._background.learn(small, moving > 0, _covered(tracked, zoom, small))
+        followed = [one for one in tracks if one.mode in (TrackMode.TRACKING, TrackMode.OCCLUDED)]
         edges, fullness = self._blobs.read(moving, _predicted(followed) * zoom)
         boxes = np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
         return Detections.make(boxes, fullness)
 
     def _restart(self) -> None:
-        self._model = cv2.createBackgroundSubtractorKNN(round(1 / _RATE), _THRESHOLD, True)
-        self._model.setShadowThreshold(_SHADOW)
-        self._count = 0
+        self._background = Background(self._shape, self._seed, self._numbers)
 
-    def _restore(
-        self, small: npt.NDArray[np.uint8], standing: Sequence[TrackEstimate], zoom: float
-    ) -> None:
-        """Learn the background again where vehicles are: one that stops must not melt in."""
-        image = small
-        if standing:
-            image, known = small.copy(), self._model.getBackgroundImage()
-            width, height = frame_size(small)
-            for track in standing:
-                left, top, right, bottom = (_edges(track) * zoom).tolist()
-                columns = slice(max(int(left), 0), max(min(int(right) + 1, width), 0))
-                rows = slice(max(int(top), 0), max(min(int(bottom) + 1, height), 0))
-                image[rows, columns] = known[rows, columns]
-        self._apply(image, _RATE)
 
-    def _apply(self, image: npt.NDArray[np.uint8], rate: float) -> npt.NDArray[np.uint8]:
-        # OpenCV draws from one generator per process; seeded here, the same images give the same
-        # masks whatever else the process does.
-        cv2.setRNGSeed((self._seed + self._count) % _SEEDS)
-        return np.asarray(self._model.apply(image, None, rate), np.uint8)
+def _covered(
+    tracks: Sequence[TrackEstimate], zoom: float, image: npt.NDArray[np.uint8]
+) -> npt.NDArray[np.bool_]:
+    """Mark the pixels of vehicles, of which one that stops must not melt in."""
+    covered = np.zeros(image.shape[:2], dtype=np.bool_)
+    for track in tracks:
+        left, top, right, bottom = np.maximum(_edges(track) * zoom, -1).astype(int).tolist()
+        covered[max(top, 0) : bottom + 1, max(left, 0) : right + 1] = True
+    return covered
 
 
 def _reduced(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:

@@ -31,6 +31,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
+from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
 from vehicle_pf_tracker.trackers.traffic.overlaps import areas
 from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import V, X
@@ -61,14 +62,10 @@ _DRIVES_PX = 0.7
 """Predicted way in a frame from which on standing points are told from those on the vehicle, px."""
 _STANDS = 0.4
 """Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
-_LARGEST_FALL = 0.15
-"""Fall of the colours' similarity below its usual value from which on it is not the vehicle."""
 _REPULSION = 10.0
 """Weight of an overlap with nearer vehicles beyond the predicted one, per area of the box."""
 _SLIP, _SLIP_PX = 0.02, 0.3
 """Standard deviation by which a box slips on its vehicle in a frame, of its size and in px."""
-_CAUTION = 1.5
-"""Factor on the deviations: errors of successive frames go the same way and add up."""
 _CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 10, 0.03)
 _WINDOW = (9, 9)
 _LEVELS = 2
@@ -83,9 +80,16 @@ class Hold:
 
 
 class PixelHold:
-    """Flow between two frames, of points in boxes."""
+    """Flow between two frames, of points in boxes.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    numbers : TrafficNumbers
+        Thresholds.
+    """
+
+    def __init__(self, numbers: TrafficNumbers = SHIPPED) -> None:
+        self._numbers = numbers
         self._before: Grey | None = None
         self._present: Grey | None = None
 
@@ -115,12 +119,19 @@ class PixelHold:
         moved = _follow(before, present, np.concatenate(starts), np.concatenate(guesses))
         parts = np.split(moved, np.cumsum([len(one) for one in starts])[:-1])
         return [
-            _hold(track, old, new, normals, colours)
+            _hold(track, old, new, normals, colours, self._numbers)
             for track, old, new in zip(tracks, starts, parts, strict=True)
         ]
 
 
-def _hold(track: Track, old: Array, new: Array, normals: Array, colours: ColourBins) -> Hold | None:
+def _hold(
+    track: Track,
+    old: Array,
+    new: Array,
+    normals: Array,
+    colours: ColourBins,
+    numbers: TrafficNumbers,
+) -> Hold | None:
     """Weight particles by the flow of one vehicle's points."""
     before, predicted = track.before, track.state.edges
     found = np.isfinite(new[:, 0])
@@ -148,11 +159,11 @@ def _hold(track: Track, old: Array, new: Array, normals: Array, colours: ColourB
     fall = track.usual_similarity - similarity(
         track.colours, colours.histogram(edges, track.covers)
     )
-    if fall > _LARGEST_FALL:
+    if fall > numbers.held_fall:
         return None
     spread = np.sqrt(weights @ (boxes - edges) ** 2)
     sides = np.tile(edges[2:] - edges[:2], 2)
-    return Hold(edges, _CAUTION * (np.hypot(spread, _SLIP * sides) + _SLIP_PX))
+    return Hold(edges, numbers.held_caution * (np.hypot(spread, _SLIP * sides) + _SLIP_PX))
 
 
 def _standing(old: Array, new: Array, before: Array, predicted: Array) -> npt.NDArray[np.bool_]:

@@ -59,6 +59,8 @@ class Track:
         Evidence by the scores of its detections alone.
     matches, partial : int
         Number of its detections, and of the latest in a row that showed only a part of it.
+    crowded : int
+        Number of its latest detections in a row that had another one beside them in its box.
     sides : (2,) array
         Largest width and height of its latest detections, px.
     confirmed, lost : bool
@@ -93,6 +95,7 @@ class Track:
     strength: float = 0.0
     matches: int = 0
     partial: int = 0
+    crowded: int = 0
     sides: Array = field(default_factory=lambda: np.zeros(2))
     confirmed: bool = False
     lost: bool = False

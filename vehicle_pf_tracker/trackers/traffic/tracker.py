@@ -33,6 +33,7 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon, calibrated_row
 from vehicle_pf_tracker.trackers.traffic.measuring import deviations, first_state, is_cut, measure
+from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
 from vehicle_pf_tracker.trackers.traffic.occlusion import cover, nearest_first
 from vehicle_pf_tracker.trackers.traffic.overlaps import areas, clipped, intersections
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
@@ -75,6 +76,8 @@ class TrafficTracker:
     road : RoadPlane, optional
         Calibrated road, which tells the horizon and which vehicle is nearer; None: both are taken
         from the boxes.
+    numbers : TrafficNumbers
+        Weights and thresholds.
 
     Attributes
     ----------
@@ -85,7 +88,10 @@ class TrafficTracker:
     """
 
     def __init__(
-        self, parameters: TrafficParameters | None = None, road: RoadPlane | None = None
+        self,
+        parameters: TrafficParameters | None = None,
+        road: RoadPlane | None = None,
+        numbers: TrafficNumbers = SHIPPED,
     ) -> None:
         self.parameters = parameters or TrafficParameters()
         self.road = road
@@ -94,9 +100,10 @@ class TrafficTracker:
         self._last_identity = 0
         self._frame: Frame | None = None
         self._tracks: list[Track] = []
-        self._pixels = PixelHold()
+        self._numbers = numbers
+        self._pixels = PixelHold(numbers)
         self._evidence = DetectionEvidence()
-        self._existence = Existence(self.parameters, self._evidence)
+        self._existence = Existence(self.parameters, self._evidence, numbers)
         self._horizon = Horizon()
 
     @property
@@ -214,20 +221,25 @@ class TrafficTracker:
         predicted = np.array([track.state.edges for track in tracks])
         variances = np.array([np.diag(track.state.edge_covariance) for track in tracks])
         spread = np.sqrt(variances + deviations(predicted, settings.edge_noise) ** 2)
-        costs = edge_costs(clipped(predicted, self._size), spread, seen.edges[indices])
+        costs = edge_costs(
+            clipped(predicted, self._size), spread, seen.edges[indices], self._numbers
+        )
         if settings.colour_cost:
             for row, column in np.argwhere(costs < GATE).tolist():
                 alike = similarity(tracks[row].colours, seen.histogram(indices[column]))
                 costs[row, column] += settings.colour_cost * (1 - alike)
-        for row, column in assign(costs):
+        pairs = assign(costs)
+        for _, column in pairs:
+            seen.free.remove(indices[column])
+        for row, column in pairs:
             self._correct(tracks[row], seen, indices[column])
 
     def _correct(self, track: Track, seen: Seen, index: int) -> None:
         """Correct a track by its detection."""
-        seen.free.remove(index)
         settings = self.parameters.detections
         edges = seen.edges[index]
-        whole = measure(track, edges, settings.edge_noise, settings.covered, self._size)
+        others = np.delete(seen.edges, index, axis=0)
+        whole = measure(track, edges, settings.edge_noise, settings.covered, self._size, others)
         track.score = float(seen.scores[index])
         track.label = seen.labels[index] or track.label
         if whole and track.visible > _LEARNING_SHARE:

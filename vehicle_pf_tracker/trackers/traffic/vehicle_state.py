@@ -168,6 +168,12 @@ class VehicleState:
         self.covariance[W, W] += (_SIZE_WALK * w) ** 2 * elapsed
         self.covariance[H, H] += (_SIZE_WALK * h) ** 2 * elapsed
 
+    def resize(self, edges: Array) -> None:
+        """Take a box (4,) for the vehicle's without doubt; it drives as before."""
+        left, top, right, bottom = edges.tolist()
+        v = max(bottom - self.horizon, _NEAREST_HORIZON)
+        self.mean[:ACROSS] = (left + right) / 2, v, right - left, bottom - top
+
     def measure(self, edge: Edge, value: float, deviation: float) -> None:
         """Take the measurement of an edge in px, of this standard deviation."""
         row = OBSERVATION[edge]
