@@ -18,7 +18,6 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
-from vehicle_pf_tracker.trackers.traffic.horizon import Growth, Horizon
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 
 GROUND = np.random.default_rng(0).integers(90, 120, (120, 160, 3))
@@ -85,29 +84,6 @@ def test_pieces_of_one_vehicle_are_joined():
 def test_a_thin_rim_is_cut_off():
     edges, _ = BlobReader().read(mask((20, 40, 60, 70), (60, 69, 90, 70)), np.empty((0, 4)))
     assert edges.tolist() == [[20, 40, 60, 70]]
-
-
-def test_the_horizon_is_where_widths_are_zero():
-    growth = Growth()
-    for bottom in range(60, 160):
-        width = 0.4 * (bottom - 24)
-        growth.add(np.array([100 - width / 2, bottom - 20, 100 + width / 2, bottom]))
-    assert growth.horizon(240) == pytest.approx(0.1)
-    horizon = Horizon()
-    assert horizon.row(-0.2) == -0.2
-    for _ in range(4):
-        horizon.learn(growth, 240)
-    assert horizon.row(-0.2) == pytest.approx(0.1)
-
-
-def test_a_short_way_tells_no_horizon_and_a_constant_width_none_in_sight():
-    near, flat = Growth(), Growth()
-    for bottom in range(60, 90):
-        near.add(np.array([80.0, 40, 100, bottom]))
-    for bottom in range(60, 160):
-        flat.add(np.array([80.0, 40, 100, bottom]))
-    assert near.horizon(240) is None
-    assert flat.horizon(240) == -2.0
 
 
 def test_a_lorry_of_one_colour_does_not_melt_into_the_background():

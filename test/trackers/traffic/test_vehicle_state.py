@@ -43,6 +43,22 @@ def test_a_nearer_vehicle_is_larger_by_the_rule_of_perspective(state):
     assert state.box.height == pytest.approx(30 / 0.9)
 
 
+def test_another_horizon_changes_neither_box_nor_velocity_of_the_lower_edge(state):
+    state.mean[4:] = (0.02, -0.0004)
+    rate = (state.mean[0] * 0.04 + 2.0, 4.0)  # of the lower edge's middle, px per period
+    spread = np.sqrt(state.covariance[ALONG, ALONG]) * 100**2
+    edges = state.edges
+    state.move_horizon(100.0)
+    assert state.edges == pytest.approx(edges)
+    x, v, _, _, across, along = state.mean
+    assert v == 50
+    assert (-along * v * x + across * v, -along * v**2) == pytest.approx(rate)
+    assert np.sqrt(state.covariance[ALONG, ALONG]) * 50**2 == pytest.approx(spread)
+    state.move_horizon(1000.0)  # it cannot drive in the sky
+    assert state.mean[V] > 0
+    assert state.edges == pytest.approx(edges)
+
+
 def test_the_jacobian_is_that_of_the_prediction():
     start = VehicleState(np.array([80.0, 120.0, 120.0, 150.0]), np.ones(4), 50.0, STILL)
     start.mean[4:] = (0.02, -0.0004)

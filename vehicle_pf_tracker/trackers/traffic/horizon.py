@@ -15,29 +15,44 @@
 """Row of the horizon, from how vehicles grow on their way through the image.
 
 On a plane a vehicle's width is proportional to the distance of its lower edge from the horizon, so
-that the line through its widths over its lower edges is zero there.
+that its relative growth per px is the inverse of that distance. Widths of different vehicles are
+not compared: where lorries drive in the nearest lane, they would bend the road.
 """
 
 from __future__ import annotations
 
-import bisect
 from collections import deque
+from collections.abc import Iterable
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.road.plane import RoadPlane
 
-_LEAST_WAY = 0.15
-"""Scatter of a vehicle's lower edges, from the highest to the lowest, of the image's height, from
-which on its growth tells the horizon."""
 _LEAST_BOXES = 20
-_REMEMBERED = 51
+"""Boxes, and scatter of their lower edges in px², below which a vehicle has not moved."""
+_LEAST_SCATTER = 1.0
+_REMEMBERED = 50
 """Vehicles that are remembered."""
-_PRIOR = 3
-"""Vehicles that the assumed horizon counts as."""
+_WIDTH_NOISE = 0.1
+"""Standard deviation of a box's relative width. Detectors err by half of it, and in the same way
+in successive frames."""
+_TURN, _LEAST_TURN = 0.25, 0.15
+"""Standard deviation of a vehicle's growth, relative and per image height: on its way it shows its
+side, or no longer."""
+_MOST_COST = 9.0
+"""Bound of the cost of one vehicle, three standard deviations squared: some are merged."""
+_ASSUMED_SPREAD = 0.8
+"""Standard deviation of the assumed growth per image height: from the side there is none, and from
+a bridge a vehicle in the middle doubles its size on a third of the height."""
 _HIGHEST, _LOWEST = -2.0, 0.7
 """Bounds of a row, of the image's height: above, perspective is none; below is no road."""
+_ROWS = np.concatenate([np.arange(_HIGHEST, -0.5, 0.1), np.arange(-0.5, _LOWEST, 0.02)])
+"""Rows that are tried; a high one makes little difference."""
+_NEAREST = 0.01
+"""Least distance of a lower edge from a horizon, of the image's height."""
+_MIDDLE = 0.6
+"""Row at which the assumed growth is taken, of the image's height: roads are in the lower part."""
 
 
 class Growth:
@@ -45,25 +60,29 @@ class Growth:
 
     def __init__(self) -> None:
         self._sums = np.zeros(5)
-        self._span = (np.inf, -np.inf)
 
     def add(self, edges: Array) -> None:
         """Add a detection (4,) that shows the whole vehicle."""
         width, bottom = float(edges[2] - edges[0]), float(edges[3])
         self._sums += (1.0, bottom, bottom**2, width, bottom * width)
-        self._span = (min(self._span[0], bottom), max(self._span[1], bottom))
 
-    def horizon(self, height: int) -> float | None:
-        """Row of the horizon, of the image's height; None where the vehicle does not tell."""
+    def told(self, height: int) -> tuple[float, float, float] | None:
+        """Summarise it in units of the image's height; None of too few boxes.
+
+        Returns
+        -------
+        middle, growth, scatter : float
+            Mean of its lower edges, relative growth per height, sum of the edges' squared
+            deviations.
+        """
         count, total, squares, widths, products = self._sums.tolist()
-        if count < _LEAST_BOXES or self._span[1] - self._span[0] < _LEAST_WAY * height:
+        if count < _LEAST_BOXES or widths <= 0:
             return None
         scatter = squares - total * total / count
-        slope = (products - total * widths / count) / max(scatter, 1e-9)
-        if slope <= 0:
-            return _HIGHEST
-        row = (total - widths / slope) / count / height
-        return float(min(max(row, _HIGHEST), _LOWEST))
+        if scatter <= _LEAST_SCATTER:
+            return None
+        slope = (products - total * widths / count) / scatter * count / widths
+        return total / count / height, slope * height, scatter / height**2
 
 
 def calibrated_row(road: RoadPlane, size: tuple[int, int]) -> float:
@@ -85,26 +104,38 @@ def calibrated_row(road: RoadPlane, size: tuple[int, int]) -> float:
 
 
 class Horizon:
-    """Median over vehicles of the rows that their growth tells."""
+    """Row that explains best how vehicles have grown, those that are followed included."""
 
     def __init__(self) -> None:
-        self._rows: deque[float] = deque(maxlen=_REMEMBERED)
+        self._ended: deque[tuple[float, float, float]] = deque(maxlen=_REMEMBERED)
 
     def learn(self, growth: Growth, height: int) -> None:
         """Add a vehicle whose way has ended."""
-        row = growth.horizon(height)
-        if row is not None:
-            self._rows.append(row)
+        told = growth.told(height)
+        if told is not None:
+            self._ended.append(told)
 
-    def row(self, assumed: float) -> float:
+    def row(self, assumed: float, followed: Iterable[Growth], height: int) -> float:
         """Row of the horizon, of the image's height.
 
         Parameters
         ----------
         assumed : float
             That is assumed before vehicles tell.
+        followed : iterable of Growth
+            Of the vehicles that are followed.
+        height : int
+            Of the image, px.
         """
-        rows = sorted(self._rows)
-        for _ in range(_PRIOR):
-            bisect.insort(rows, assumed)
-        return rows[len(rows) // 2]
+        told = [*self._ended, *(one for each in followed if (one := each.told(height)))]
+        if not told:
+            return assumed
+        rows = np.append(_ROWS, assumed)
+        middle, growth, scatter = (
+            np.array(column)[:, np.newaxis] for column in zip(*told, strict=True)
+        )
+        expected = 1 / np.maximum(middle - rows, _NEAREST)
+        variance = _WIDTH_NOISE**2 / scatter + (_TURN * growth) ** 2 + _LEAST_TURN**2
+        costs = np.minimum((growth - expected) ** 2 / variance, _MOST_COST).sum(axis=0)
+        prior = 1 / np.maximum(_MIDDLE - rows, _NEAREST) - 1 / max(_MIDDLE - assumed, _NEAREST)
+        return float(rows[int(np.argmin(costs + (prior / _ASSUMED_SPREAD) ** 2))])

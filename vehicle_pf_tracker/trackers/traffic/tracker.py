@@ -45,6 +45,10 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge
 
 DEFAULT_PERIOD = 1 / 30
 """Nominal frame period in s until it is known: that of common cameras."""
+_HORIZON_EVERY = 10
+"""Images between two estimates of the horizon: it costs half a millisecond, and does not move."""
+_HORIZON_MOVED = 0.02
+"""Change of the horizon, of the image's height, that is applied to vehicles which are followed."""
 _VEHICLE_WIDTH = 1.8
 """Width of a car in m, by which speeds and accelerations become widths."""
 _FOCAL = 1.2
@@ -105,6 +109,8 @@ class TrafficTracker:
         self._evidence = DetectionEvidence()
         self._existence = Existence(self.parameters, self._evidence, numbers)
         self._horizon = Horizon()
+        self._row = self.parameters.motion.horizon
+        self._looked = 0
 
     @property
     def seed(self) -> int:
@@ -192,7 +198,21 @@ class TrafficTracker:
         self._size = frame_size(frame)
         grey = np.asarray(cv2.cvtColor(frame, cv2.COLOR_RGB2GRAY), np.uint8)
         self._pixels.show(grey)
+        self._look_for_horizon()
         self._colours = ColourBins(frame)
+
+    def _look_for_horizon(self) -> None:
+        """Estimate the horizon, and move that of the vehicles which are followed."""
+        self._looked += 1
+        height = self._size[1]
+        if self.road is not None:
+            self._row = calibrated_row(self.road, self._size)
+        elif self._looked % _HORIZON_EVERY == 1:
+            growths = [track.growth for track in self._tracks if track.confirmed]
+            self._row = self._horizon.row(self.parameters.motion.horizon, growths, height)
+        for track in self._tracks:
+            if abs(track.state.horizon - self._row * height) > _HORIZON_MOVED * height:
+                track.state.move_horizon(self._row * height)
 
     def _take(self, detections: Detections, elapsed: float) -> None:
         """Give the detections to the tracks; what is left over may be new vehicles."""
@@ -299,10 +319,7 @@ class TrafficTracker:
             focal=_FOCAL * width,
         )
         noise = self.parameters.detections.edge_noise
-        row = self._horizon.row(motion.horizon)
-        if self.road is not None:
-            row = calibrated_row(self.road, self._size)
-        horizon = row * height
+        horizon = self._row * height
         # A horizon below the box would have it drive on the sky.
         horizon = min(horizon, float(edges[Edge.BOTTOM]) - 1)
         self._last_identity += 1

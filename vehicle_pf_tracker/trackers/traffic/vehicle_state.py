@@ -174,6 +174,19 @@ class VehicleState:
         v = max(bottom - self.horizon, _NEAREST_HORIZON)
         self.mean[:ACROSS] = (left + right) / 2, v, right - left, bottom - top
 
+    def move_horizon(self, horizon: float) -> None:
+        """Take another row (px) for the horizon; box and velocity of its lower edge stay."""
+        x, v = self.mean[: V + 1].tolist()
+        new = max(v + self.horizon - horizon, _NEAREST_HORIZON)
+        ratio, self.horizon = v / new, v + self.horizon - new
+        step = np.eye(6)
+        step[ALONG, ALONG] = ratio**2
+        step[ACROSS, ACROSS] = ratio
+        step[ACROSS, ALONG] = x * (ratio - 1) * ratio
+        self.mean = step @ self.mean
+        self.mean[V] = new
+        self.covariance = step @ self.covariance @ step.T
+
     def measure(self, edge: Edge, value: float, deviation: float) -> None:
         """Take the measurement of an edge in px, of this standard deviation."""
         row = OBSERVATION[edge]
