@@ -122,11 +122,11 @@ class Detector:
         self._messages = messages
         self._topic = node.publisher(messages.Detection2DArray, "detections")
         rows = np.random.default_rng(3).uniform(0, 150, (FLOOD, 4))
-        self._flood = self._message(Header(), rows)
+        self._flood = self.message(Header(), rows)
 
     def publish(self, header: Header, boxes: np.ndarray) -> None:
         """Publish boxes (left, top, width, height) of an image."""
-        self._topic.publish(self._message(header, boxes))
+        self._topic.publish(self.message(header, boxes))
 
     def flood(self, header: Header, _: np.ndarray) -> None:
         """Publish far too many boxes."""
@@ -153,14 +153,15 @@ class Detector:
             self.publish(other, boxes[:1])
         self.publish(header, boxes)
 
-    def _message(self, header: Header, boxes: np.ndarray) -> Any:
+    def message(self, header: Header, boxes: np.ndarray, score: float = 0.8) -> Any:
+        """Make detections (left, top, width, height)."""
         made = self._messages.Detection2DArray(header=header)
         for x, y, width, height in boxes.tolist():
             one = self._messages.Detection2D()
             one.bbox.center.position.x, one.bbox.center.position.y = x + width / 2, y + height / 2
             one.bbox.size_x, one.bbox.size_y = width, height
             result = self._messages.ObjectHypothesisWithPose()
-            result.hypothesis.class_id, result.hypothesis.score = "car", 0.8
+            result.hypothesis.class_id, result.hypothesis.score = "car", score
             one.results = [result]
             made.detections.append(one)
         return made

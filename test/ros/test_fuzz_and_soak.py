@@ -30,9 +30,9 @@ pytestmark = pytest.mark.ros
 ROBUSTNESS = Path(__file__).resolve().parents[1] / "robustness"
 
 
-def run(start_process, script: str, *words: str) -> str:
+def run(start_process, script: str, *words: str, timeout: float = 120.0) -> str:
     process = start_process(str(ROBUSTNESS / script), *words)
-    status = process.wait(120)
+    status = process.wait(timeout)
     assert status == 0, process.output
     return process.output
 
@@ -79,3 +79,13 @@ def test_a_few_vehicles_come_and_go_before_the_node(start_process, detector):
     assert "images without an answer: 0" in told
     assert "; twice: 0" in told
     assert "MB at most" in told
+
+
+@pytest.mark.slow
+def test_each_fault_of_a_detector_in_turn(start_process):
+    if find_spec("vision_msgs") is None and (reason := missing()):
+        pytest.skip(f"vision_msgs is not installed, and cannot be built: {reason}")
+    told = run(start_process, "traffic_faults.py", "--seconds", "1", timeout=300)
+    rows = [line for line in told.splitlines() if line.startswith("| ")][1:]
+    assert len(rows) == 12
+    assert "the camera moves, or the light was switched" in rows[-1]
