@@ -64,8 +64,10 @@ baselines: .venv-baselines/locked
 peers:
 	@echo "make: the target peers is now called baselines" >&2; exit 2
 
-# Writes results/bench/bench.json and docs/performance.md; wants a machine with nothing else to do.
+# Writes results/bench/bench.json and docs/performance.md, and with SEQUENCES=FOLDER the cost of fusion on
+# them, results/fusion_cost; wants a machine with nothing else to do.
 bench: .venv/installed .venv-baselines/locked
+	$(if $(SEQUENCES),$(BIN)/python -m benchmarks.fusion_cost $(SEQUENCES) --resampled $(RESAMPLED) -o results/fusion_cost)
 	$(BIN)/python -m benchmarks.bench $(BENCH_ARGS)
 	$(BIN)/python -m benchmarks.bench.performance_page results/bench/bench.json docs
 

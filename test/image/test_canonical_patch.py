@@ -66,10 +66,24 @@ def test_whole_pixels_are_copied():
 
 
 def test_reduction_averages_instead_of_skipping_pixels():
-    stripes = np.zeros((240, 240, 3), np.uint8)
-    stripes[:, ::4] = 200
-    patch = cut_patch(stripes, np.array([120.0, 120.0]), np.array([0.25, 0.25]), 32)
-    assert patch.grey == pytest.approx(np.full((32, 32), 50), abs=1)
+    """All of small blocks, some of large ones."""
+    for zoom, width in ((0.35, 3), (0.25, 4)):
+        stripes = np.zeros((240, 240, 3), np.uint8)
+        stripes[:, ::width] = 60 * width
+        patch = cut_patch(stripes, np.array([120.0, 120.0]), np.array([zoom, zoom]), 32)
+        assert patch.grey == pytest.approx(np.full((32, 32), 60), abs=1)
+
+
+@pytest.mark.parametrize("zoom", [0.24, 0.16, 0.1])
+def test_large_blocks_are_where_they_are(zoom):
+    """A ramp of 900 px, of which not all rows are read."""
+    x, y = np.meshgrid(np.arange(900), np.arange(900))
+    for along in (x, y):
+        grey = (along * 0.25).astype(np.uint8)[..., np.newaxis].repeat(3, axis=2)
+        patch = cut_patch(grey, np.array([451.3, 448.6]), np.array([zoom, zoom]), 64)
+        place = patch.to_frame(np.array([32.0, 32.0]))[0 if along is x else 1]
+        middle = patch.grey[31:33, 31:33].mean()
+        assert middle == pytest.approx(0.25 * (place - 0.5) - 0.375, abs=0.5)
 
 
 def test_to_frame_inverts_to_patch():

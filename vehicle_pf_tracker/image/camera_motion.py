@@ -46,8 +46,8 @@ _WEAR_IN_PLACE = 1 / 3
 """Share of a frame that the corners of a mounted camera age by in a frame."""
 _UNCHANGED = 4.0
 """Mean change around a corner in grey levels below which it has not moved: noise, no edge."""
-_NEIGHBOURHOOD = (5, 5)
-"""Window in px over which changes around a corner are averaged: the noise of its pixels cancels."""
+_NEIGHBOURHOOD = 5
+"""Side in px of the window over which changes around a corner are averaged, as noise cancels."""
 _CLEARANCE = 0.75
 """Distance of corners from the target's centre, of its size: half of it, and a margin."""
 _CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 10, 0.03)
@@ -173,10 +173,13 @@ def _stand(
     last: npt.NDArray[np.uint8], present: npt.NDArray[np.uint8], corners: npt.NDArray[np.float32]
 ) -> bool:
     """Test whether so many corners are unchanged that flow need not be measured: the usual case."""
-    change = cv2.boxFilter(cv2.absdiff(last, present), cv2.CV_32F, _NEIGHBOURHOOD)
-    pixels = np.rint(corners[:, 0]).astype(np.intp)
-    pixels = np.clip(pixels, 0, (present.shape[1] - 1, present.shape[0] - 1))
-    unchanged = change[pixels[:, 1], pixels[:, 0]] < _UNCHANGED
+    height, width = present.shape
+    offsets = np.arange(_NEIGHBOURHOOD) - _NEIGHBOURHOOD // 2
+    pixels = np.rint(corners + offsets[:, np.newaxis]).astype(np.intp)
+    columns = np.minimum(np.maximum(pixels[..., 0], 0), width - 1)[:, np.newaxis]
+    rows = np.minimum(np.maximum(pixels[..., 1], 0), height - 1)[:, :, np.newaxis]
+    change = cv2.absdiff(last[rows, columns], present[rows, columns])
+    unchanged = change.reshape(len(corners), -1).mean(axis=1) < _UNCHANGED
     return bool(unchanged.mean() >= STILL_SHARE)
 
 

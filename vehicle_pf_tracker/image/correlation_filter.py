@@ -147,18 +147,21 @@ class CorrelationFilter:
         return self._response(spectrum, self.weights.spectrum)
 
     @property
-    def extent(self) -> int:
-        """Cells along the longer side of the target; even."""
-        assert self.weights is not None, "train the filter first"
-        return max(int(side) for side in self.weights.target.shape[1:])
+    def extent(self) -> tuple[int, int]:
+        """Columns and rows of the target's cells; even."""
+        columns, rows = self._columns, self._rows
+        return columns.stop - columns.start, rows.stop - rows.start
 
     def respond_in_middle(self, features: CellFeatures) -> float:
-        """Respond to the cells (channels, m, m) of a smaller patch at its centre only; m even."""
+        """Respond to the cells (channels, r, c) of a smaller piece at its centre only.
+
+        Columns and rows are even, and at least those of the target.
+        """
         assert self.weights is not None, "train the filter first"
-        margin = (self._cells - features.shape[1]) // 2
-        rows = slice(self._rows.start - margin, self._rows.stop - margin)
-        columns = slice(self._columns.start - margin, self._columns.stop - margin)
-        return float(np.vdot(features.transpose(1, 0, 2)[rows, :, columns], self.weights.faded))
+        count, (columns, rows) = features.shape[1:], self.extent
+        top, left = (count[0] - rows) // 2, (count[1] - columns) // 2
+        seen = features.transpose(1, 0, 2)[top : top + rows, :, left : left + columns]
+        return float(np.vdot(seen, self.weights.faded))
 
     def respond_wide(self, features: CellFeatures) -> Response:
         """Respond to the cells (channels, m, m) of a larger patch, m even and above n."""

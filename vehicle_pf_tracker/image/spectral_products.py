@@ -19,16 +19,13 @@ The kernels in numba do the same in one pass over memory; see `image.kernels`.
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.image.partial_fourier import Spectrum, complex_spectrum, real_spectrum
-
-_Phases: TypeAlias = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,18 +117,7 @@ def correlated(spectrum: Spectrum, weights: Spectrum) -> Spectrum:
 
 def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
     """Spectrum of the same cells moved by (x, y) cells, circularly."""
-    down, right = phases(len(spectrum), x, y)
-    phase = (down[:, np.newaxis, np.newaxis] * right).astype(np.complex64)
-    return real_spectrum(complex_spectrum(spectrum) * phase)
-
-
-def phases(cells: int, x: float, y: float) -> tuple[_Phases, _Phases]:
-    """Factors of the frequencies along y (n) and x (n // 2 + 1) for a shift by (x, y) cells."""
-    down, right = _turns(cells)
-    return np.exp(down * y), np.exp(right * x)
-
-
-@functools.cache
-def _turns(cells: int) -> tuple[_Phases, _Phases]:
-    down, right = (np.asarray(f(cells), np.complex128) for f in (np.fft.fftfreq, np.fft.rfftfreq))
-    return -2j * np.pi * down, -2j * np.pi * right
+    cells = len(spectrum)
+    down = np.exp(-2j * np.pi * y * np.fft.fftfreq(cells))[:, np.newaxis, np.newaxis]
+    right = np.exp(-2j * np.pi * x * np.fft.rfftfreq(cells))
+    return real_spectrum(complex_spectrum(spectrum) * (down * right).astype(np.complex64))

@@ -67,7 +67,7 @@ def _share_row(
         sums[i] = 0
 
 
-@compiled(_CELLS(_IMAGE, _BYTES))
+@inlined
 def _direction_histograms(
     grey: Grey, direction_of: npt.NDArray[np.uint8]
 ) -> npt.NDArray[np.float32]:
@@ -104,7 +104,7 @@ def _direction_histograms(
     return cells
 
 
-@compiled(_CELLS(_CELLS))
+@inlined
 def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     """Inverse norms of the four neighbourhoods of the inner cells, (4, r, c)."""
     rows, columns = cells.shape[1] - 2, cells.shape[2] - 2
@@ -128,7 +128,7 @@ def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     return scales
 
 
-@compiled(numba.void(_CELLS, _CELLS, _CELLS))
+@inlined
 def _normalise(
     cells: npt.NDArray[np.float32], scales: npt.NDArray[np.float32], features: CellFeatures
 ) -> None:
@@ -159,11 +159,16 @@ def _normalise(
                 features[y, DIRECTIONS + _HALF + k, x] = np.float32(TEXTURE_GAIN) * texture[k, x]
 
 
+@compiled(_CELLS(_IMAGE, _BYTES, numba.intp))
+def _features(grey: Grey, direction_of: npt.NDArray[np.uint8], channels: int) -> CellFeatures:
+    # In this order of memory rows are transformed without a copy.
+    features = np.empty((grey.shape[0] // CELL, channels, grey.shape[1] // CELL), np.float32)
+    cells = _direction_histograms(grey, direction_of)
+    _normalise(cells, _scales(cells), features)
+    return features
+
+
 def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
     """See `gradient_cells.gradient_cells`; `grey` is contiguous."""
-    rows, columns = grey.shape[0] // CELL, grey.shape[1] // CELL
-    # In this order of memory rows are transformed without a copy.
-    features = np.empty((rows, GRADIENT_CHANNELS + spare, columns), np.float32)
-    cells = _direction_histograms(grey, _DIRECTION_OF)
-    _normalise(cells, _scales(cells), features)
+    features = _features(grey, _DIRECTION_OF, GRADIENT_CHANNELS + spare)
     return np.asarray(features.transpose(1, 0, 2))

@@ -26,11 +26,11 @@ from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from numba import float32, types, void
+from numba import float32, float64, types, void
 
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 from vehicle_pf_tracker.image.partial_fourier import Spectrum
-from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty, phases
+from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty
 
 _Rows: TypeAlias = npt.NDArray[np.float32]
 _Pair: TypeAlias = tuple[Spectrum, Spectrum]
@@ -38,7 +38,6 @@ _Pair: TypeAlias = tuple[Spectrum, Spectrum]
 _SPECTRUM = types.Array(float32, 4, "C")
 _PAIR = types.UniTuple(_SPECTRUM, 2)
 _LABEL = types.Array(float32, 2, "C")
-_PHASES = _LABEL
 
 
 @inlined
@@ -185,36 +184,30 @@ def _rotate(spectrum: Spectrum, row: int, real: _Rows, imaginary: _Rows, moved: 
             moved[row, c, 1, x] = a * imaginary[x] + b * real[x]
 
 
-@compiled(_SPECTRUM(_SPECTRUM, _PHASES, _PHASES))
-def _shifted(spectrum: Spectrum, down: _Rows, right: _Rows) -> Spectrum:
+@compiled(_SPECTRUM(_SPECTRUM, float64, float64))
+def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
+    """See `spectral_products.shifted`."""
     cells, channels, _, width = spectrum.shape
     half = cells // 2
     moved = np.empty_like(spectrum)
+    angles = -2 * np.pi / cells * np.arange(width)
+    real, imaginary = np.cos(angles * x), np.sin(angles * x)
+    real, imaginary = real.astype(np.float32), imaginary.astype(np.float32)
     for row in range(cells):
-        _rotate(spectrum, row, right[0], right[1], moved)
+        _rotate(spectrum, row, real, imaginary, moved)
     # Of the rows without a sine, frequency 0 stays.
-    turned = np.full((2, width), np.float32(0))
-    turned[0], turned[1] = down[0, half], down[1, half]
-    _rotate(moved, half, turned[0], turned[1], moved)
+    turn = np.pi * y
+    real[:], imaginary[:] = np.float32(np.cos(turn)), np.float32(np.sin(turn))
+    _rotate(moved, half, real, imaginary, moved)
     for k in range(1, half):
-        cosine, sine = down[0, k], down[1, k]
+        cosine, sine = np.float32(np.cos(angles[k] * y)), np.float32(np.sin(angles[k] * y))
         for c in range(channels):
             for plane in range(2):
-                for x in range(width):
-                    even, odd = moved[k, c, plane, x], moved[k + half, c, plane, x]
-                    moved[k, c, plane, x] = even * cosine + odd * sine
-                    moved[k + half, c, plane, x] = odd * cosine - even * sine
+                for x_ in range(width):
+                    even, odd = moved[k, c, plane, x_], moved[k + half, c, plane, x_]
+                    moved[k, c, plane, x_] = even * cosine + odd * sine
+                    moved[k + half, c, plane, x_] = odd * cosine - even * sine
     return moved
-
-
-def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
-    """See `spectral_products.shifted`."""
-    down, right = phases(len(spectrum), x, y)
-    return _shifted(spectrum, _planes(down), _planes(right))
-
-
-def _planes(values: npt.NDArray[np.complex128]) -> _Rows:
-    return np.stack([values.real, values.imag]).astype(np.float32)
 
 
 def take_filter_step(

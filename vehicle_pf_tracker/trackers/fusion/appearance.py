@@ -26,13 +26,13 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.canonical_patch import Patch, cut_patch
+from vehicle_pf_tracker.image.canonical_patch import Patch, cut_image, cut_patch
 from vehicle_pf_tracker.image.correlation_filter import (
     UPSAMPLING,
     CorrelationFilter,
     Response,
 )
-from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures
+from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures, Grey
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.partial_fourier import Spectrum
 
@@ -181,7 +181,7 @@ class Appearance:
 
     def view(self, patch: Patch) -> View:
         """Respond to a patch."""
-        features = self._features(patch)
+        features = self._features(patch.image, patch.grey)
         if patch.side > self._side:
             spectrum, response = None, self._filter.respond_wide(features)
         else:
@@ -194,13 +194,15 @@ class Appearance:
 
     def response_at(self, frame: Frame, position: Array, size: Array) -> float:
         """Response to a box of this centre and size (px), relative to the usual one."""
-        side = (self._filter.extent + 2 * _RIM) * CELL
-        patch = cut_patch(frame, position, self._target / size, side)
-        return self._filter.respond_in_middle(self._features(patch)) / self.usual_response
+        columns, rows = self._filter.extent
+        piece = (columns + 2 * _RIM) * CELL, (rows + 2 * _RIM) * CELL
+        image = cut_image(frame, position, self._target / size, piece)
+        grey = np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), np.uint8)
+        return self._filter.respond_in_middle(self._features(image, grey)) / self.usual_response
 
     def learn_first(self, patch: Patch) -> None:
         """Train the filter on the first patch, in whose middle the target is."""
-        spectrum = self._filter.spectrum(self._features(patch))
+        spectrum = self._filter.spectrum(self._features(patch.image, patch.grey))
         self._filter.train(spectrum, 0.0)
         self._least_usual = _USUAL_SHARE * float(self._filter.respond(spectrum).max())
 
@@ -211,20 +213,20 @@ class Appearance:
             x, y = (-offset / CELL).tolist()
             spectrum = self._filter.shifted(view.spectrum, x, y)
         else:
-            again = self._features(self.patch(frame, position, size))
-            spectrum = self._filter.spectrum(again)
+            again = self.patch(frame, position, size)
+            spectrum = self._filter.spectrum(self._features(again.image, again.grey))
         self._filter.train(spectrum, stiff)
 
     def learn_usual(self, response: float, rate: float) -> None:
         """Let the usual response follow one of a visible frame, given relative to it."""
         self.usual_response *= 1 + rate * (response - 1)
 
-    def _features(self, patch: Patch) -> CellFeatures:
-        features = self.kernels.gradient_cells(patch.grey, _COLOURS if self._colour else 0)
+    def _features(self, image: Frame, grey: Grey) -> CellFeatures:
+        features = self.kernels.gradient_cells(grey, _COLOURS if self._colour else 0)
         if not self._colour:
             return features
-        cells = features.shape[1]
-        small = cv2.resize(patch.image, (cells, cells), interpolation=cv2.INTER_AREA)
+        cells = features.shape[2], features.shape[1]
+        small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
         lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
         # Lightness is 0 to 100, a and b about as much to either side: all within about one.
         features[GRADIENT_CHANNELS:] = (lab * _COLOUR_GAINS - _COLOUR_MIDDLE).transpose(2, 0, 1)

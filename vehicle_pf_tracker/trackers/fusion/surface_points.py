@@ -21,6 +21,7 @@ or go away with a moving one, leave their place in the box and count as ended to
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import cv2
@@ -52,8 +53,9 @@ _LEAST_USUAL = 0.3
 _USUAL_RATE = 0.05
 """Rate per frame at which the usual survival follows the present one in clear frames."""
 _CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 8, 0.05)
-_FLOW = {"winSize": (9, 9), "maxLevel": 1, "criteria": _CRITERIA,
+_FLOW = {"winSize": (9, 9), "maxLevel": 0, "criteria": _CRITERIA,
          "flags": cv2.OPTFLOW_USE_INITIAL_FLOW}  # fmt: skip
+"""No pyramid: the response's peak has told the motion to within a few canonical px."""
 _FIRST_GRID = 10
 _FIRST_FLOW = {"winSize": (13, 13), "maxLevel": 3}
 """The first step knows no velocity, hence larger windows and more pyramid levels."""
@@ -197,6 +199,7 @@ class SurfacePoints:
             place = part.stop
 
 
+@functools.cache
 def _grid(count: int, reach: float) -> Array:
     """Square grid of places in the box, `reach` to each side of its centre."""
     ends = np.linspace(-reach, reach, count)
