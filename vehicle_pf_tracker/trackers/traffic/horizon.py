@@ -49,6 +49,8 @@ _HIGHEST, _LOWEST = -2.0, 0.7
 """Bounds of a row, of the image's height: above, perspective is none; below is no road."""
 _ROWS = np.concatenate([np.arange(_HIGHEST, -0.5, 0.1), np.arange(-0.5, _LOWEST, 0.02)])
 """Rows that are tried; a high one makes little difference."""
+_EVERY = 10
+"""Images between two estimates: one takes half a millisecond, and a horizon stays where it is."""
 _NEAREST = 0.01
 """Least distance of a lower edge from a horizon, of the image's height."""
 _MIDDLE = 0.6
@@ -108,12 +110,41 @@ class Horizon:
 
     def __init__(self) -> None:
         self._ended: deque[tuple[float, float, float]] = deque(maxlen=_REMEMBERED)
+        self._looks = 0
+        self._latest = 0.0
 
     def learn(self, growth: Growth, height: int) -> None:
         """Add a vehicle whose way has ended."""
         told = growth.told(height)
         if told is not None:
             self._ended.append(told)
+
+    def look(
+        self,
+        assumed: float,
+        followed: Iterable[Growth],
+        size: tuple[int, int],
+        road: RoadPlane | None,
+    ) -> float:
+        """Row of the horizon in this image, px; that of the road, where it is calibrated.
+
+        Parameters
+        ----------
+        assumed : float
+            That is assumed before vehicles tell, of the image's height.
+        followed : iterable of Growth
+            Of the vehicles that are followed.
+        size : (int, int)
+            Width and height of the image.
+        road : RoadPlane or None
+            Calibrated road.
+        """
+        if road is not None:
+            return calibrated_row(road, size) * size[1]
+        if self._looks % _EVERY == 0:
+            self._latest = self.row(assumed, followed, size[1])
+        self._looks += 1
+        return self._latest * size[1]
 
     def row(self, assumed: float, followed: Iterable[Growth], height: int) -> float:
         """Row of the horizon, of the image's height.

@@ -54,6 +54,16 @@ def former(track: Track, others: Sequence[Track]) -> Track | None:
     return min(costs)[2] if costs else None
 
 
+def resume(hidden: Track, track: Track) -> None:
+    """Go on with a hidden vehicle where the new track that it turned out to be is."""
+    hidden.state, hidden.before = track.state, track.before
+    hidden.score, hidden.label = track.score, track.label or hidden.label
+    hidden.unseen = hidden.undetected = 0.0
+    hidden.log_odds = max(hidden.log_odds, track.log_odds)
+    hidden.visible, hidden.covers, hidden.hidden_by = track.visible, track.covers, None
+    hidden.sides, hidden.partial = track.sides, track.partial
+
+
 def _cost(track: Track, other: Track) -> float | None:
     """Distance in reaches; None where it cannot be the same vehicle."""
     if other is track or not other.confirmed or other.undetected < _MISSED_FOR:

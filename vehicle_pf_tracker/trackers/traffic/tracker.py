@@ -31,24 +31,20 @@ from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvid
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
-from vehicle_pf_tracker.trackers.traffic.horizon import Horizon, calibrated_row
+from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
 from vehicle_pf_tracker.trackers.traffic.measuring import deviations, first_state, is_cut, measure
 from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
 from vehicle_pf_tracker.trackers.traffic.occlusion import cover, nearest_first
 from vehicle_pf_tracker.trackers.traffic.overlaps import areas, clipped, intersections
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
-from vehicle_pf_tracker.trackers.traffic.returning import former
+from vehicle_pf_tracker.trackers.traffic.returning import former, resume
 from vehicle_pf_tracker.trackers.traffic.seen import Seen
 from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge
 
 DEFAULT_PERIOD = 1 / 30
 """Nominal frame period in s until it is known: that of common cameras."""
-_HORIZON_EVERY = 10
-"""Images between two estimates of the horizon: it costs half a millisecond, and does not move."""
-_HORIZON_MOVED = 0.02
-"""Change of the horizon, of the image's height, that is applied to vehicles which are followed."""
 _VEHICLE_WIDTH = 1.8
 """Width of a car in m, by which speeds and accelerations become widths."""
 _FOCAL = 1.2
@@ -109,8 +105,6 @@ class TrafficTracker:
         self._evidence = DetectionEvidence()
         self._existence = Existence(self.parameters, self._evidence, numbers)
         self._horizon = Horizon()
-        self._row = self.parameters.motion.horizon
-        self._looked = 0
 
     @property
     def seed(self) -> int:
@@ -203,16 +197,12 @@ class TrafficTracker:
 
     def _look_for_horizon(self) -> None:
         """Estimate the horizon, and move that of the vehicles which are followed."""
-        self._looked += 1
-        height = self._size[1]
-        if self.road is not None:
-            self._row = calibrated_row(self.road, self._size)
-        elif self._looked % _HORIZON_EVERY == 1:
-            growths = [track.growth for track in self._tracks if track.confirmed]
-            self._row = self._horizon.row(self.parameters.motion.horizon, growths, height)
+        growths = (track.growth for track in self._tracks if track.confirmed)
+        self._row = self._horizon.look(
+            self.parameters.motion.horizon, growths, self._size, self.road
+        )
         for track in self._tracks:
-            if abs(track.state.horizon - self._row * height) > _HORIZON_MOVED * height:
-                track.state.move_horizon(self._row * height)
+            track.state.move_horizon(self._row)
 
     def _take(self, detections: Detections, elapsed: float) -> None:
         """Give the detections to the tracks; what is left over may be new vehicles."""
@@ -269,20 +259,10 @@ class TrafficTracker:
         known = track.confirmed
         self._existence.detected(track, edges, seen.samples[index], float(seen.log_odds[index]))
         if track.confirmed and not known and self.parameters.returning:
-            self._recognise(track)
-
-    def _recognise(self, track: Track) -> None:
-        """Go on under its number with a hidden vehicle that a new one turns out to be."""
-        hidden = former(track, self._tracks)
-        if hidden is None:
-            return
-        hidden.state, hidden.before = track.state, track.before
-        hidden.score, hidden.label = track.score, track.label or hidden.label
-        hidden.unseen = hidden.undetected = 0.0
-        hidden.log_odds = max(hidden.log_odds, track.log_odds)
-        hidden.visible, hidden.covers, hidden.hidden_by = track.visible, track.covers, None
-        hidden.sides, hidden.partial = track.sides, track.partial
-        self._tracks.remove(track)
+            hidden = former(track, self._tracks)
+            if hidden is not None:
+                resume(hidden, track)
+                self._tracks.remove(track)
 
     def _drop_parts(self, seen: Seen) -> None:
         """Drop detections inside vehicles that have one: their bonnets, or second boxes."""
@@ -311,7 +291,7 @@ class TrafficTracker:
 
     def _begin(self, edges: Array, label: str) -> Track:
         """Begin a track in a box, with the next identity."""
-        width, height = self._size
+        width, _ = self._size
         period, motion = self.frame_period, self.parameters.motion
         drive = Drive(
             acceleration=motion.acceleration * period**2 / _VEHICLE_WIDTH,
@@ -319,9 +299,8 @@ class TrafficTracker:
             focal=_FOCAL * width,
         )
         noise = self.parameters.detections.edge_noise
-        horizon = self._row * height
         # A horizon below the box would have it drive on the sky.
-        horizon = min(horizon, float(edges[Edge.BOTTOM]) - 1)
+        horizon = min(self._row, float(edges[Edge.BOTTOM]) - 1)
         self._last_identity += 1
         state = first_state(edges, noise, horizon, drive, self._size)
         track = Track(self._last_identity, state, label=label)

@@ -40,6 +40,9 @@ _NEAREST_HORIZON = 3.0
 _FASTEST_APPROACH = 1.3
 """Largest growth of a box in a nominal frame period. Beyond it the distance is down to the
 camera's own height, where the plane no longer describes what is seen."""
+_HORIZON_MOVED = 0.05
+"""Change of the horizon that is applied, of the lower edge's distance from it: speeds are known no
+better when a vehicle is new."""
 _SIZE_WALK = 0.004
 """Change of a vehicle's shape as the camera sees it, of its size per nominal period: a vehicle that
 drives past is seen from behind and then from the side within some 5 s."""
@@ -176,6 +179,8 @@ class VehicleState:
 
     def move_horizon(self, horizon: float) -> None:
         """Take another row (px) for the horizon; box and velocity of its lower edge stay."""
+        if abs(horizon - self.horizon) < _HORIZON_MOVED * self.mean[V]:
+            return
         x, v = self.mean[: V + 1].tolist()
         new = max(v + self.horizon - horizon, _NEAREST_HORIZON)
         ratio, self.horizon = v / new, v + self.horizon - new
