@@ -30,6 +30,10 @@ from vehicle_pf_tracker.trackers.traffic.track import Track
 
 _MISSED_FOR = 5.0
 """Nominal periods without a detection from which on a vehicle may be hidden."""
+_IN_SIGHT = 0.5
+"""Share of its prediction that is in sight, below which it is where it is thought to be, behind
+another one: what appears near by is not it. Without this a car that comes out behind a lorry is
+taken for the one that the lorry hides."""
 _REACH = 1.0
 """Distance from the prediction, in widths, within which a vehicle can reappear at once; ..."""
 _REACH_GROWTH = 1 / 30
@@ -67,6 +71,8 @@ def resume(hidden: Track, track: Track) -> None:
 def _cost(track: Track, other: Track) -> float | None:
     """Distance in reaches; None where it cannot be the same vehicle."""
     if other is track or not other.confirmed or other.undetected < _MISSED_FOR:
+        return None
+    if other.visible < _IN_SIGHT:
         return None
     new, old = track.state.box, other.state.box
     ratio = new.area / old.area

@@ -1,0 +1,55 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Re-identification of vehicles that reappear away from their prediction."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.trackers.traffic.colours import BINS
+from vehicle_pf_tracker.trackers.traffic.returning import former, resume
+from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
+
+RED, BLUE = np.eye(BINS)[:2]
+
+
+def track(number, left, colours=RED, **facts):
+    edges = np.array([left, 100.0, left + 40.0, 130.0])
+    state = VehicleState(edges, np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0))
+    return Track(number, state, colours=colours, confirmed=True, **facts)
+
+
+def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
+    hidden, new = track(1, 100.0, undetected=20.0), track(2, 130.0)
+    assert former(new, [hidden, new]) is hidden
+    resume(hidden, new)
+    assert hidden.identity == 1
+    assert hidden.state.edges[0] == pytest.approx(130)
+    assert hidden.undetected == 0
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        track(1, 100.0, undetected=2.0),
+        track(1, 300.0, undetected=20.0),
+        track(1, 100.0, BLUE, undetected=20.0),
+        track(1, 100.0, undetected=20.0, visible=0.2),
+    ],
+    ids=["just seen", "far away", "of another colour", "still behind another"],
+)
+def test_others_are_not_taken_for_it(other):
+    new = track(2, 130.0)
+    assert former(new, [other, new]) is None
