@@ -95,30 +95,14 @@ def test_a_return_out_of_the_prediction_s_reach_loses_to_any_clear_answer():
     assert looks(frozen({(0, 0): 0.8}), (300, 0))[1] is not None
 
 
-def test_a_return_is_undone_for_ten_frames_and_compared_for_thirty():
+def test_a_return_is_compared_for_thirty_frames():
     track = frozen({})
-    track.pass_time(9.0, STILL)
-    assert track.can_undo
+    track.pass_time(29.0, STILL)
+    assert not track.is_over
     track.pass_time(2.0, STILL)
-    assert not track.can_undo
-    assert not track.is_over
-    track.pass_time(20.0, STILL)
     assert track.is_over
-    track.undo_return()
-    track.pass_time(50.0, STILL)
-    assert not track.can_undo
-    assert not track.is_over
-
-
-def test_a_return_that_was_seen_clearly_is_not_undone():
-    track = frozen({})
-    for response in (0.9, 0.6, 0.9):
-        track.take_response(response)
-    assert track.can_undo
-    track.take_response(0.9)
-    assert not track.can_undo
     track.take_return(track.appearance, track.sightings)
-    assert track.can_undo
+    assert not track.is_over
 
 
 def test_sightings_of_before_stay_and_age_with_the_return():

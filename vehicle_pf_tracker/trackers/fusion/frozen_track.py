@@ -16,8 +16,7 @@
 
 A look-alike beside the predicted path may be taken for the vehicle, and is learnt from then on. So
 the track of before is kept for a while and driven on without being weighed. The return is undone
-where its posterior soon falls again, or where the filter of before answers better, given its
-distance from the path, at another place.
+where the filter of before answers better, given the distance from the path, at another place.
 """
 
 from __future__ import annotations
@@ -36,11 +35,6 @@ from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
 from vehicle_pf_tracker.trackers.fusion.visibility import SAME_VEHICLE
 
-_UNDONE_WITHIN = 10.0
-"""Frames after a return within which a fall of the posterior undoes it: a second occluder that
-comes as soon is rare, and the prediction of before is good enough for it."""
-_BELIEVED_AFTER = 3
-"""Clear sightings from which a return is not undone by such a fall."""
 _COMPARED_FOR = 30.0
 """Frames after a return for which other places are compared: one second, in which a look-alike that
 came out first shows more than the vehicle behind it."""
@@ -74,19 +68,12 @@ class FrozenTrack:
     particles: Hypotheses
     size: Array
     _since_return: float | None = None
-    _clear: int = 0
     _better: int = 0
 
     @property
     def extent(self) -> float:
         """Geometric mean of the sides, px."""
         return float(np.sqrt(self.size.prod()))
-
-    @property
-    def can_undo(self) -> bool:
-        """True for a while after a return, unless the vehicle has been seen clearly since."""
-        recent = self._since_return is not None and self._since_return < _UNDONE_WITHIN
-        return recent and self._clear < _BELIEVED_AFTER
 
     @property
     def is_over(self) -> bool:
@@ -96,15 +83,7 @@ class FrozenTrack:
     def take_return(self, appearance: Appearance, sightings: Sightings) -> None:
         """Keep what is known as a return is believed, before that is learnt."""
         self.appearance, self.sightings = appearance.twin(), copy.copy(sightings)
-        self._since_return, self._clear, self._better = 0.0, 0, 0
-
-    def take_response(self, response: float) -> None:
-        """Count a sighting since the return, if it is a clear one."""
-        self._clear += response > CLEAR_RESPONSE
-
-    def undo_return(self) -> None:
-        """Be hidden again."""
-        self._since_return = None
+        self._since_return, self._better = 0.0, 0
 
     def pass_time(self, elapsed: float, camera: CameraMotion) -> None:
         """Let `elapsed` frames pass and the camera move."""

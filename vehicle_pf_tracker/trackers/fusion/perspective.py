@@ -30,10 +30,6 @@ _FITTED = 24
 CLEAR_RESPONSE = 0.75
 """Least response, of the usual one, of a sighting that the fit believes. While an occluder moves in
 it drags positions along and shrinks the box; 5 % of visible frames have less than 0.8."""
-_WHOLE_RESPONSE = 0.9
-"""Least response of sightings that are believed where there are enough of them. A wall that covers
-the vehicle slowly shrinks the box for long before the response is below 0.75: over painted walls
-the size predicted for the return was wrong by 29 % in the mean, and with these by 20 %."""
 _RATES = np.linspace(-0.04, 0.04, 33)
 """Rates of approach per frame that are tried."""
 _RATE_NEEDS = 8
@@ -135,9 +131,7 @@ class Sightings:
 
     def fit(self, *, perspective: bool) -> tuple[PerspectiveMotion, Sighting] | None:
         """Fit the motion to clear sightings; also give the last of them, which is at time 0."""
-        clear = np.flatnonzero(self._responses >= _WHOLE_RESPONSE)[-_FITTED:]
-        if len(clear) < _RATE_NEEDS:
-            clear = np.flatnonzero(self._responses >= CLEAR_RESPONSE)[-_FITTED:]
+        clear = np.flatnonzero(self._responses >= CLEAR_RESPONSE)[-_FITTED:]
         if not len(clear):
             return None
         last = Sighting(

@@ -211,8 +211,6 @@ class FusionTracker(Track):
             return seen
         if seen.again:
             frozen.take_return(self._appearance, self._sightings)
-        frozen.take_response(seen.response)
-        if seen.again:
             return seen
         options = self.parameters.visibility
         found = frozen.likelier_place(frame, seen.position, self._padding, options)
@@ -221,18 +219,13 @@ class FusionTracker(Track):
         if found is None:
             return seen
         view, position = found
-        self._thaw(frozen, 1 - DOUBT)
+        self._thaw(frozen)
         return Seen(view, self._kept_inside(frame, position), view.at(position), again=True)
 
     # Hidden
 
     def _enter_occlusion(self) -> None:
         """Predict from the last clear sightings: the occluder has dragged later ones along."""
-        frozen = self._frozen
-        if frozen is not None and frozen.can_undo:
-            frozen.undo_return()
-            self._thaw(frozen, DOUBT)
-            return
         fitted = self._sightings.fit(perspective=self.parameters.motion.perspective)
         if fitted is None:
             hidden = np.full(len(self._particles.visible), DOUBT)
@@ -246,10 +239,10 @@ class FusionTracker(Track):
         self._particles = hidden_hypotheses(self._rng, motion, last.age, count, self._extent, sigma)
         self._frozen = FrozenTrack(self._appearance, self._sightings, self._particles, self._size)
 
-    def _thaw(self, frozen: FrozenTrack, visible: float) -> None:
-        """Return to the track of before the occlusion, as it was predicted."""
+    def _thaw(self, frozen: FrozenTrack) -> None:
+        """Return to the track of before the occlusion, as it was predicted; it is visible now."""
         self._size = frozen.size
         self._appearance, self._sightings = frozen.appearance, frozen.sightings
         self._appearance.kernels = self.kernels
-        doubts = np.full(len(frozen.particles.visible), visible)
-        self._particles = replace(frozen.particles, visible=doubts)
+        surely = np.full(len(frozen.particles.visible), 1 - DOUBT)
+        self._particles = replace(frozen.particles, visible=surely)
