@@ -18,6 +18,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -149,3 +150,43 @@ def test_pages_that_were_written_to_stay():
         pytest.skip("this is not Linux")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert int(done.stdout) >= 1
+
+
+SLEEPER = """
+import os, pathlib, time
+pathlib.Path("pid").write_text(str(os.getpid()))
+time.sleep(60)
+"""
+
+
+def is_running(process):
+    """Test whether there is such a process that nobody only has to collect."""
+    try:
+        return Path("/proc", process, "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux can do it")
+def test_a_process_that_compiles_ends_with_the_one_that_started_it(tmp_path):
+    (tmp_path / "sleeper.py").write_text(SLEEPER)
+    code = (
+        "import sys; sys.path.insert(0, '.')\n"
+        "from vehicle_pf_tracker.image.kernels.llvm_memory import compile_elsewhere\n"
+        "compile_elsewhere('sleeper')\n"
+    )
+    parent = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path)
+    child = None
+    try:
+        deadline = time.monotonic() + 30
+        while not child and time.monotonic() < deadline:
+            time.sleep(0.05)
+            child = (tmp_path / "pid").exists() and (tmp_path / "pid").read_text()
+        assert child
+    finally:
+        parent.kill()
+        parent.wait()
+    deadline = time.monotonic() + 10
+    while is_running(child) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not is_running(child)

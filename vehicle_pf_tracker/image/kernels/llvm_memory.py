@@ -27,6 +27,11 @@ from pathlib import Path
 
 _COMPILING = "VEHICLE_PF_TRACKER_COMPILES"
 """Variable that tells a process that it was started to compile, so that it starts no other one."""
+_END_WITH_PARENT = (
+    "import ctypes, signal, sys;"
+    "getattr(ctypes.CDLL(None), 'prctl', lambda *_: 0)(1, int(signal.SIGTERM))"
+)
+"""Code by which a process ends with the one that started it, where the system is Linux."""
 _LIBRARY = "libllvmlite"
 _MADV_DONTNEED = 4
 """Advice to the kernel, the same on all of Linux but Alpha."""
@@ -41,7 +46,7 @@ def compile_elsewhere(module: str) -> None:
     """
     if _COMPILING in os.environ:
         return
-    code = f"import sys; sys.path[:] = {sys.path!r}; import {module}"
+    code = f"{_END_WITH_PARENT}; sys.path[:] = {sys.path!r}; import {module}"
     subprocess.run(
         [sys.executable, "-c", code],
         env={**os.environ, _COMPILING: "1"},
