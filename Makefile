@@ -67,7 +67,7 @@ peers:
 # Writes results/bench/bench.json and docs/performance.md, and with SEQUENCES=FOLDER the cost of fusion on
 # them, results/fusion_cost; wants a machine with nothing else to do.
 bench: .venv/installed .venv-baselines/locked
-	$(if $(SEQUENCES),$(BIN)/python -m benchmarks.fusion_cost $(SEQUENCES) --resampled $(RESAMPLED) -o results/fusion_cost)
+	$(if $(SEQUENCES),$(BIN)/python -m benchmarks.fusion_cost $(SEQUENCES) --resampled car_a silver_estate S1301 -o results/fusion_cost)
 	$(BIN)/python -m benchmarks.bench $(BENCH_ARGS)
 	$(BIN)/python -m benchmarks.bench.performance_page results/bench/bench.json docs
 

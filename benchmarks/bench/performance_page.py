@@ -54,6 +54,7 @@ _STEPS = f"""## A frame's whole step
 Against OpenCV's trackers on one vehicle of 40x30 px that drives through 640x480 images. Each in its
 turn follows it through {BLOCK} frames at full speed, then the next one does. The baselines run in a
 process of their own with one thread; the transfer of the frame does not count. Defaults throughout.
+What `fusion` costs on real sequences, whole ones and in 4K, is in [fusion.md](fusion.md), Cost.
 """
 _COSTS = """## What more costs
 
