@@ -54,7 +54,9 @@ _LIT = 60
 _MOST_GAIN = 1.3
 """Largest change of the camera's gain, either way; beyond it the light was switched."""
 _NEIGHBOURS = ((-1, 0), (1, 0), (0, -1), (0, 1))
-_AROUND = np.ones((3, 3), np.uint8)
+_AROUND = np.ones((7, 7), np.uint8)
+"""Surroundings of a change that are not learnt either: the rim of a vehicle that is not told from
+the road would be given on to its neighbours, and eat into it."""
 _SUM = np.ones((1, 3), np.float32)
 
 
