@@ -19,7 +19,11 @@ import pytest
 
 from benchmarks.traffic_clips import Row, read_truth, report
 from benchmarks.traffic_cost import made, place
+from benchmarks.traffic_occluders import judged
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
+from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
+from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
 
 
 @pytest.fixture
@@ -65,3 +69,17 @@ def test_the_timed_scene_has_as_many_vehicles_as_said(tmp_path, monkeypatch):
     sequence = made(20, tmp_path / "cost")
     shown = [np.count_nonzero(sequence.truth[:, 0] == frame) for frame in (1, 2, 3)]
     assert all(18 <= count <= 22 for count in shown)
+
+
+def test_the_occluder_is_judged_against_the_scene(tmp_path):
+    scene = make_traffic_scene("traffic-pair", settings={"frames": 112})
+    write_mot_folder(scene, tmp_path / "pair", 0)
+    sequence = read_sequence(tmp_path / "pair")
+    found = judged(sequence, "good")  # a lorry hides a car in 26 frames
+    assert found["right"] > 13
+    assert found["wrong"] == 0
+    path = tmp_path / "pair" / "gt" / "occluders.csv"
+    head, *rows = (line.split(",") for line in path.read_text().splitlines())
+    other = [head, *([*row[:3], "99", row[4]] for row in rows)]
+    path.write_text("".join(",".join(row) + "\n" for row in other))
+    assert judged(sequence, "good")["wrong"] == found["right"]
