@@ -17,8 +17,8 @@
     python -m benchmarks.traffic_clips CLIP FRAME TRUTH.csv [FRAME TRUTH.csv ...]
 
 FRAME is the number in the clip, from 0, of the truth's first row (`frame,x,y,w,h,visible,occ`, as
-in a frame folder). Vehicles are found by the embedded motion detector alone, from the clip's first
-frame on.
+in a frame folder). Vehicles are found by the embedded motion detector alone; the run of seed k
+begins in the clip's frame k, and its detector has the same seed.
 """
 
 from __future__ import annotations
@@ -78,12 +78,17 @@ def follow(clip: Path, parameters: TrafficParameters) -> list[np.ndarray]:
     """Return rows (identity, left, top, width, height) of every frame."""
     video = cv2.VideoCapture(str(clip))
     rate = video.get(cv2.CAP_PROP_FPS)
-    session = TrafficSession(TrafficTracker(parameters), MotionDetector, frame_rate=rate)
+    session = TrafficSession(
+        TrafficTracker(parameters), lambda: MotionDetector(parameters.seed), frame_rate=rate
+    )
     found = []
     while True:
         read, image = video.read()
         if not read:
             return found
+        if len(found) < parameters.seed:
+            found.append(np.empty((0, 5)))
+            continue
         frame = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), dtype=np.uint8)
         estimates = session.feed(frame, round((len(found) + 1) * 1e9 / rate))
         rows = [

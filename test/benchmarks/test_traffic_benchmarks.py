@@ -19,11 +19,14 @@ import pytest
 
 from benchmarks.traffic_clips import Row, read_truth, report
 from benchmarks.traffic_cost import made, place
+from benchmarks.traffic_fit import draw_settings, fitted
 from benchmarks.traffic_occluders import judged
+from benchmarks.traffic_spread import Run, summary
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
+from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
 
 
 @pytest.fixture
@@ -83,3 +86,22 @@ def test_the_occluder_is_judged_against_the_scene(tmp_path):
     other = [head, *([*row[:3], "99", row[4]] for row in rows)]
     path.write_text("".join(",".join(row) + "\n" for row in other))
     assert judged(sequence, "good")["wrong"] == found["right"]
+
+
+def test_settings_are_drawn_around_the_shipped_one_and_repeat():
+    settings = draw_settings(5, seed=3)
+    assert settings == draw_settings(5, seed=3)
+    assert TrafficNumbers(**settings[0]) == SHIPPED
+    assert all(0.3 < one["patience"] / SHIPPED.patience < 3 for one in settings)
+
+
+def test_the_best_quarter_is_averaged():
+    settings = draw_settings(8, seed=0)
+    best = fitted(settings, [0, 1, 2, 3, 4, 9, 9, 5])
+    mean = (settings[5]["apart"] * settings[6]["apart"]) ** 0.5
+    assert best["apart"] == pytest.approx(mean, rel=0.01)
+
+
+def test_a_spread_is_a_mean_and_a_standard_deviation():
+    runs = [Run(60, 80, 1, float("nan"), 0), Run(62, 84, 1, float("nan"), 4)]
+    assert summary(runs) == "61.0 (1.4) | 82.0 (2.8) | 1.0 (0.0) | – | 2.0 (2.8)"
