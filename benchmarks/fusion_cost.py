@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Time per step of `fusion` on recordings with truth, beside OpenCV's CSRT, and by image size.
 
     python -m benchmarks.fusion_cost SEQUENCES -o results/fusion_cost

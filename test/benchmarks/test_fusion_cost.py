@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Cost of fusion beside CSRT: turns, ratios and tables, with times given by hand."""
 
 import numpy as np
