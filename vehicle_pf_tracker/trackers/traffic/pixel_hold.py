@@ -15,8 +15,7 @@
 """Pixels that hold a vehicle while no detection does: the flow of points in its box.
 
 Points of all vehicles are followed in one call. Particles over place and size are weighted by how
-well they explain where the points went, and by keeping apart from nearer vehicles (the interaction
-of Khan et al. 2005); their mean and spread are the measurement.
+well they explain where the points went; their mean and spread are the measurement.
 """
 
 from __future__ import annotations
@@ -62,8 +61,6 @@ _DRIVES_PX = 0.7
 """Predicted way in a frame from which on standing points are told from those on the vehicle, px."""
 _STANDS = 0.4
 """Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
-_REPULSION = 10.0
-"""Weight of an overlap with nearer vehicles beyond the predicted one, per area of the box."""
 _SLIP, _SLIP_PX = 0.02, 0.3
 """Standard deviation by which a box slips on its vehicle in a frame, of its size and in px."""
 _CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 10, 0.03)
@@ -150,7 +147,6 @@ def _hold(
     middles = centre + particles[:, :2]
     halves = size * (1 + particles[:, 2:]) / 2
     boxes = np.hstack([middles - halves, middles + halves])
-    logs -= _repulsion(boxes, predicted, track.covers)
     if (squared[int(np.argmax(logs))] < _AGREEING).mean() < _LEAST_SHARE:
         return None
     weights = np.exp(logs - logs.max())
@@ -187,17 +183,6 @@ def _particles(track: Track, motions: Array, normals: Array) -> Array:
     particles = np.asarray(normals * spread)
     particles[::2, :2] = np.median(motions, axis=0) + normals[::2, :2] * _POINT_SIGMA_PX
     return particles
-
-
-def _repulsion(boxes: Array, predicted: Array, covers: Array) -> Array:
-    """Cost (P,) of overlaps with nearer vehicles beyond the predicted one."""
-    if not len(covers):
-        return np.zeros(len(boxes))
-    every = np.vstack([boxes, predicted])
-    low = np.maximum(every[:, np.newaxis, :2], covers[:, :2])
-    high = np.minimum(every[:, np.newaxis, 2:], covers[:, 2:])
-    shares = np.maximum(high - low, 0.0).prod(axis=2).sum(axis=1) / areas(every)
-    return np.asarray(_REPULSION * np.maximum(shares[:-1] - shares[-1], 0.0))
 
 
 def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
