@@ -57,3 +57,34 @@ def test_what_drove_and_ended_unconfirmed_tells_nothing_about_its_scores():
 
 def test_what_was_seen_a_few_times_speaks_against_its_scores():
     assert ended_unconfirmed([(20 + 4 * frame, 100) for frame in range(3)]) < -1
+
+
+def missed(undetected, *, seen=()):
+    """Evidence that confirmed vehicles in sight lose in a frame, undetected for so long."""
+    tracks = []
+    for identity, periods in enumerate(undetected, start=1):
+        left = 60.0 * identity
+        state = VehicleState(
+            np.array([left, 100.0, left + 40.0, 130.0]), np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0)
+        )
+        track = Track(identity, state)
+        track.confirmed, track.log_odds = True, 5.0
+        track.undetected = 0.0 if identity in seen else periods
+        tracks.append(track)
+    Existence(TrafficParameters(), DetectionEvidence()).fade(tracks, 1.0)
+    return [5.0 - track.log_odds for track in tracks]
+
+
+def test_a_vehicle_that_alone_is_missed_is_doubted():
+    assert missed([3.0])[0] > 0
+    lost = missed([3.0, 3.0], seen=(2,))
+    assert lost[0] > 0
+    assert lost[1] == 0
+
+
+def test_a_detector_that_misses_all_vehicles_at_once_has_failed():
+    assert missed([3.0, 3.0]) == [0, 0]
+
+
+def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
+    assert min(missed([200.0, 200.0])) > 0

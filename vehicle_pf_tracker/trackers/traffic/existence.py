@@ -57,6 +57,11 @@ _PART = 0.7
 """Share of a young track inside a detected one from which on it is taken for a part of it."""
 _YOUNG = 30
 """Detections from which on a track has shown that it is a vehicle of its own."""
+_BLIND_FROM = 2
+"""Vehicles in sight, all missed in one image, from which on it is the detector that has failed:
+they did not all vanish at once."""
+_BLIND_FOR = 150.0
+"""Nominal periods after which a vehicle that no detector sees is doubted even so: 5 s at 30 Hz."""
 _PLAIN_SIGHT = 0.5
 """Share of a vehicle in sight, and in the image, in which it ought to be detected."""
 _TENTATIVE_PERIODS = 5.0
@@ -133,6 +138,8 @@ class Existence:
             Nominal periods since the last frame.
         """
         detected = [one for one in tracks if one.confirmed and one.undetected == 0]
+        if not detected and _in_sight(tracks) >= _BLIND_FROM:
+            return
         boxes = np.array([track.state.edges for track in detected]).reshape(-1, 4)
         for track in tracks:
             if track.undetected == 0 or (track.given and track.unseen <= _ONE_PERIOD):
@@ -183,6 +190,17 @@ class Existence:
             return False
         longest = self.parameters.lost_after + self.parameters.forgotten_after
         return track.log_odds >= _REFUTED and unseen <= longest
+
+
+def _in_sight(tracks: Sequence[Track]) -> int:
+    """Count the vehicles that a detector should see: it lately did, and pixels still do."""
+    return sum(
+        track.confirmed
+        and track.unseen <= _ONE_PERIOD
+        and track.undetected <= _BLIND_FOR
+        and min(track.visible, track.inside) > _PLAIN_SIGHT
+        for track in tracks
+    )
 
 
 def _is_double(track: Track, detected: Array) -> bool:

@@ -43,6 +43,9 @@ camera's own height, where the plane no longer describes what is seen."""
 _HORIZON_MOVED = 0.05
 """Change of the horizon that is applied, of the lower edge's distance from it: speeds are known no
 better when a vehicle is new."""
+_HORIZON_LEAPT = 0.3
+"""Change of the logarithm of the distance from the horizon from which on it leaps: less is the
+usual error of an estimate."""
 _SIZE_WALK = 0.004
 """Change of a vehicle's shape as the camera sees it, of its size per nominal period: a vehicle that
 drives past is seen from behind and then from the side within some 5 s."""
@@ -178,7 +181,10 @@ class VehicleState:
         self.mean[:ACROSS] = (left + right) / 2, v, right - left, bottom - top
 
     def move_horizon(self, horizon: float) -> None:
-        """Take another row (px) for the horizon; box and velocity of its lower edge stay."""
+        """Take another row (px) for the horizon; box and velocity of the lower edge stay.
+
+        Where the horizon leaps, size and speed become uncertain.
+        """
         if abs(horizon - self.horizon) < _HORIZON_MOVED * self.mean[V]:
             return
         x, v = self.mean[: V + 1].tolist()
@@ -191,6 +197,10 @@ class VehicleState:
         self.mean = step @ self.mean
         self.mean[V] = new
         self.covariance = step @ self.covariance @ step.T
+        # Size and speed were learnt with the other horizon: they hold the less, the farther it was.
+        doubt = max(abs(np.log(ratio)) - _HORIZON_LEAPT, 0.0) * self.mean
+        doubt[: V + 1] = 0.0
+        self.covariance += np.diag(doubt**2)
 
     def measure(self, edge: Edge, value: float, deviation: float) -> None:
         """Take the measurement of an edge in px, of this standard deviation."""
