@@ -212,4 +212,4 @@ def test_a_dumped_node_can_be_made_again(bench, tmp_path, monkeypatch, variant):
     )
     assert warnings == []
     assert values(again) == before
-    assert again._table.configuration == configuration
+    assert again.table.configuration == configuration
