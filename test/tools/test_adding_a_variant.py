@@ -29,7 +29,7 @@ from vehicle_pf_tracker.recordings.writer import RecordingWriter
 ROOT = Path(__file__).resolve().parents[2]
 COPIED = ["vehicle_pf_tracker", "tools", "config", "docs", "test/trackers", "launch", "resource"]
 FILES = ["setup.py", "setup.cfg", "package.xml", "pyproject.toml", "README.md"]
-FILES += ["test/traffic_samples.py"]
+FILES += ["test/conftest.py", "test/traffic_samples.py"]
 
 TRACKER = '''"""`toy`: a colour particle filter that is sure of its speed."""
 
