@@ -197,9 +197,10 @@ class VehicleState:
         self.mean = step @ self.mean
         self.mean[V] = new
         self.covariance = step @ self.covariance @ step.T
-        # Size and speed were learnt with the other horizon: they hold the less, the farther it was.
+        # Size and speed along the road were learnt with the other horizon, and hold the less, the
+        # farther it was; the speed across was seen.
         doubt = max(abs(np.log(ratio)) - _HORIZON_LEAPT, 0.0) * self.mean
-        doubt[: V + 1] = 0.0
+        doubt[[X, V, ACROSS]] = 0.0
         self.covariance += np.diag(doubt**2)
 
     def measure(self, edge: Edge, value: float, deviation: float) -> None:
