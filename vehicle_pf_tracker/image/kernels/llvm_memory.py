@@ -14,7 +14,7 @@
 
 """Memory of LLVM, which a process needs while kernels are compiled or loaded, and not after.
 
-`python -m benchmarks.kernel_memory` shows what it amounts to.
+`python -m benchmarks.node_memory` shows what it amounts to.
 """
 
 from __future__ import annotations

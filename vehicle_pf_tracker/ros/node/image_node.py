@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the nodes have in common that take images: parameters, diagnostics, warnings."""
+"""Base of the nodes that take images: parameters, diagnostics, warnings."""
 
 from __future__ import annotations
 

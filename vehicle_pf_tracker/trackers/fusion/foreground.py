@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What moves before a background that stands still: the vehicle's outline where appearance fails.
+"""Foreground of a standing camera: the vehicle's outline, for when its appearance changes.
 
 Nothing is computed before it is asked for: frames are kept as they are, and their median around the
 vehicle is the background.

@@ -33,7 +33,7 @@ from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import ACROSS_LANES, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
-from vehicle_pf_tracker.trackers.fusion.visibility import SAME_VEHICLE
+from vehicle_pf_tracker.trackers.fusion.visibility import SAME_VEHICLE, WIDE_FROM
 
 _COMPARED_FOR = 30.0
 """Frames after a return for which other places are compared: one second, in which a look-alike that
@@ -43,8 +43,6 @@ _MARGIN = 1.5
 _CONFIRMED = 2
 _LEAST_SIGMA = 0.1
 """Least standard deviation of the predicted position, of the size: about that of peaks."""
-_WIDE_FROM = 0.5
-"""Spread of the prediction, of the size, from which a wide patch is looked at."""
 
 
 @dataclass(slots=True, eq=False)
@@ -105,7 +103,7 @@ class FrozenTrack:
     def likelier_place(
         self, frame: Frame, position: Array, padding: Array, parameters: VisibilityParameters
     ) -> tuple[View, Array] | None:
-        """Find a place, away from `position`, that is twice likelier to be the vehicle's.
+        """Find a place, away from `position`, that is clearly likelier to be the vehicle's.
 
         Parameters
         ----------
@@ -120,7 +118,7 @@ class FrozenTrack:
             What the filter of before responds, and the place, px.
         """
         mean = self.particles.mean
-        wide = self.particles.spread > _WIDE_FROM * self.extent
+        wide = self.particles.spread > WIDE_FROM * self.extent
         patch = self.appearance.patch(frame, mean, self.size * padding, wide=wide)
         view = self.appearance.view(patch)
         scores = self._scores(view, parameters)

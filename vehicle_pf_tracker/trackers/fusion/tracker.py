@@ -49,6 +49,7 @@ from vehicle_pf_tracker.trackers.fusion.visibility import (
     CLIMB_FREELY,
     CLIMB_ON_PATH,
     STAY,
+    WIDE_FROM,
     likeliest_peak,
     points_evidence,
     response_evidence,
@@ -56,8 +57,6 @@ from vehicle_pf_tracker.trackers.fusion.visibility import (
 
 _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
-_WIDE_FROM = 0.5
-"""Spread of the hypotheses, of the size, from which a wide patch is searched."""
 _MEASURED_SPREAD = 0.3
 """Spread of the hypotheses after a first motion was measured, of the one before: about a px."""
 
@@ -164,7 +163,7 @@ class FusionTracker(Track):
 
     def _observe(self, frame: Frame, elapsed: float) -> View:
         """Weigh the hypotheses by the filter's response where they are, or close by."""
-        wide = not self._visible and self._particles.spread > _WIDE_FROM * self._extent
+        wide = not self._visible and self._particles.spread > WIDE_FROM * self._extent
         patch = self._appearance.patch(frame, self._particles.mean, self._learnt_size, wide=wide)
         view = self._appearance.view(patch)
         climb = CLIMB_FREELY if self._visible else CLIMB_ON_PATH

@@ -34,6 +34,8 @@ _HIGHEST_RESPONSE = 1.2
 _PEAK_REACH = 6
 """Places of the response around the mean within which its peak is the estimate: a third of the
 target's side."""
+WIDE_FROM = 0.5
+"""Spread of the hypotheses, of the size, from which a wide patch is searched."""
 SAME_VEHICLE = 0.5
 """Distance from the best hypothesis, of the size, within which others mean the same vehicle."""
 

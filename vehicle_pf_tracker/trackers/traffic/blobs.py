@@ -56,12 +56,8 @@ _ASPECT_SIDE = 10
 """Least side in px of a blob whose aspect is learnt."""
 _SPLIT_MARGIN = 1.0
 """Advantage of taking a blob for the several vehicles that are followed there."""
-
-
 _NOTABLE = 0.1
 """Share of the largest piece from which on another one is part of the vehicle, and no noise."""
-
-
 _OWN = 0.15
 """Share of a blob from which on a part of it can be a vehicle."""
 _SHAPED = 100

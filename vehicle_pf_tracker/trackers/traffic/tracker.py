@@ -82,7 +82,7 @@ class TrafficTracker:
     Attributes
     ----------
     road : RoadPlane or None
-        Road in use; it can be replaced between two frames, and counts for new vehicles.
+        Road in use; it can be replaced between two frames, and counts from the next on.
     frame_period : float
         Nominal frame period in s, from which seconds become frames.
     """
