@@ -21,6 +21,7 @@ import sys
 import time
 
 import pytest
+from unmeasured import unmeasured_environment
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.stopping import Terminated, raising_terminated
@@ -51,15 +52,19 @@ def has_begun(folder):
 def end_in_the_middle(folder, number, *words):
     """Run a command, send it a signal when its hidden file has some data; return what is left."""
     process = subprocess.Popen(
-        [sys.executable, "-c", CODE, *words], stderr=subprocess.PIPE, text=True, cwd=folder
-    )
-    deadline = time.monotonic() + 60
-    while not has_begun(folder):
-        assert process.poll() is None, process.communicate()
-        assert time.monotonic() < deadline
-        time.sleep(0.002)
-    process.send_signal(number)
-    _, told = process.communicate(timeout=60)
+        [sys.executable, "-c", CODE, *words], stderr=subprocess.PIPE, text=True, cwd=folder,
+        env=unmeasured_environment(),
+    )  # fmt: skip
+    try:
+        deadline = time.monotonic() + 60
+        while not has_begun(folder):
+            assert process.poll() is None, process.communicate()
+            assert time.monotonic() < deadline
+            time.sleep(0.002)
+        process.send_signal(number)
+        _, told = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert "Traceback" not in told
     assert process.returncode == ENDINGS[number]
     return sorted(path.name for path in folder.iterdir())

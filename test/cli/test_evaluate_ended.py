@@ -22,6 +22,7 @@ import time
 
 import pytest
 from small_recordings import record
+from unmeasured import unmeasured_environment
 
 from vehicle_pf_tracker.cli.main import main
 
@@ -50,13 +51,17 @@ def test_what_was_ended_goes_on_and_comes_out_the_same(tmp_path, number):
     words += ["--no-images", "--workers", "2", "-o"]
     ended, whole = tmp_path / "ended", tmp_path / "whole"
     process = subprocess.Popen(
-        [sys.executable, "-c", CODE, *words, str(ended)], stderr=subprocess.PIPE, text=True
-    )
-    deadline = time.monotonic() + 60
-    while len(estimates(ended)) < 5 and time.monotonic() < deadline:
-        time.sleep(0.02)
-    process.send_signal(number)
-    _, told = process.communicate(timeout=20)
+        [sys.executable, "-c", CODE, *words, str(ended)], stderr=subprocess.PIPE, text=True,
+        env=unmeasured_environment(),
+    )  # fmt: skip
+    try:
+        deadline = time.monotonic() + 60
+        while len(estimates(ended)) < 5 and time.monotonic() < deadline:
+            time.sleep(0.02)
+        process.send_signal(number)
+        _, told = process.communicate(timeout=20)
+    finally:
+        process.kill()
     assert "Traceback" not in told
     assert process.returncode == (130 if number == signal.SIGINT else -number)
     assert ("interrupted; run the same command to resume" in told) == (number == signal.SIGINT)

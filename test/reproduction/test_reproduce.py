@@ -20,6 +20,7 @@ import time
 from pathlib import Path
 
 import pytest
+from unmeasured import unmeasured_environment
 
 from reproduction.__main__ import main
 
@@ -101,14 +102,18 @@ def test_what_was_ended_continues_and_comes_out_the_same(tmp_path, number):
     )
     words = ["apf-fig3", *WORDS[:-1], "2", "-o", str(ended)]
     process = subprocess.Popen(
-        [sys.executable, "-c", code, *words], cwd=ROOT, stderr=subprocess.PIPE, text=True
-    )
+        [sys.executable, "-c", code, *words], cwd=ROOT, stderr=subprocess.PIPE, text=True,
+        env=unmeasured_environment(),
+    )  # fmt: skip
     cells = ended / "cells.jsonl"
-    deadline = time.monotonic() + 60
-    while not (cells.exists() and cells.stat().st_size) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    process.send_signal(number)
-    _, parts = process.communicate(timeout=10)
+    try:
+        deadline = time.monotonic() + 60
+        while not (cells.exists() and cells.stat().st_size) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        process.send_signal(number)
+        _, parts = process.communicate(timeout=10)
+    finally:
+        process.kill()
     if number == signal.SIGINT:
         assert process.returncode == 130
         assert "Traceback" not in parts
