@@ -131,10 +131,10 @@ class VisibilityParameters:
     )
     points_slope: float = parameter(
         4.0,
-        "Higher: the survival of points on the vehicle counts more; 0: they are not tracked.",
+        "Higher: how many points move with the vehicle counts more; 0: they are not tracked.",
         minimum=0.0,
         maximum=50.0,
-        unit="log ratio per usual survival",
+        unit="log ratio per usual share",
         tuned=(0.5, 8.0),
     )
     points_middle: float = parameter(
@@ -142,7 +142,7 @@ class VisibilityParameters:
         "Higher: a smaller loss of points speaks for an occlusion.",
         minimum=0.0,
         maximum=1.0,
-        unit="of the usual survival",
+        unit="of the usual share",
         tuned=(0.3, 0.8),
     )
     hiding_rate: float = parameter(
@@ -169,7 +169,7 @@ class VisibilityParameters:
         "Higher: nothing is learnt while fewer points have been lost.",
         minimum=0.0,
         maximum=1.0,
-        unit="of the usual survival",
+        unit="of the usual share",
         tuned=(0.1, 0.8),
     )
 

@@ -22,6 +22,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.trackers.fusion.standing_occluder import made_whole
 
 _KEPT_FRAMES = 60.0
 """Age in frames from which a sighting tells nothing about the present motion."""
@@ -94,11 +95,14 @@ class Sighting:
         Frames ago.
     position, size : (2,) arrays
         Centre, and width and height, px.
+    cut : bool
+        True where a standing occluder had cut the vehicle, which was made whole.
     """
 
     age: float
     position: Array
     size: Array
+    cut: bool = False
 
 
 class Sightings:
@@ -134,12 +138,12 @@ class Sightings:
         clear = np.flatnonzero(self._responses >= CLEAR_RESPONSE)[-_FITTED:]
         if not len(clear):
             return None
-        last = Sighting(
-            float(self._ages[clear[-1]]), self._positions[clear[-1]], self._sizes[clear[-1]]
-        )
-        times = last.age - self._ages[clear]
-        sizes = np.sqrt(self._sizes[clear].prod(axis=1))
-        motion = fit_motion(times, self._positions[clear], sizes, perspective=perspective)
+        whole = made_whole(self._ages, self._positions, self._sizes, self._responses)
+        positions, sizes = whole or (self._positions, self._sizes)
+        positions, sizes, ages = positions[clear], sizes[clear], self._ages[clear]
+        last = Sighting(float(ages[-1]), positions[-1], sizes[-1], whole is not None)
+        extents = np.sqrt(sizes.prod(axis=1))
+        motion = fit_motion(last.age - ages, positions, extents, perspective=perspective)
         return motion, last
 
 

@@ -34,6 +34,7 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
 from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
+from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.turning import Turned
 
@@ -42,6 +43,11 @@ _TURNING_STIFFNESS = 0.5
 turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
 _LEAST_LEVEL, _TURNING_LEVEL_RATE = 0.3, 0.3
 """Least response that the usual one follows in a turn, and how fast: a new level in 3 frames."""
+_TURNING_SHARE, _TURNING_RESPONSE = 0.85, 0.7
+"""Share of the surface that still moves with a vehicle that turns, and response below which it
+does: it is learnt the faster then the lower the response, as what it looked like is out of date."""
+_LEAST_PLIANT = 0.2
+"""Response from which on learning becomes no faster: five times the usual speed."""
 _STRONG = 0.8
 """Probability of visibility from which the size is followed."""
 _WEAK_RESPONSE = 0.6
@@ -49,7 +55,8 @@ _WEAK_RESPONSE = 0.6
 _LEAST_LEARNT = 0.5
 """Response below which nothing is learnt: what is there differs in more than it agrees."""
 _WHOLE = 0.8
-"""Survival of points from which their spread tells the size: what an occluder covers, shrinks."""
+"""Share of the surface from which the spread of points tells the size: what an occluder covers,
+shrinks."""
 _LEAST_SIDE, _LARGEST_SHARE = 3.0, 1.5
 """Bounds of the sides: px, and share of the image."""
 _NEW_VELOCITY = 3.0
@@ -91,10 +98,13 @@ class Track(ParticleTracker[FusionParameters]):
         self._visible = True
         self._sightings = Sightings()
         self._points = SurfacePoints(self.kernels)
+        self._surface = SurfaceFlow()
         self._camera = CameraFlow(self.kernels)
         self._camera.measure(small_grey(frame), box)
         estimate = super().start(frame, box)
-        self._points.keep(self._appearance.patch(frame, self._position, self._size))
+        patch = self._appearance.patch(frame, self._position, self._size)
+        self._points.keep(patch)
+        self._surface.keep(patch, self._position, self._size)
         return estimate
 
     def reconfigure(self, parameters: FusionParameters) -> None:
@@ -149,9 +159,12 @@ class Track(ParticleTracker[FusionParameters]):
             self._points.restart()
         if surely and seen.response > CLEAR_RESPONSE:
             self._points.learn_usual()
+            self._surface.learn_usual()
         if self.parameters.visibility.points_slope:
             self._points.renew(self._position, self._size)
         self._learn_appearance(frame, seen.view, seen.response)
+        if seen.again:  # what was kept shows an occluder; until now its share bounds the learning
+            self._surface.restart()
 
     def _gather(self, frame: Frame, position: Array, elapsed: float, *, again: bool) -> None:
         """Centre the hypotheses on the sighting; their velocities take on the displacement."""
@@ -184,20 +197,24 @@ class Track(ParticleTracker[FusionParameters]):
             return self._appearance.response_at(frame, self._position, size * self._padding)
 
         size = self._size
-        if not again and options.step and self._points.survival > _WHOLE:
+        if not again and options.step and self._surface.share > _WHOLE:
             size = size * np.exp(options.points_gain * self._points.stretch)
         self._size = self._bounded(frame, searched_size(size, self._frames, peak, options))
 
     def _learn_appearance(self, frame: Frame, view: View, response: float) -> None:
         """Train the filter, the less the less surely the vehicle is visible."""
         options = self.parameters.filter
-        whole = self._points.survival > self.parameters.visibility.learning_points
-        if response <= _LEAST_LEARNT or not whole:
+        share = self._surface.share
+        turns = share > _TURNING_SHARE and response < _TURNING_RESPONSE
+        whole = share > self.parameters.visibility.learning_points
+        if not turns and (response <= _LEAST_LEARNT or not whole):
             return
         visible = self._particles.probability_visible
         rate = max(options.level_rate, 1 / (self._frames + 1)) * visible
         self._appearance.learn_usual(response, rate)
         stiffness = options.stiffness / visible
+        if turns:
+            stiffness *= max(response, _LEAST_PLIANT)
         self._appearance.learn(frame, view, self._position, self._learnt_size, stiffness)
 
     def _take_turn(self, frame: Frame, view: View, turned: Turned) -> None:
@@ -233,7 +250,7 @@ class Track(ParticleTracker[FusionParameters]):
         return Outcome(
             Cloud(positions, particles.weights), (x, y), (vx, vy),
             "visible" if self._visible else "occluded", particles.probability_visible,
-            {"response": min(max(response, 0.0), 1.0), "points": min(self._points.survival, 1.0)},
+            {"response": min(max(response, 0.0), 1.0), "points": self._surface.share},
             left_image=left_image,
         )  # fmt: skip
 

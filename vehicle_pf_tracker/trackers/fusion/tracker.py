@@ -106,7 +106,9 @@ class FusionTracker(Track):
         if not self._visible:
             self._position = self._kept_inside(frame, self._particles.mean)
             self._velocity = self._particles.mean_velocity
-        self._points.keep(self._appearance.usual_patch(view.patch))
+        patch = self._appearance.usual_patch(view.patch)
+        self._points.keep(patch)
+        self._surface.keep(patch, self._position, self._size)
         outcome = self._outcome(frame, response, left_image)
         count = self.parameters.num_particles
         self._particles = self._particles.resampled(self._rng, count)
@@ -124,6 +126,7 @@ class FusionTracker(Track):
             if self.parameters.motion.turns:
                 self._turning.keep(small, still=camera.still)
         self._sightings.pass_time(elapsed, camera)
+        self._surface.move_with_camera(camera)
         if not camera.still:
             self._position = camera.apply(self._position)
             self._particles = self._particles.moved(camera)
@@ -183,13 +186,14 @@ class FusionTracker(Track):
         return self._kept_inside(frame, position), response
 
     def _judge_points(self, patch: Patch, move: Array, position: Array) -> None:
-        """Take the survival of points as evidence on visibility."""
+        """Take the share of the surface that moves with the vehicle as evidence on visibility."""
         evidence = self.parameters.visibility
         if not evidence.points_slope:
             return
-        survival = self._points.track(patch, move, position, self._size)
-        if survival is not None:
-            self._particles = self._particles.witnessed(points_evidence(survival, evidence))
+        self._points.track(patch, move, position, self._size)
+        share = self._surface.judge(patch, position, self._size)
+        if share is not None:
+            self._particles = self._particles.witnessed(points_evidence(share, evidence))
 
     # Visible
 
@@ -231,7 +235,7 @@ class FusionTracker(Track):
             self._particles = replace(self._particles, visible=hidden)
             return
         motion, last = fitted
-        if self.parameters.motion.turns:
+        if self.parameters.motion.turns and not last.cut:
             self._turning.begin(motion, last)
         self._size = last.size * motion.scale_at(last.age)
         sigma, count = self.parameters.motion.hidden_velocity_sigma, self.parameters.num_particles

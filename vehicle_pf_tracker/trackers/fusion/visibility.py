@@ -112,6 +112,6 @@ def likeliest_peak(view: View, particles: Hypotheses, extent: float) -> tuple[Ar
     return view.peak_near(votes @ particles.positions / votes.sum(), _PEAK_REACH)
 
 
-def points_evidence(survival: float, parameters: VisibilityParameters) -> float:
-    """Log-likelihood ratio by the survival of points on the surface, of the usual survival."""
-    return parameters.points_slope * (min(survival, 1.0) - parameters.points_middle)
+def points_evidence(share: float, parameters: VisibilityParameters) -> float:
+    """Log-likelihood ratio by the share of the surface's points that move with the vehicle."""
+    return parameters.points_slope * (min(share, 1.0) - parameters.points_middle)
