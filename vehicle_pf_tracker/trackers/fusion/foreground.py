@@ -91,12 +91,17 @@ class Foreground:
         self._latest.append(small)
         self._frames += 1
 
+    @property
+    def is_known(self) -> bool:
+        """True once the background has been seen for long enough, by a camera that stands."""
+        return len(self._background) >= _FEWEST
+
     def outline(self, centre: Array, size: Array, ago: int = 0) -> Outline | None:
         """Outline of what moves in a box of this centre and size, px, some frames `ago`.
 
         None where there is no background, nothing moves, or it reaches out of the neighbourhood.
         """
-        if len(self._background) < _FEWEST or ago >= len(self._latest):
+        if not self.is_known or ago >= len(self._latest):
             return None
         small = self._latest[-1 - ago]
         if any(each.image.shape != small.image.shape for each in self._background):

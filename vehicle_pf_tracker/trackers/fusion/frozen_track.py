@@ -22,7 +22,7 @@ where the filter of before answers better, given the distance from the path, at 
 from __future__ import annotations
 
 import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -30,7 +30,11 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
-from vehicle_pf_tracker.trackers.fusion.hypotheses import ACROSS_LANES, Hypotheses
+from vehicle_pf_tracker.trackers.fusion.hypotheses import (
+    ACROSS_LANES,
+    LARGEST_GROWTH,
+    Hypotheses,
+)
 from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
 from vehicle_pf_tracker.trackers.fusion.visibility import SAME_VEHICLE, WIDE_FROM
@@ -67,6 +71,11 @@ class FrozenTrack:
     size: Array
     _since_return: float | None = None
     _better: int = 0
+    _scale: float = 1.0
+    _first_size: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._first_size = self.size
 
     @property
     def extent(self) -> float:
@@ -96,7 +105,8 @@ class FrozenTrack:
     ) -> None:  # fmt: skip
         """Predict, by standard deviations of position and velocity in parts of the size."""
         growth = float(self.particles.weights @ self.particles.growths)
-        self.size = self.size * np.exp(growth * elapsed)
+        self._scale = min(self._scale * float(np.exp(growth * elapsed)), LARGEST_GROWTH)
+        self.size = self._first_size * self._scale
         noise = sigmas[0] * self.extent, sigmas[1] * self.extent
         self.particles = self.particles.driven(rng, elapsed, noise, across=ACROSS_LANES)
 

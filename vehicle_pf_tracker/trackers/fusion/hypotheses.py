@@ -28,6 +28,9 @@ from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion
 
 FASTEST_GROWTH = 0.04
 """Bound of the growth rate per frame: a vehicle that doubles within 17 frames passes the camera."""
+LARGEST_GROWTH = 3.0
+"""Bound of the growth in one occlusion: the vehicles of real sequences that drive towards a fixed
+camera grow fivefold from where they are first seen to where they leave the image."""
 _DEGENERATE = 0.5
 """Share of the particles below which the effective sample size asks for resampling (usual)."""
 DOUBT = 0.02

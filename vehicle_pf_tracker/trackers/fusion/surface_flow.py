@@ -88,9 +88,6 @@ class SurfaceFlow:
     """
 
     def __init__(self) -> None:
-        # Its stripes do not depend on the number of threads, and so neither do the estimates.
-        self._flow = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
-        self._flow.setVariationalRefinementIterations(_REFINED)
         self._usual = 0.0
         self._latest = 1.0
         self.restart()
@@ -157,10 +154,7 @@ class SurfaceFlow:
     ) -> npt.NDArray[np.bool_]:
         """Tell which points of the box have moved with the vehicle since the earlier patch."""
         cells = _cells(patch, position, size)
-        # The middle of a wide patch is not in one piece of memory.
-        before, present = (np.ascontiguousarray(each.grey) for each in (kept.patch, patch))
-        flow = np.asarray(self._flow.calc(present, before, None), np.float64)  # type: ignore[call-overload]
-        source = cells + 0.5 + flow[cells[:, 1], cells[:, 0]]
+        source = cells + 0.5 + _flow(patch, kept.patch)[cells[:, 1], cells[:, 0]]
         points = patch.to_frame(np.asarray(cells + 0.5, np.float64))
         places = (points - position) / size
         off = source - kept.patch.to_patch(kept.position + places * kept.size)
@@ -172,6 +166,19 @@ class SurfaceFlow:
         if near.sum() >= _FEWEST:
             off = off - places @ _shared_turn(places[near], off[near])
         return np.asarray(np.hypot(off[:, 0], off[:, 1]) < limits)
+
+
+def _flow(present: Patch, before: Patch) -> Array:
+    """Dense flow (side, side, 2) from the present patch to an earlier one, canonical px.
+
+    By dense inverse search (Kroeger et al. 2016), whose stripes, and so its results, do not depend
+    on the number of threads.
+    """
+    method = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
+    method.setVariationalRefinementIterations(_REFINED)
+    # The middle of a wide patch is not in one piece of memory.
+    images = (np.ascontiguousarray(each.grey) for each in (present, before))
+    return np.asarray(method.calc(*images, None), np.float64)  # type: ignore[call-overload]
 
 
 def _cells(patch: Patch, position: Array, size: Array) -> npt.NDArray[np.intp]:

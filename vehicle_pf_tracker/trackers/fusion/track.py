@@ -36,7 +36,7 @@ from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sight
 from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
-from vehicle_pf_tracker.trackers.fusion.turning import Turned
+from vehicle_pf_tracker.trackers.fusion.turning import Turned, TurningBranch
 
 _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
@@ -99,6 +99,7 @@ class Track(ParticleTracker[FusionParameters]):
         self._sightings = Sightings()
         self._points = SurfacePoints(self.kernels)
         self._surface = SurfaceFlow()
+        self._turning = TurningBranch()
         self._camera = CameraFlow(self.kernels)
         self._camera.measure(small_grey(frame), box)
         estimate = super().start(frame, box)
@@ -206,6 +207,7 @@ class Track(ParticleTracker[FusionParameters]):
         options = self.parameters.filter
         share = self._surface.share
         turns = share > _TURNING_SHARE and response < _TURNING_RESPONSE
+        turns &= not self._turning.can_begin  # outlines tell more of a turn, size included
         whole = share > self.parameters.visibility.learning_points
         if not turns and (response <= _LEAST_LEARNT or not whole):
             return

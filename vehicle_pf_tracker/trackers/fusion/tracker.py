@@ -41,10 +41,14 @@ from vehicle_pf_tracker.trackers.base import Outcome
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.frozen_track import FrozenTrack
-from vehicle_pf_tracker.trackers.fusion.hypotheses import ACROSS_LANES, DOUBT, hidden_hypotheses
+from vehicle_pf_tracker.trackers.fusion.hypotheses import (
+    ACROSS_LANES,
+    DOUBT,
+    LARGEST_GROWTH,
+    hidden_hypotheses,
+)
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.track import Seen, Track
-from vehicle_pf_tracker.trackers.fusion.turning import TurningBranch
 from vehicle_pf_tracker.trackers.fusion.visibility import (
     CLIMB_FREELY,
     CLIMB_ON_PATH,
@@ -68,7 +72,6 @@ class FusionTracker(Track):
         """Learn the target; see `Tracker.start`."""
         self._set_off = False
         self._frozen: FrozenTrack | None = None
-        self._turning = TurningBranch()
         return super().start(frame, box)
 
     def reconfigure(self, parameters: FusionParameters) -> None:
@@ -150,7 +153,8 @@ class FusionTracker(Track):
         else:
             sigmas = motion.hidden_position_sigma * extent, motion.hidden_velocity_sigma * extent
             growth = float(self._particles.weights @ self._particles.growths)
-            self._size = self._bounded(frame, self._size * np.exp(growth * elapsed))
+            grown = np.minimum(self._size * np.exp(growth * elapsed), self._largest_hidden)
+            self._size = self._bounded(frame, grown)
         across = 1.0 if self._visible else ACROSS_LANES
         driven = self._particles.driven(self._rng, elapsed, sigmas, across=across)
         if self._frozen is not None:
@@ -229,6 +233,7 @@ class FusionTracker(Track):
 
     def _enter_occlusion(self) -> None:
         """Predict from the last clear sightings: the occluder has dragged later ones along."""
+        self._largest_hidden = LARGEST_GROWTH * self._size
         fitted = self._sightings.fit(perspective=self.parameters.motion.perspective)
         if fitted is None:
             hidden = np.full(len(self._particles.visible), DOUBT)
@@ -238,6 +243,7 @@ class FusionTracker(Track):
         if self.parameters.motion.turns and not last.cut:
             self._turning.begin(motion, last)
         self._size = last.size * motion.scale_at(last.age)
+        self._largest_hidden = LARGEST_GROWTH * self._size
         sigma, count = self.parameters.motion.hidden_velocity_sigma, self.parameters.num_particles
         self._particles = hidden_hypotheses(self._rng, motion, last.age, count, self._extent, sigma)
         self._frozen = FrozenTrack(self._appearance, self._sightings, self._particles, self._size)

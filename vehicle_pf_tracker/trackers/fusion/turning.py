@@ -93,6 +93,11 @@ class TurningBranch:
         self._foreground = Foreground()
         self._branch: _Branch | None = None
 
+    @property
+    def can_begin(self) -> bool:
+        """True where outlines can be seen: before a camera that has stood for a while."""
+        return self._foreground.is_known
+
     def keep(self, small: SmallGrey, *, still: bool) -> None:
         """Take the next frame; a camera that moves ends the branch."""
         self._foreground.keep(small, still=still)
