@@ -73,7 +73,9 @@ def test_what_reaches_out_of_the_neighbourhood_has_no_outline():
 
 def test_a_moving_camera_leaves_no_background():
     foreground, centre = watched()
+    assert foreground.is_known
     foreground.keep(scene((100, 50, 124, 64)), still=False)
+    assert not foreground.is_known
     assert foreground.outline(centre, SIZE) is None
 
 

@@ -14,6 +14,8 @@
 
 """The frozen track: which return is undone, by responses that are given."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -123,3 +125,14 @@ def test_it_drives_on_and_grows_without_being_weighed():
     assert track.particles.mean == pytest.approx([CENTRE[0] + 2 * np.exp(0.02), 80])
     track.pass_time(1.0, CameraMotion(np.eye(2), np.array([5.0, -3.0])))
     assert track.particles.mean == pytest.approx([CENTRE[0] + 2 * np.exp(0.02) + 5, 77])
+
+
+def test_a_hidden_vehicle_grows_threefold_at_most():
+    track, rng = frozen({}), np.random.default_rng(0)
+    track.particles = replace(track.particles, growths=np.full(400, 0.02))
+    for _ in range(10):
+        track.drive(rng, 1.0, (0.0, 0.0))
+    assert track.size[0] == pytest.approx(SIZE[0] * np.exp(0.02 * 10), rel=0.03)
+    for _ in range(100):
+        track.drive(rng, 1.0, (0.0, 0.0))
+    assert track.size == pytest.approx(3 * SIZE)

@@ -26,6 +26,7 @@ from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.estimate import Mode
+from vehicle_pf_tracker.trackers.fusion import track
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
 
@@ -218,3 +219,41 @@ def test_a_fast_start_is_followed_though_the_first_box_is_loose(seed):
         else:
             tracker.start(picture, Box(left - 36.0, 93.0, 84.0, 38.0))
     assert estimate.box.x == pytest.approx(left - 36, abs=12)
+
+
+def spinning(time):
+    """A car that turns by 90 degrees within two seconds, before a camera that pans along."""
+    rng = np.random.default_rng(5)
+    noise = rng.integers(0, 256, (2, 300, 700, 3)).astype(np.uint8)
+    road, car = (np.clip(5.0 * cv2.GaussianBlur(one, (0, 0), 2.5) - 512, 0, 255) for one in noise)
+    matrix = cv2.getRotationMatrix2D((30.0, 20.0), min(max(1.5 * (time - 15), 0.0), 90.0), 1.0)
+    centre = np.array([160.0 + 4.0 * time, 150.0])
+    matrix[:, 2] += centre - (30.0, 20.0)
+    mask = cv2.warpAffine(np.full((40, 60), 255, np.uint8), matrix, (700, 300))
+    turned = cv2.warpAffine(car[100:140, 100:160].astype(np.uint8), matrix, (700, 300))
+    picture, left = road.astype(np.uint8), 3 * time
+    picture[mask > 127] = turned[mask > 127]
+    return np.ascontiguousarray(picture[:, left : left + 320]), centre - (left, 0)
+
+
+def follow_the_turn():
+    """Modes, and errors in px."""
+    tracker, modes, errors = fusion(), [], []
+    for time in range(80):
+        picture, centre = spinning(time)
+        if not time:
+            tracker.start(picture, Box.around(tuple(centre), 60, 40))
+            continue
+        estimate = tracker.step(picture)
+        modes.append(estimate.mode)
+        errors.append(math.dist(estimate.position, centre))
+    return modes, errors
+
+
+def test_before_a_moving_camera_a_turn_is_learnt_while_the_surface_moves(monkeypatch):
+    modes, errors = follow_the_turn()
+    assert set(modes) == {Mode.TRACKING}
+    assert max(errors) < 15
+    monkeypatch.setattr(track, "_TURNING_SHARE", 1.1)
+    modes, _ = follow_the_turn()
+    assert modes.count(Mode.TRACKING) < 50

@@ -1,0 +1,102 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Sightings that a standing occluder has cut: made whole where one side stands, else left."""
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
+from vehicle_pf_tracker.trackers.fusion.standing_occluder import made_whole
+
+COUNT = 30
+AGES = np.arange(COUNT)[::-1].astype(float)
+CLEAR = np.ones(COUNT)
+
+
+def sides(speed, wall=None, *, axis=0, growth=0.0):
+    """Boxes of a vehicle of 40 x 20 px that drives along an axis, cut at a wall's edge."""
+    times = np.arange(COUNT)
+    sizes = np.outer(np.exp(growth * times), [40.0, 20.0])
+    centres = np.full((COUNT, 2), 100.0)
+    centres[:, axis] += speed * times
+    low, high = centres - sizes / 2, centres + sizes / 2
+    whole = centres.copy(), sizes.copy()
+    if wall is not None and speed > 0:
+        high[:, axis] = np.minimum(high[:, axis], wall)
+    elif wall is not None:
+        low[:, axis] = np.maximum(low[:, axis], wall)
+    return ((low + high) / 2, high - low), whole
+
+
+@pytest.mark.parametrize(
+    ("speed", "wall", "axis"), [(2.0, 150.0, 0), (-2.0, 50.0, 0), (1.0, 120.0, 1)]
+)
+def test_the_side_behind_a_wall_is_restored(speed, wall, axis):
+    seen, whole = sides(speed, wall, axis=axis)
+    assert seen[1][-1, axis] < 0.75 * whole[1][-1, axis]
+    positions, sizes = made_whole(AGES, *seen, CLEAR)
+    assert positions == pytest.approx(whole[0])
+    assert sizes == pytest.approx(whole[1])
+
+
+def test_a_vehicle_that_grows_is_restored_to_its_present_size():
+    seen, whole = sides(2.0, 155.0, growth=0.01)
+    positions, sizes = made_whole(AGES, *seen, CLEAR)
+    assert sizes[-1] == pytest.approx(whole[1][-1], rel=0.02)
+    assert positions[-1] == pytest.approx(whole[0][-1], abs=1.0)
+
+
+def test_what_is_seen_is_not_changed():
+    seen, _ = sides(2.0, 150.0)
+    before = [each.copy() for each in seen]
+    made_whole(AGES, *seen, CLEAR)
+    assert all(np.array_equal(*pair) for pair in zip(before, seen, strict=True))
+
+
+@pytest.mark.parametrize("speed", [2.0, 0.0])
+def test_a_vehicle_in_the_open_is_left_as_it_is(speed):
+    assert made_whole(AGES, *sides(speed)[0], CLEAR) is None
+
+
+def test_a_vehicle_that_turns_is_left_as_it_is():
+    """Its box becomes narrower, but both sides of it drive on."""
+    (positions, sizes), _ = sides(3.0)
+    sizes[:, 0] *= np.exp(-0.02 * np.arange(COUNT))
+    assert made_whole(AGES, positions, sizes, CLEAR) is None
+
+
+def test_a_vehicle_that_comes_closer_is_left_as_it_is():
+    assert made_whole(AGES, *sides(0.2, growth=0.03)[0], CLEAR) is None
+
+
+@pytest.mark.parametrize(("kept", "response"), [(12, 1.0), (COUNT, 0.5)])
+def test_few_or_unclear_sightings_are_left_as_they_are(kept, response):
+    (positions, sizes), _ = sides(2.0, 150.0)
+    found = made_whole(AGES[-kept:], positions[-kept:], sizes[-kept:], response * CLEAR[-kept:])
+    assert found is None
+
+
+def test_the_prediction_begins_with_the_whole_vehicle():
+    (positions, sizes), whole = sides(2.0, 150.0)
+    sightings = Sightings()
+    for position, size in zip(positions, sizes, strict=True):
+        sightings.pass_time(1.0, CameraMotion())
+        sightings.add(position, size, 1.0)
+    motion, last = sightings.fit(perspective=True)
+    assert last.cut
+    assert last.size == pytest.approx(whole[1][-1])
+    assert motion.velocity == pytest.approx([2.0, 0.0], abs=0.05)
+    assert motion.position == pytest.approx(whole[0][-1], abs=0.5)

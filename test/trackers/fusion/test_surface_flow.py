@@ -1,0 +1,195 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The share of a vehicle's surface that moves with it: an occluder lowers it, a turn does not."""
+
+import copy
+
+import cv2
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.canonical_patch import cut_patch
+from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
+
+SIZE = np.array([40.0, 40.0])
+START = np.array([80.0, 120.0])
+
+
+def texture(seed, width=320, height=240):
+    noise = np.random.default_rng(seed).integers(0, 256, (height, width, 3)).astype(np.uint8)
+    smooth = cv2.GaussianBlur(noise, (0, 0), 3.0).astype(float)
+    return np.clip(6 * (smooth - 128) + 128, 0, 255).astype(np.uint8)
+
+
+ROAD, VEHICLE, OCCLUDER = texture(1), texture(2, 40, 40), texture(3)
+
+
+def picture_of(centre, degrees=0.0):
+    """The vehicle on the road, turned by so much."""
+    matrix = cv2.getRotationMatrix2D((19.5, 19.5), degrees, 1.0)
+    matrix[:, 2] += np.array(centre) - 20
+    picture, size = ROAD.copy(), ROAD.shape[1::-1]
+    mask = cv2.warpAffine(np.full((40, 40), 255, np.uint8), matrix, size)
+    vehicle = cv2.warpAffine(VEHICLE, matrix, size)
+    picture[mask > 127] = vehicle[mask > 127]
+    return picture
+
+
+class Drive:
+    """Shows a vehicle whose position is known, frame by frame."""
+
+    def __init__(self, speed=(2.0, 0.0), spin=0.0):
+        self.flow, self.time = SurfaceFlow(), 0
+        self.speed, self.spin = np.array(speed), spin
+        self._keep(self._patch())
+
+    @property
+    def centre(self):
+        return START + self.speed * self.time
+
+    def _patch(self, occlude=None):
+        picture = picture_of(self.centre, self.spin * self.time)
+        if occlude is not None:
+            occlude(picture, self.time)
+        return cut_patch(picture, self.centre, 40.0 / SIZE, 128)
+
+    def _keep(self, patch):
+        self.flow.keep(patch, self.centre, SIZE)
+
+    def step(self, occlude=None):
+        self.time += 1
+        patch = self._patch(occlude)
+        share = self.flow.judge(patch, self.centre, SIZE)
+        self._keep(patch)
+        return share
+
+    def drive(self, frames, occlude=None):
+        return [self.step(occlude) for _ in range(frames)][-1]
+
+
+def wall(left, right=320):
+    """A wall that stands in these columns, with the same texture all the time."""
+
+    def paint(picture, _):
+        picture[:, left:right] = OCCLUDER[:, left:right]
+
+    return paint
+
+
+def test_all_of_a_vehicle_that_drives_on_moves_with_it():
+    drive = Drive()
+    shares = [drive.step() for _ in range(20)]
+    assert min(shares[4:]) > 0.9
+
+
+def test_a_standing_wall_leaves_about_the_share_that_is_visible():
+    """After 30 frames the vehicle spans columns 120 to 160."""
+    quarter, half, most = (Drive().drive(30, wall(left)) for left in (150, 140, 130))
+    assert 0.5 < quarter < 0.9
+    assert 0.35 < half < 0.65
+    assert most < 0.25
+
+
+def test_nothing_moves_with_a_vehicle_behind_a_wall():
+    assert Drive().drive(30, wall(100)) < 0.1
+
+
+def test_a_lorry_that_drives_by_takes_points_along():
+    """It comes from the front, by 9 px per frame nearer, and covers the vehicle in frames 16 to 27.
+
+    Flow takes some of its texture for the vehicle's, since it looks for matches close by first.
+    """
+
+    def lorry(picture, time):
+        left = 220 - 7 * time
+        first, last = max(left, 0), min(left + 140, 320)
+        picture[:, first:last] = OCCLUDER[:, first - left : last - left]
+
+    drive = Drive()
+    assert drive.drive(13, lorry) > 0.9
+    assert np.mean([drive.step(lorry) for _ in range(14)]) < 0.7
+
+
+@pytest.mark.parametrize("spin", [3.0, -4.0])
+def test_a_vehicle_that_turns_keeps_its_surface(spin):
+    assert Drive(spin=spin).drive(20) > 0.7
+
+
+@pytest.mark.parametrize(("told", "low", "high"), [(True, 0.0, 0.2), (False, 0.5, 1.0)])
+def test_a_wall_stands_in_the_scene_and_not_in_the_image(told, low, high):
+    """The camera pans with the vehicle, which stays where it is in the image; so does no wall."""
+    flow = SurfaceFlow()
+    for time in range(12):
+        picture = picture_of(START + np.array([3.0 * time, 0.0]))
+        if time > 5:
+            wall(90)(picture, time)
+        patch = cut_patch(np.roll(picture, -3 * time, axis=1), START, 40.0 / SIZE, 128)
+        if told:
+            flow.move_with_camera(CameraMotion(shift=np.array([-3.0, 0.0])))
+        share = flow.judge(patch, START, SIZE)
+        flow.keep(patch, START, SIZE)
+    assert low <= share <= high
+
+
+def test_without_an_earlier_patch_flow_tells_nothing():
+    flow = SurfaceFlow()
+    patch = cut_patch(ROAD, START, 40.0 / SIZE, 128)
+    assert flow.judge(patch, START, SIZE) is None
+    assert flow.share == 1.0
+
+
+def test_where_little_usually_moves_with_it_flow_tells_nothing():
+    drive = Drive()
+    shares = [drive.step(wall(0)) for _ in range(12)]
+    assert shares[-1] is None
+    assert drive.flow.share == 1.0
+
+
+def test_restarting_forgets_patches_but_not_the_usual_share():
+    drive = Drive()
+    drive.drive(30, wall(140))
+    drive.flow.restart()
+    assert drive.flow.share == 1.0
+    assert drive.step() is None
+    assert drive.step() == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("side", [256, 128])
+def test_the_middle_of_a_wide_patch_will_do(side):
+    drive = Drive()
+    drive.drive(10)
+    patch = cut_patch(picture_of(drive.centre), drive.centre, 40.0 / SIZE, side).middle(128)
+    assert drive.flow.judge(patch, drive.centre, SIZE) > 0.8
+
+
+def test_the_number_of_threads_changes_nothing():
+    threads = cv2.getNumThreads()
+    found = []
+    try:
+        for count in (1, 2, 4):
+            cv2.setNumThreads(count)
+            drive = Drive(speed=(2.3, 0.7), spin=1.0)
+            found.append([drive.step(wall(150)) for _ in range(40)])
+    finally:
+        cv2.setNumThreads(threads)
+    assert found[0] == found[1] == found[2]
+
+
+def test_a_copy_goes_on_by_itself():
+    drive = Drive()
+    drive.drive(10)
+    twin = copy.deepcopy(drive)
+    assert [twin.step() for _ in range(5)] == [drive.step() for _ in range(5)]
