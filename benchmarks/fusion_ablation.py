@@ -45,6 +45,8 @@ CHANGES: Mapping[str, Mapping[str, Value]] = {
     "no colour": {"filter.colour": False},
     "no points": {"visibility.points_slope": 0.0},
     "learns while points end": {"visibility.learning_points": 0.0},
+    "no second look": {"visibility.second_look": False},
+    "no outlines in turns": {"motion.turns": False},
     "first size kept": {"size.step": 0.0},
     "first aspect kept": {"size.aspect_gain": 0.0},
     "size without points": {"size.points_gain": 0.0},
