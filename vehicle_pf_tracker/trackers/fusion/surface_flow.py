@@ -71,9 +71,17 @@ class _Kept:
     size: Array
     turn: Array = field(default_factory=lambda: np.eye(2))
     shift: Array = field(default_factory=lambda: np.zeros(2))
+    still: bool = True
+
+    def move(self, camera: CameraMotion) -> None:
+        """Let the camera move."""
+        self.turn, self.shift = camera.turn @ self.turn, camera.apply(self.shift)
+        self.still = False
 
     def background(self, positions: Array) -> Array:
         """Where the background at present positions (..., 2) was then, px."""
+        if self.still:
+            return positions
         return np.asarray((positions - self.shift) @ np.linalg.inv(self.turn).T)
 
 
@@ -85,6 +93,8 @@ class SurfaceFlow:
     share : float
         Share of the points in the box that move with the vehicle, of the usual share; 1 where flow
         tells nothing.
+    tells : bool
+        True where it was judged in the present frame.
     """
 
     def __init__(self) -> None:
@@ -95,14 +105,18 @@ class SurfaceFlow:
     def restart(self) -> None:
         """Forget all patches, but not the usual share."""
         self._kept: deque[_Kept] = deque(maxlen=_KEPT)
-        self.share = 1.0
+        self.forget_share()
+
+    def forget_share(self) -> None:
+        """Take all of the surface to move with the vehicle until it is judged again."""
+        self.share, self.tells = 1.0, False
 
     def move_with_camera(self, camera: CameraMotion) -> None:
         """Let the camera move."""
         if camera.still:
             return
         for kept in self._kept:
-            kept.turn, kept.shift = camera.turn @ kept.turn, camera.apply(kept.shift)
+            kept.move(camera)
 
     def keep(self, patch: Patch, position: Array, size: Array) -> None:
         """Keep a patch, and position and size of the vehicle in it, px."""
@@ -130,9 +144,9 @@ class SurfaceFlow:
         self._latest = float(moves.mean())
         if not self._usual:
             self._usual = self._latest
-        telling = self._usual >= _LEAST_USUAL
-        self.share = min(self._latest / self._usual, 1.0) if telling else 1.0
-        return self.share if telling else None
+        self.tells = self._usual >= _LEAST_USUAL
+        self.share = min(self._latest / self._usual, 1.0) if self.tells else 1.0
+        return self.share if self.tells else None
 
     def learn_usual(self) -> None:
         """Count the present share as one of a clear frame."""
@@ -154,7 +168,7 @@ class SurfaceFlow:
     ) -> npt.NDArray[np.bool_]:
         """Tell which points of the box have moved with the vehicle since the earlier patch."""
         cells = _cells(patch, position, size)
-        source = cells + 0.5 + _flow(patch, kept.patch)[cells[:, 1], cells[:, 0]]
+        source = cells + 0.5 + _flow(patch, kept.patch, cells)
         points = patch.to_frame(np.asarray(cells + 0.5, np.float64))
         places = (points - position) / size
         off = source - kept.patch.to_patch(kept.position + places * kept.size)
@@ -168,8 +182,8 @@ class SurfaceFlow:
         return np.asarray(np.hypot(off[:, 0], off[:, 1]) < limits)
 
 
-def _flow(present: Patch, before: Patch) -> Array:
-    """Dense flow (side, side, 2) from the present patch to an earlier one, canonical px.
+def _flow(present: Patch, before: Patch, cells: npt.NDArray[np.intp]) -> Array:
+    """Flow (N, 2) at points (N, 2) from the present patch to an earlier one, canonical px.
 
     By dense inverse search (Kroeger et al. 2016), whose stripes, and so its results, do not depend
     on the number of threads.
@@ -178,7 +192,8 @@ def _flow(present: Patch, before: Patch) -> Array:
     method.setVariationalRefinementIterations(_REFINED)
     # The middle of a wide patch is not in one piece of memory.
     images = (np.ascontiguousarray(each.grey) for each in (present, before))
-    return np.asarray(method.calc(*images, None), np.float64)  # type: ignore[call-overload]
+    flow = method.calc(*images, None)  # type: ignore[call-overload]
+    return np.asarray(flow[cells[:, 1], cells[:, 0]], np.float64)
 
 
 def _cells(patch: Patch, position: Array, size: Array) -> npt.NDArray[np.intp]:

@@ -206,7 +206,7 @@ class Track(ParticleTracker[FusionParameters]):
         """Train the filter, the less the less surely the vehicle is visible."""
         options = self.parameters.filter
         share = self._surface.share
-        turns = share > _TURNING_SHARE and response < _TURNING_RESPONSE
+        turns = self._surface.tells and share > _TURNING_SHARE and response < _TURNING_RESPONSE
         turns &= not self._turning.can_begin  # outlines tell more of a turn, size included
         whole = share > self.parameters.visibility.learning_points
         if not turns and (response <= _LEAST_LEARNT or not whole):

@@ -193,6 +193,7 @@ class FusionTracker(Track):
         """Take the share of the surface that moves with the vehicle as evidence on visibility."""
         evidence = self.parameters.visibility
         if not evidence.points_slope:
+            self._surface.forget_share()
             return
         self._points.track(patch, move, position, self._size)
         share = self._surface.judge(patch, position, self._size)
