@@ -12,11 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Points on the vehicle, tracked from frame to frame: evidence for a turn against an occlusion.
+"""Points on the vehicle, tracked from frame to frame: its first motion, and its change of size.
 
-Where a vehicle turns, the filter's response falls as it does behind an occluder; but most points of
-its surface live on, while an occluder ends them. Points that stay behind with a standing occluder,
-or go away with a moving one, leave their place in the box and count as ended too.
+Points that stay behind with a standing occluder, or go away with a moving one, leave their place in
+the box and end; and no others are placed while many have ended, since they would lie on it.
 """
 
 from __future__ import annotations

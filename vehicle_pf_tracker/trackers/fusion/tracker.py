@@ -21,7 +21,7 @@ Per frame: move with the camera, predict, observe, judge visibility, and then ei
 - hidden: predict along the road, learn nothing, and wait until hypotheses gather evidence.
 
 The filter response at each hypothesis is a calibrated log-likelihood ratio of visible against
-hidden; points on the surface give a second one for all of them. docs/fusion.md has the model.
+hidden; flow on the surface gives a second one for all of them. docs/fusion.md has the model.
 """
 
 from __future__ import annotations
