@@ -26,9 +26,9 @@ from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.fusion import track
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
+from vehicle_pf_tracker.trackers.fusion.turning import TurningBranch
 
 
 def fusion(**values):
@@ -250,10 +250,29 @@ def follow_the_turn():
     return modes, errors
 
 
-def test_before_a_moving_camera_a_turn_is_learnt_while_the_surface_moves(monkeypatch):
+def test_a_turn_before_a_moving_camera_is_followed():
     modes, errors = follow_the_turn()
     assert set(modes) == {Mode.TRACKING}
     assert max(errors) < 15
-    monkeypatch.setattr(track, "_TURNING_SHARE", 1.1)
-    modes, _ = follow_the_turn()
-    assert modes.count(Mode.TRACKING) < 50
+
+
+def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
+    tracker, learnt = fusion(), []
+    follow(tracker, Street(speed=2.0), range(12))
+    monkeypatch.setattr(tracker._appearance, "learn", lambda *values: learnt.append(values[-1]))
+    usual = 5.0 / tracker._particles.probability_visible
+
+    def stiffness(response, share, *, tells=True, outlines=False):
+        monkeypatch.setattr(TurningBranch, "can_begin", outlines)
+        tracker._surface.share, tracker._surface.tells = share, tells
+        learnt.clear()
+        tracker._learn_appearance(None, None, response)
+        return learnt
+
+    assert stiffness(0.9, 1.0) == [usual]
+    assert stiffness(0.4, 0.95) == [pytest.approx(0.4 * usual)]
+    assert stiffness(0.1, 0.95) == [pytest.approx(0.2 * usual)]
+    assert stiffness(0.4, 0.8) == []
+    assert stiffness(0.4, 0.95, tells=False) == []
+    assert stiffness(0.4, 0.95, outlines=True) == []
+    assert stiffness(0.6, 0.3) == []
