@@ -89,6 +89,10 @@ def test_few_or_unclear_sightings_are_left_as_they_are(kept, response):
     assert found is None
 
 
+def test_sightings_of_one_moment_are_left_as_they_are():
+    assert made_whole(0 * AGES, *sides(2.0, 150.0)[0], CLEAR) is None
+
+
 def test_the_prediction_begins_with_the_whole_vehicle():
     (positions, sizes), whole = sides(2.0, 150.0)
     sightings = Sightings()

@@ -108,7 +108,7 @@ def test_nothing_moves_with_a_vehicle_behind_a_wall():
 
 
 def test_a_lorry_that_drives_by_takes_points_along():
-    """It comes from the front, by 9 px per frame nearer, and covers the vehicle in frames 16 to 27.
+    """It comes from the front, and covers the vehicle from frame 14 on, and wholly from 18 to 28.
 
     Flow takes some of its texture for the vehicle's, since it looks for matches close by first.
     """

@@ -82,9 +82,12 @@ def made_whole(
 
 
 def _driving_side(ages: Array, sides: Array, extent: float) -> int | None:
-    """Which of two sides (2, N) drives towards the other, which stands; None if not so."""
+    """Find the one of two sides (2, N) that drives towards the other, if it stands."""
     times = ages.mean() - ages
-    speeds = sides @ times / float(times @ times)
+    spread = float(times @ times)
+    if not spread:  # repeated stamps: no time has passed
+        return None
+    speeds = sides @ times / spread
     driving = int(np.abs(speeds).argmax())
     stands = abs(speeds[1 - driving]) <= _STANDS * abs(speeds[driving])
     moves = abs(speeds[driving]) >= _LEAST_SPEED * extent
