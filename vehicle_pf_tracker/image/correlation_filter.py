@@ -161,7 +161,8 @@ class CorrelationFilter:
         count, (columns, rows) = features.shape[1:], self.extent
         top, left = (count[0] - rows) // 2, (count[1] - columns) // 2
         seen = features.transpose(1, 0, 2)[top : top + rows, :, left : left + columns]
-        return float(np.vdot(seen, self.weights.faded))
+        # Long dot products of BLAS are summed by several threads, and rounded otherwise then.
+        return float(np.einsum("rcx,rcx->", seen, self.weights.faded))
 
     def respond_wide(self, features: CellFeatures) -> Response:
         """Respond to the cells (channels, m, m) of a larger patch, m even and above n."""

@@ -28,6 +28,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.products import product
 from vehicle_pf_tracker.image.window import Bounds
 
 Segments = npt.NDArray[np.float64]
@@ -154,6 +155,6 @@ def line_histograms(segments: Segments, windows: Bounds, bins: int) -> Array:
     (N, bins) array
         Rows sum to one; zero where a window has no line.
     """
-    lengths = lengths_inside(segments, windows) @ direction_shares(segments, bins)
+    lengths = product(lengths_inside(segments, windows), direction_shares(segments, bins))
     total = lengths.sum(axis=1, keepdims=True)
     return np.asarray(np.divide(lengths, total, out=np.zeros_like(lengths), where=total > 0))

@@ -28,6 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.products import product
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 
 Spectrum: TypeAlias = npt.NDArray[np.float32]
@@ -70,16 +71,16 @@ class PartialFourier:
     def cells_of(self, spectrum: Spectrum) -> CellFeatures:
         """Cells of the part, (channels, rows, columns)."""
         channels = spectrum.shape[1]
-        rows = self._to_rows @ spectrum.reshape(len(spectrum), -1)
-        cells = rows.reshape(len(rows) * channels, -1) @ self._to_columns
+        rows = product(self._to_rows, spectrum.reshape(len(spectrum), -1))
+        cells = product(rows.reshape(len(rows) * channels, -1), self._to_columns)
         return np.asarray(cells.reshape(len(rows), channels, -1).transpose(1, 0, 2))
 
     def spectrum_of(self, cells: CellFeatures) -> Spectrum:
         """Half spectrum of the square from the cells of the part."""
         channels, count = cells.shape[:2]
         by_row = cells.transpose(1, 0, 2).reshape(count * channels, -1)
-        rows = (by_row @ self._from_columns).reshape(count, -1)
-        spectrum = self._from_rows @ rows
+        rows = product(by_row, self._from_columns).reshape(count, -1)
+        spectrum = product(self._from_rows, rows)
         return np.asarray(spectrum.reshape(len(spectrum), channels, 2, -1))
 
 
@@ -89,7 +90,7 @@ def upsampled(spectrum: Spectrum, upsampling: int) -> _Matrix:
     Zero is in the middle. The highest frequency along x, which has no phase, is left out.
     """
     down, right = _fine_transforms(len(spectrum), upsampling)
-    return np.asarray(down @ spectrum.reshape(len(spectrum), -1) @ right)
+    return product(product(down, spectrum.reshape(len(spectrum), -1)), right)
 
 
 def complex_spectrum(spectrum: Spectrum) -> ComplexSpectrum:

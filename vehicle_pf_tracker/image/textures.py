@@ -114,8 +114,8 @@ def descriptors(matrices: Array) -> Array:
     logarithms = np.log(np.where(matrices > 0, matrices, 1.0))
     values = [
         matrices.max(axis=1),
-        matrices @ np.square(difference) / (LEVELS - 1) ** 2,
-        matrices @ (1.0 / (1.0 + difference)),
+        (matrices * np.square(difference)).sum(axis=1) / (LEVELS - 1) ** 2,
+        (matrices / (1.0 + difference)).sum(axis=1),
         np.square(matrices).sum(axis=1),
         -(matrices * logarithms).sum(axis=1) / np.log(LEVELS * LEVELS),
     ]

@@ -1,0 +1,52 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Matrix products with the same bits on any number of threads.
+
+OpenBLAS, which numpy uses, cuts a large product into one piece per thread, and rounds at the edges
+of pieces otherwise than inside; `OMP_NUM_THREADS`, or the number of cores, would change estimates.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+_FloatT = TypeVar("_FloatT", bound=np.floating[Any])
+
+_SERIAL = 1 << 18
+"""Multiplications up to which OpenBLAS gives a product to one thread (its interface/gemm.c:
+SMP_THRESHOLD_MIN times GEMM_MULTITHREAD_THRESHOLD)."""
+
+
+def product(left: npt.NDArray[_FloatT], right: npt.NDArray[_FloatT]) -> npt.NDArray[_FloatT]:
+    """Matrix product (m, n) of an (m, k) and a (k, n) array, in pieces that one thread computes.
+
+    The longer side of the product is cut.
+    """
+    (rows, inner), columns = left.shape, right.shape[1]
+    longer = max(rows, columns)
+    piece = max(_SERIAL * longer // max(rows * inner * columns, 1), 1)
+    if piece >= longer:
+        return np.asarray(left @ right)
+    whole = np.empty((rows, columns), np.result_type(left, right))
+    for first in range(0, longer, piece):
+        part = slice(first, first + piece)
+        if rows > columns:
+            np.matmul(left[part], right, out=whole[part])
+        else:
+            np.matmul(left, right[:, part], out=whole[:, part])
+    return whole
