@@ -18,7 +18,13 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
-from vehicle_pf_tracker.image.shared_motion import shared_similarity, shared_stretch, staying
+from vehicle_pf_tracker.image.shared_motion import (
+    CELL,
+    carried_share,
+    shared_similarity,
+    shared_stretch,
+    staying,
+)
 
 
 @pytest.fixture(scope="module")
@@ -92,3 +98,70 @@ def test_compiled_kernels_find_the_same_stretch(numba, count, growth):
     found = numba.shared_stretch(before, after, np.ones(2))
     assert found == pytest.approx(expected, abs=1e-12)
     assert expected.any() == (count >= 12)
+
+
+STILL_BOX = np.array([[0.1, 0.1], [-1.6, -1.6]])
+"""Places of points in a box of 10 x 10 px around (16, 16)."""
+FROM_LEFT = np.array([[1.0, 1.0], [-5.0, 0.0]])
+"""Of points whose vehicle has driven 5 px to the right."""
+STANDS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
+NOT_TOLD = np.empty((0, 2))
+
+
+def flow_of(*columns):
+    """Flow of 32 x 32 px along x, by parts of equal width from left to right."""
+    flow = np.zeros((32, 32, 2), np.float32)
+    for part, each in zip(np.split(flow, len(columns), axis=1), columns, strict=True):
+        part[..., 0] = each
+    return flow
+
+
+def block(*numbers):
+    return np.array(numbers, np.intp).reshape(2, 2)
+
+
+ALL = block(0, 0, 8, 8)
+
+
+@pytest.mark.parametrize(
+    ("columns", "background", "share"),
+    [
+        ((-5,), STANDS, 1.0),
+        ((0,), STANDS, 0.0),
+        ((-5, 0), STANDS, 0.5),
+        ((-5, -20), STANDS, 0.5),
+        ((-5, -5, 0, 0), NOT_TOLD, 0.5),
+        ((-3.5,), STANDS, 1.0),
+        ((-3.5,), NOT_TOLD, 1.0),
+        ((0,), NOT_TOLD, 0.0),
+    ],
+)
+def test_share_that_the_vehicle_carries(numba, columns, background, share):
+    """What comes from elsewhere does not count, nor what stands."""
+    for kernel in (carried_share, numba.carried_share):
+        found = kernel(flow_of(*columns), ALL, STILL_BOX, FROM_LEFT, background)
+        assert found == pytest.approx(share)
+
+
+def test_a_vehicle_that_grows_carries_all_of_its_surface(numba):
+    """By a quarter, which takes the outermost points 3.5 px off; they would not count otherwise."""
+    flow = flow_of(0)
+    flow[..., 0] = -5 - 0.25 * (np.arange(32) + 0.5 - 16)
+    for kernel in (carried_share, numba.carried_share):
+        assert kernel(flow, ALL, STILL_BOX, FROM_LEFT, NOT_TOLD) == 1.0
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_compiled_kernels_find_the_same_share(numba, seed):
+    rng = np.random.default_rng(seed)
+    side = 4 * int(rng.integers(2, 12))
+    flow = rng.normal(-2, 3, (side, side, 2)).astype(np.float32)
+    last = side // CELL
+    low = rng.integers(0, last, 2)
+    cells = np.stack([low, [rng.integers(1, last - at + 1) for at in low]]).astype(np.intp)
+    places = np.array([[0.1, 0.12], [-0.05 * side, -0.06 * side]])
+    vehicle = np.array([[1.05, 0.97], [-2.0, 0.5]])
+    background = np.vstack([rng.normal(0, 0.05, (2, 2)) + np.eye(2), rng.normal(0, 2, 2)])
+    for told in (background, NOT_TOLD):
+        expected = carried_share(flow, cells, places, vehicle, told)
+        assert numba.carried_share(flow, cells, places, vehicle, told) == pytest.approx(expected)

@@ -27,6 +27,10 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 
 Alive: TypeAlias = npt.NDArray[np.bool_]
+Flow: TypeAlias = npt.NDArray[np.float32]
+"""Displacement by [y, x], as x and y, to where the pixel was in an earlier image, px."""
+CellBlock: TypeAlias = npt.NDArray[np.intp]
+"""First column and row, and number of columns and rows, (2, 2); a cell has `CELL` px."""
 
 AGREEING_PX = 0.7
 """Residual of a corner that agrees with the motion, in px of the reduced frame."""
@@ -50,6 +54,16 @@ LARGEST_STRETCH = 0.05
 LEAST_RATIO = 0.2
 """Bound of the ratio of two distances, whose logarithm is taken."""
 
+CELL = 4
+"""Px between points of a surface: dense flow is no finer."""
+STRAYED_PX = 3.0
+"""Distance in px from where its vehicle would have taken it, from which a point has moved on its
+own: what a second occluder drives, or flow that has failed."""
+FEWEST_CARRIED = 8
+"""Fewest points that a turn is fitted to."""
+NEARLY = 1.3
+"""Factor to the limits within which points take part in the fit of the turn."""
+
 
 class MotionKernels(Protocol):
     """Fits of shared motion; those of this module, or compiled."""
@@ -64,6 +78,12 @@ class MotionKernels(Protocol):
 
     def shared_stretch(self, before: Array, after: Array, size: Array) -> Array:
         """Change of distances; see `shared_stretch`."""
+        ...
+
+    def carried_share(
+        self, flow: Flow, cells: CellBlock, places: Array, vehicle: Array, background: Array
+    ) -> float:
+        """Share of a box that has moved with its vehicle; see `carried_share`."""
         ...
 
 
@@ -163,3 +183,43 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
             ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
             change[axis] = float(np.median(np.log(ratio)))
     return np.clip(change, -LARGEST_STRETCH, LARGEST_STRETCH)
+
+
+def carried_share(
+    flow: Flow, cells: CellBlock, places: Array, vehicle: Array, background: Array
+) -> float:
+    """Share of the points of a box that have moved with its vehicle.
+
+    A point counts that came from close to where the vehicle, turned and grown as most of them are,
+    would have taken it from, and from closer to there than to where the background was.
+
+    Parameters
+    ----------
+    flow : (h, w, 2) array of float32
+        Of the image that has the box; see `Flow`.
+    cells : (2, 2) array of intp
+        The box; see `CellBlock`. Points are the middles of its cells, px.
+    places, vehicle : (2, 2) arrays
+        Factors and then summands, along x and y, that take a point to its place in the box, in
+        sizes from the centre; and to where its place was in the earlier image, px.
+    background : (3, 2) or (0, 2) array
+        Matrix and then summand that take a point to where the background there was; empty where the
+        two have hardly moved apart.
+    """
+    columns, rows = (
+        (cells[0, axis] + np.arange(cells[1, axis])) * CELL + CELL // 2 for axis in (0, 1)
+    )
+    x, y = (each.ravel() for each in np.meshgrid(columns, rows))
+    points = np.stack([x, y], axis=-1) + 0.5
+    source = points + flow[y, x]
+    place = points * places[0] + places[1]
+    off = source - (points * vehicle[0] + vehicle[1])
+    limits = np.full(len(points), STRAYED_PX)
+    if len(background):
+        stays = source - (points @ background[:2] + background[2])
+        limits = np.minimum(limits, np.hypot(stays[:, 0], stays[:, 1]))
+    near = np.hypot(off[:, 0], off[:, 1]) < NEARLY * limits
+    if near.sum() >= FEWEST_CARRIED:
+        gram = place[near].T @ place[near] + np.eye(2) * TURN_INERTIA
+        off = off - place @ np.linalg.solve(gram, place[near].T @ off[near])
+    return float((np.hypot(off[:, 0], off[:, 1]) < limits).mean())

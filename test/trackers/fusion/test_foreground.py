@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.small_grey import SmallGrey
-from vehicle_pf_tracker.trackers.fusion.foreground import Foreground
+from vehicle_pf_tracker.trackers.fusion.foreground import Foreground, _median
 
 SIZE = np.array([24.0, 14.0])
 
@@ -93,3 +93,10 @@ def test_frames_of_another_size_are_no_background():
 @pytest.mark.parametrize("centre", [(0.0, 0.0), (199.0, 119.0), (-50.0, 60.0), (500.0, 500.0)])
 def test_boxes_at_and_beyond_the_border_have_no_outline(centre):
     assert watched()[0].outline(np.array(centre), SIZE) is None
+
+
+@pytest.mark.parametrize("count", [1, 2, 6, 15])
+def test_the_median_is_that_of_each_pixel(count):
+    images = list(np.random.default_rng(count).integers(0, 256, (count, 9, 7)).astype(np.uint8))
+    expected = np.sort(images, axis=0)[count // 2]
+    assert np.array_equal(_median(images), expected)

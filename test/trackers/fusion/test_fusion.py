@@ -258,7 +258,7 @@ def test_a_turn_before_a_moving_camera_is_followed():
 
 def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
     tracker, learnt = fusion(), []
-    follow(tracker, Street(speed=2.0), range(12))
+    follow(tracker, Street(speed=2.0), range(8))  # later frames may be calm, and learn in turns
     monkeypatch.setattr(tracker._appearance, "learn", lambda *values: learnt.append(values[-1]))
     usual = 5.0 / tracker._particles.probability_visible
 
@@ -276,3 +276,47 @@ def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
     assert stiffness(0.4, 0.95, tells=False) == []
     assert stiffness(0.4, 0.95, outlines=True) == []
     assert stiffness(0.6, 0.3) == []
+
+
+def counted(tracker, monkeypatch):
+    """Names of the costly tasks, in the order in which the tracker does them."""
+    done = []
+
+    def note(owner, name):
+        task = getattr(owner, name)
+
+        def noted(*values, **options):
+            done.append(name)
+            return task(*values, **options)
+
+        monkeypatch.setattr(owner, name, noted)
+
+    note(tracker._points, "track")
+    note(tracker._surface, "judge")
+    note(tracker, "_follow_size")
+    note(tracker._appearance, "learn")
+    return done
+
+
+def test_calm_frames_share_the_work(monkeypatch):
+    street, tracker = Street(speed=2.0), fusion()
+    follow(tracker, street, range(20))
+    done = counted(tracker, monkeypatch)
+    tracker.step(street.frame(20))
+    assert done == ["judge", "learn"]
+    done.clear()
+    tracker.step(street.frame(21))
+    assert done == ["track", "_follow_size"]
+
+
+def test_before_ten_frames_and_in_doubt_all_of_the_work_is_done_in_each(monkeypatch):
+    street, tracker = Street(speed=2.0, hidden=(20, 30)), fusion()
+    follow(tracker, street, range(5))
+    done = counted(tracker, monkeypatch)
+    tracker.step(street.frame(5))
+    assert done == ["track", "judge", "_follow_size", "learn"]
+    for time in range(6, 20):
+        tracker.step(street.frame(time))
+    done.clear()
+    tracker.step(street.frame(20))
+    assert done == ["track", "judge"]

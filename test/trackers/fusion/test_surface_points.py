@@ -61,7 +61,7 @@ class Drive:
     def __init__(self, speed=2.0, growth=(0.0, 0.0)):
         self.points, self.time = SurfacePoints(), 0
         self.speed, self.growth = np.array([speed, 0.5 * speed]), np.array(growth)
-        self.points.keep(patch_of(frame(START), START))
+        self.points.keep(patch_of(frame(START), START), START)
         self.points.renew(START, SIZE)
 
     @property
@@ -80,11 +80,11 @@ class Drive:
             occlude(picture, self.centre)
         patch = patch_of(picture, self.centre, SIZE * self.scale)
         size = SIZE * self.scale
-        survival = self.points.track(patch, self.speed, self.centre, size)
+        survival = self.points.track(patch, self.centre, size)
         if learn:
             self.points.learn_usual()
         self.points.renew(self.centre, size)
-        self.points.keep(patch)
+        self.points.keep(patch, self.centre)
         return survival
 
 
@@ -144,9 +144,9 @@ def test_points_of_a_turning_vehicle_survive():
         picture = cv2.warpAffine(ROAD, matrix, ROAD.shape[1::-1])
         patch = patch_of(picture, position)
         if frames:
-            survival = points.track(patch, np.zeros(2), position, SIZE)
+            survival = points.track(patch, position, SIZE)
         points.renew(position, SIZE)
-        points.keep(patch)
+        points.keep(patch, position)
     assert survival > 0.9
     assert points._latest > 0.6
 
@@ -157,12 +157,11 @@ def test_what_stays_behind_with_a_standing_part_ends():
     for _ in range(8):
         drive.step()
     drive.speed = np.array([8.0, 0.0])
-    picture = frame(drive.centre)
-    patch = patch_of(picture, drive.centre)
+    patch = patch_of(frame(drive.centre), drive.centre)
     for number in range(1, 3):
         ahead = drive.centre + np.array([8.0 * number, 0.0])
-        survival = drive.points.track(patch, np.zeros(2), ahead, SIZE)
-        drive.points.keep(patch)
+        drive.points.keep(patch, ahead)  # so that the search starts where the points are
+        survival = drive.points.track(patch, ahead, SIZE)
     assert survival < 0.1
 
 
@@ -179,12 +178,12 @@ def test_the_stretch_of_a_zoomed_texture_is_its_growth(growth):
 def test_a_flat_vehicle_tells_nothing():
     flat = np.full((240, 320, 3), 90, np.uint8)
     points = SurfacePoints()
-    points.keep(patch_of(flat, START))
+    points.keep(patch_of(flat, START), START)
     points.renew(START, SIZE)
     for _ in range(8):
         noise = np.random.default_rng(0).integers(0, 256, flat.shape).astype(np.uint8)
-        survival = points.track(patch_of(noise, START), np.zeros(2), START, SIZE)
-        points.keep(patch_of(noise, START))
+        survival = points.track(patch_of(noise, START), START, SIZE)
+        points.keep(patch_of(noise, START), START)
         flat = noise
     assert survival is None or survival >= 0
     assert 0 <= points.survival <= 1.0
@@ -213,7 +212,7 @@ def test_restarting_keeps_the_usual_survival_only():
 
 def first_motion(before, after, size=SIZE):
     points = SurfacePoints()
-    points.keep(patch_of(before, START, size))
+    points.keep(patch_of(before, START, size), START)
     return points.first_motion(patch_of(after, START, size), size)
 
 
@@ -244,3 +243,16 @@ def test_noise_of_a_magnified_vehicle_is_no_first_motion():
 
 def test_points_that_disagree_give_no_first_motion():
     assert first_motion(ROAD, texture(77)) is None
+
+
+@pytest.mark.parametrize("every", [2, 3])
+def test_frames_may_be_left_out(every):
+    """The stretch is then that of all frames since the patch that was kept."""
+    drive = Drive(speed=2.0, growth=(0.01, 0.01))
+    stretches = []
+    for _ in range(8):
+        drive.time += every - 1
+        survival = drive.step()
+        stretches.append(drive.points.stretch)
+    assert survival > 0.8
+    assert np.median(stretches, axis=0) == pytest.approx([0.01 * every] * 2, abs=5e-3)

@@ -29,7 +29,7 @@ from vehicle_pf_tracker.image.climbing import Places
 from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey
 from vehicle_pf_tracker.image.partial_fourier import Spectrum
-from vehicle_pf_tracker.image.shared_motion import Alive
+from vehicle_pf_tracker.image.shared_motion import Alive, CellBlock, Flow
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty
 from vehicle_pf_tracker.image.window import Positions, Window
@@ -206,6 +206,12 @@ class Kernels(ABC):
     @abstractmethod
     def shared_stretch(self, before: Array, after: Array, size: Array) -> Array:
         """Change of the distances of points (N, 2); see `image.shared_motion`."""
+
+    @abstractmethod
+    def carried_share(
+        self, flow: Flow, cells: CellBlock, places: Array, vehicle: Array, background: Array
+    ) -> float:
+        """Share of a box that has moved with its vehicle; see `image.shared_motion`."""
 
     @abstractmethod
     def climbed(self, values: Array, places: Places, costs: Array) -> tuple[Places, Array]:

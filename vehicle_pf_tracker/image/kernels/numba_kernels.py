@@ -68,7 +68,7 @@ from vehicle_pf_tracker.image.kernels.numba_windows import (
     map_windows,
 )
 from vehicle_pf_tracker.image.partial_fourier import Spectrum
-from vehicle_pf_tracker.image.shared_motion import Alive
+from vehicle_pf_tracker.image.shared_motion import Alive, CellBlock, Flow
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty
 from vehicle_pf_tracker.image.textures import Cooccurrence
@@ -197,6 +197,12 @@ class NumbaKernels(Kernels):
     def shared_stretch(self, before: Array, after: Array, size: Array) -> Array:
         """Change of distances; see `Kernels.shared_stretch`."""
         return numba_shared_motion.shared_stretch(before, after, size)
+
+    def carried_share(
+        self, flow: Flow, cells: CellBlock, places: Array, vehicle: Array, background: Array
+    ) -> float:
+        """Share that moved with the vehicle; see `Kernels.carried_share`."""
+        return numba_shared_motion.carried_share(flow, cells, places, vehicle, background)
 
     def climbed(self, values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
         """Move places; see `Kernels.climbed`."""

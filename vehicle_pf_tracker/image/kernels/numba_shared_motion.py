@@ -18,27 +18,35 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import float64, types
+from numba import float32, float64, intp, types
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 from vehicle_pf_tracker.image.shared_motion import (
     AGREEING_PX,
     APART,
+    CELL,
+    FEWEST_CARRIED,
     FEWEST_POINTS,
     FITS,
     LARGEST_STRETCH,
     LEAST_CORNERS,
     LEAST_RATIO,
+    NEARLY,
     STILL_SHARE,
+    STRAYED_PX,
     TURN_FITS,
     TURN_INERTIA,
     Alive,
+    CellBlock,
+    Flow,
 )
 
 _MATRIX = types.Array(float64, 2, "C")
 _POINTS = types.Array(float64, 2, "A", readonly=True)
 _ALIVE = types.Array(types.boolean, 1, "C")
+_FLOW = types.Array(float32, 3, "A", readonly=True)
+_CELLS = types.Array(intp, 2, "C")
 _SIZE = types.Array(float64, 1, "A", readonly=True)
 
 
@@ -176,3 +184,49 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
             middle = np.log(chosen[count // 2]) + np.log(chosen[(count - 1) // 2])
             change[axis] = min(max(0.5 * middle, -LARGEST_STRETCH), LARGEST_STRETCH)
     return change
+
+
+@compiled(float64(_FLOW, _CELLS, _POINTS, _POINTS, _POINTS))
+def carried_share(
+    flow: Flow, cells: CellBlock, places: Array, vehicle: Array, background: Array
+) -> float:
+    """See `shared_motion.carried_share`."""
+    columns, count = cells[1, 0], cells[1, 0] * cells[1, 1]
+    place, off, limits = np.empty((count, 2)), np.empty((count, 2)), np.empty(count)
+    near = 0
+    a = d = TURN_INERTIA
+    b = 0.0
+    right = np.zeros((2, 2))
+    for i in range(count):
+        column, row = (cells[0, 0] + i % columns) * CELL, (cells[0, 1] + i // columns) * CELL
+        column, row = column + CELL // 2, row + CELL // 2
+        x, y = column + 0.5, row + 0.5
+        from_x, from_y = x + flow[row, column, 0], y + flow[row, column, 1]
+        place[i, 0], place[i, 1] = x * places[0, 0] + places[1, 0], y * places[0, 1] + places[1, 1]
+        off[i, 0] = from_x - (x * vehicle[0, 0] + vehicle[1, 0])
+        off[i, 1] = from_y - (y * vehicle[0, 1] + vehicle[1, 1])
+        limits[i] = STRAYED_PX
+        if len(background):
+            stays_x = from_x - (x * background[0, 0] + y * background[1, 0] + background[2, 0])
+            stays_y = from_y - (x * background[0, 1] + y * background[1, 1] + background[2, 1])
+            limits[i] = min(STRAYED_PX, np.sqrt(stays_x * stays_x + stays_y * stays_y))
+        if np.sqrt(off[i, 0] ** 2 + off[i, 1] ** 2) < NEARLY * limits[i]:
+            near += 1
+            a += place[i, 0] * place[i, 0]
+            b += place[i, 0] * place[i, 1]
+            d += place[i, 1] * place[i, 1]
+            for axis in range(2):
+                right[0, axis] += place[i, 0] * off[i, axis]
+                right[1, axis] += place[i, 1] * off[i, axis]
+    turn = np.zeros((2, 2))
+    if near >= FEWEST_CARRIED:
+        determinant = a * d - b * b
+        for axis in range(2):
+            turn[0, axis] = (d * right[0, axis] - b * right[1, axis]) / determinant
+            turn[1, axis] = (a * right[1, axis] - b * right[0, axis]) / determinant
+    carried = 0.0
+    for i in range(count):
+        off_x = off[i, 0] - (place[i, 0] * turn[0, 0] + place[i, 1] * turn[1, 0])
+        off_y = off[i, 1] - (place[i, 0] * turn[0, 1] + place[i, 1] * turn[1, 1])
+        carried += np.sqrt(off_x * off_x + off_y * off_y) < limits[i]
+    return float(carried / count)

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey, gradient
 from vehicle_pf_tracker.image.kernels.interface import Kernels, PixelRange, SimilarityMap
 from vehicle_pf_tracker.image.mean_shift import kernel_similarity, mean_shift
 from vehicle_pf_tracker.image.partial_fourier import Spectrum
-from vehicle_pf_tracker.image.shared_motion import Alive
+from vehicle_pf_tracker.image.shared_motion import Alive, CellBlock, Flow
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty
 from vehicle_pf_tracker.image.window import Positions, Window
@@ -86,6 +86,12 @@ class OpenCvKernels(Kernels):
     def shared_stretch(self, before: Array, after: Array, size: Array) -> Array:
         """Change of distances; see `Kernels.shared_stretch`."""
         return shared_motion.shared_stretch(before, after, size)
+
+    def carried_share(
+        self, flow: Flow, cells: CellBlock, places: Array, vehicle: Array, background: Array
+    ) -> float:
+        """Share that moved with the vehicle; see `Kernels.carried_share`."""
+        return shared_motion.carried_share(flow, cells, places, vehicle, background)
 
     def climbed(self, values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
         """Move places; see `Kernels.climbed`."""

@@ -110,9 +110,8 @@ class Foreground:
         piece = small.image[rows, columns]
         if min(piece.shape) < 3:
             return None
-        stack = np.stack([each.image[rows, columns] for each in self._background])
-        stack.sort(axis=0)
-        change = cv2.absdiff(piece, np.ascontiguousarray(stack[len(stack) // 2]))
+        usual = _median([each.image[rows, columns] for each in self._background])
+        change = cv2.absdiff(piece, usual)
         level = max(_LEAST_CONTRAST, _NOISE_FACTOR * float(np.median(change)))
         moving = (cv2.GaussianBlur(change, (3, 3), 0) > level).astype(np.uint8)
         closed = cv2.morphologyEx(moving, cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
@@ -122,6 +121,20 @@ class Foreground:
             return None
         low, high = bounds
         return Outline((low + corner) / small.zoom, (high + corner) / small.zoom)
+
+
+def _median(images: list[npt.NDArray[np.uint8]]) -> npt.NDArray[np.uint8]:
+    """Upper median, pixel by pixel.
+
+    Sorted by exchanges of whole images (odd-even transposition), which takes a tenth of the time of
+    sorting the values of each pixel.
+    """
+    images = images.copy()
+    for turn in range(len(images)):
+        for first in range(turn % 2, len(images) - 1, 2):
+            pair = images[first], images[first + 1]
+            images[first], images[first + 1] = np.minimum(*pair), np.maximum(*pair)
+    return np.ascontiguousarray(images[len(images) // 2])
 
 
 def _neighbourhood(small: SmallGrey, centre: Array, size: Array) -> tuple[slice, slice, Array]:

@@ -21,16 +21,18 @@ the filter's response, but still moves with the vehicle.
 
 from __future__ import annotations
 
+import math
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import Patch
+from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, Flow, MotionKernels
 
 _KEPT = 8
 """Patches kept; by less than half a canonical px per frame a vehicle is taken to stand."""
@@ -39,21 +41,13 @@ _APART_PX = 4.0
 one is compared with: the youngest such patch is taken. Flow is good to about one."""
 _TELLING_PX = 2.0
 """The same below which the background's flow cannot be told from the vehicle's."""
-_STRAYED_PX = 3.0
-"""Distance in canonical px from where the vehicle would have taken it, from which a point has moved
-on its own: what a second occluder drives, or flow that has failed."""
-_CELL = 4
-"""Canonical px between points: dense flow is no finer."""
+_SIDE = 96
+"""Side in canonical px of the middle of a patch that flow is measured in: a target has 77 px at
+most, and flow of all 128 takes twice the time."""
 _REACH = 0.45
 """Outermost points from the centre, of the size: the box's rim is background."""
 _REFINED = 5
 """Iterations of the flow's smoothing (Brox et al. 2004): plain surfaces move with their edges."""
-_TURN_INERTIA = 0.3
-"""Resistance of the fit of the vehicle's turn, as the sum of squared places of five points."""
-_FEWEST = 8
-"""Fewest points that a turn is fitted to."""
-_NEARLY = 1.3
-"""Factor to the limits within which points take part in the fit of the turn."""
 _USUAL_RATE = 0.05
 """Rate per frame at which the usual share follows the present one in clear frames."""
 _LEAST_USUAL = 0.3
@@ -64,25 +58,22 @@ _LEAST_KEPT = 3
 
 @dataclass(slots=True, eq=False)
 class _Kept:
-    """An earlier patch, the vehicle's position and size in it, and the camera's motion since."""
+    """An earlier patch, the vehicle's position and size in it, and the camera's motion since.
+
+    `moved` is that position, moved with the camera.
+    """
 
     patch: Patch
     position: Array
     size: Array
+    moved: Array
     turn: Array = field(default_factory=lambda: np.eye(2))
     shift: Array = field(default_factory=lambda: np.zeros(2))
-    still: bool = True
 
     def move(self, camera: CameraMotion) -> None:
         """Let the camera move."""
         self.turn, self.shift = camera.turn @ self.turn, camera.apply(self.shift)
-        self.still = False
-
-    def background(self, positions: Array) -> Array:
-        """Where the background at present positions (..., 2) was then, px."""
-        if self.still:
-            return positions
-        return np.asarray((positions - self.shift) @ np.linalg.inv(self.turn).T)
+        self.moved = camera.apply(self.moved)
 
 
 class SurfaceFlow:
@@ -90,6 +81,8 @@ class SurfaceFlow:
 
     Attributes
     ----------
+    kernels : MotionKernels
+        What counts the points.
     share : float
         Share of the points in the box that move with the vehicle, of the usual share; 1 where flow
         tells nothing.
@@ -97,7 +90,8 @@ class SurfaceFlow:
         True where it was judged in the present frame.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, kernels: MotionKernels = shared_motion) -> None:
+        self.kernels = kernels
         self._usual = 0.0
         self._latest = 1.0
         self.restart()
@@ -120,7 +114,7 @@ class SurfaceFlow:
 
     def keep(self, patch: Patch, position: Array, size: Array) -> None:
         """Keep a patch, and position and size of the vehicle in it, px."""
-        self._kept.append(_Kept(patch, position, size))
+        self._kept.append(_Kept(_middle(patch), position, size, position))
 
     def judge(self, patch: Patch, position: Array, size: Array) -> float | None:
         """Judge how much of the vehicle still moves with it.
@@ -137,11 +131,10 @@ class SurfaceFlow:
         float or None
             `share`; None where flow tells nothing.
         """
-        kept, apart = self._earlier(position, patch.zoom)
-        if kept is None:
+        if not self._kept:
             return None
-        moves = self._moving(patch, kept, position, size, apart)
-        self._latest = float(moves.mean())
+        kept, apart = self._earlier(position, patch.zoom)
+        self._latest = self._moving(_middle(patch), kept, position, size, apart)
         if not self._usual:
             self._usual = self._latest
         self.tells = self._usual >= _LEAST_USUAL
@@ -153,60 +146,61 @@ class SurfaceFlow:
         if len(self._kept) >= _LEAST_KEPT:
             self._usual += _USUAL_RATE * (self._latest - self._usual)
 
-    def _earlier(self, position: Array, zoom: Array) -> tuple[_Kept | None, float]:
+    def _earlier(self, position: Array, zoom: Array) -> tuple[_Kept, float]:
         """Choose a patch to compare with, and tell how far vehicle and background came apart."""
-        apart = 0.0
         for kept in reversed(self._kept):
-            move = position - (kept.turn @ kept.position + kept.shift)
-            apart = float(np.hypot(*(move * zoom)))
+            across, down = ((position - kept.moved) * zoom).tolist()
+            apart = math.hypot(across, down)
             if apart >= _APART_PX:
-                return kept, apart
-        return (self._kept[0], apart) if self._kept else (None, apart)
+                break
+        return kept, apart
 
     def _moving(
         self, patch: Patch, kept: _Kept, position: Array, size: Array, apart: float
-    ) -> npt.NDArray[np.bool_]:
-        """Tell which points of the box have moved with the vehicle since the earlier patch."""
-        cells = _cells(patch, position, size)
-        source = cells + 0.5 + _flow(patch, kept.patch, cells)
-        points = patch.to_frame(np.asarray(cells + 0.5, np.float64))
-        places = (points - position) / size
-        off = source - kept.patch.to_patch(kept.position + places * kept.size)
-        limits = np.full(len(cells), _STRAYED_PX)
+    ) -> float:
+        """Share of the box that has moved with the vehicle since the earlier patch."""
+        before, half = kept.patch, _SIDE / 2
+        # As factor and summand: of the present patch to px, and of px to the earlier patch.
+        to_px, from_px = (1 / patch.zoom, patch.centre - half / patch.zoom), before.zoom
+        factor, summand = to_px[0] / size, (to_px[1] - position) / size
+        grown = kept.size * from_px
+        places = np.stack([factor, summand])
+        start = (kept.position - before.centre) * from_px + half
+        vehicle = np.stack([factor * grown, summand * grown + start])
+        background = np.empty((0, 2))
         if apart >= _TELLING_PX:
-            stays = source - kept.patch.to_patch(kept.background(points))
-            limits = np.minimum(limits, np.hypot(stays[:, 0], stays[:, 1]))
-        near = np.hypot(off[:, 0], off[:, 1]) < _NEARLY * limits
-        if near.sum() >= _FEWEST:
-            off = off - places @ _shared_turn(places[near], off[near])
-        return np.asarray(np.hypot(off[:, 0], off[:, 1]) < limits)
+            back = np.linalg.inv(kept.turn).T * from_px
+            shift = half - before.centre * from_px
+            background = np.vstack(
+                [to_px[0][:, np.newaxis] * back, (to_px[1] - kept.shift) @ back + shift]
+            )
+        cells = _cells(patch, position, size)
+        flow = _flow(patch, before)
+        return self.kernels.carried_share(flow, cells, places, vehicle, background)
 
 
-def _flow(present: Patch, before: Patch, cells: npt.NDArray[np.intp]) -> Array:
-    """Flow (N, 2) at points (N, 2) from the present patch to an earlier one, canonical px.
+def _middle(patch: Patch) -> Patch:
+    """Cut out what flow is measured in."""
+    middle = patch.middle(_SIDE)
+    return replace(middle, grey=np.ascontiguousarray(middle.grey))
+
+
+def _flow(present: Patch, before: Patch) -> Flow:
+    """Flow from the present patch to an earlier one, canonical px.
 
     By dense inverse search (Kroeger et al. 2016), whose stripes, and so its results, do not depend
     on the number of threads.
     """
     method = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
     method.setVariationalRefinementIterations(_REFINED)
-    # The middle of a wide patch is not in one piece of memory.
-    images = (np.ascontiguousarray(each.grey) for each in (present, before))
-    flow = method.calc(*images, None)  # type: ignore[call-overload]
-    return np.asarray(flow[cells[:, 1], cells[:, 0]], np.float64)
+    flow = method.calc(present.grey, before.grey, None)  # type: ignore[call-overload]
+    return np.asarray(flow, np.float32)
 
 
-def _cells(patch: Patch, position: Array, size: Array) -> npt.NDArray[np.intp]:
-    """Points (N, 2) of the patch's grid that lie in the box, at least one, as x and y."""
+def _cells(patch: Patch, position: Array, size: Array) -> CellBlock:
+    """Cells of the patch that lie in the box, at least one."""
     middle, half = patch.to_patch(position), _REACH * size * patch.zoom
-    last = patch.side // _CELL - 1
-    low = np.clip(np.ceil((middle - half) / _CELL - 0.5), 0, last).astype(np.intp)
-    high = np.clip(np.floor((middle + half) / _CELL - 0.5), low, last).astype(np.intp)
-    columns, rows = (np.arange(low[axis], high[axis] + 1) * _CELL + _CELL // 2 for axis in (0, 1))
-    return np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
-
-
-def _shared_turn(places: Array, off: Array) -> Array:
-    """Linear map (2, 2) by which most points have left their places: a turn, or growth."""
-    gram = places.T @ places + np.eye(2) * _TURN_INERTIA
-    return np.asarray(np.linalg.solve(gram, places.T @ off))
+    last = patch.side // CELL - 1
+    low = np.minimum(np.maximum(np.ceil((middle - half) / CELL - 0.5), 0), last)
+    high = np.minimum(np.maximum(np.floor((middle + half) / CELL - 0.5), low), last)
+    return np.stack([low, high - low + 1]).astype(np.intp)

@@ -93,7 +93,7 @@ class SurfacePoints:
         self.kernels = kernels
         self._usual = 0.0
         self._latest = 1.0
-        self._previous: Patch | None = None
+        self._previous: tuple[Patch, Array] | None = None
         self.restart()
 
     def restart(self) -> None:
@@ -102,17 +102,17 @@ class SurfacePoints:
         self.survival = 1.0
         self.stretch = np.zeros(2)
 
-    def keep(self, patch: Patch) -> None:
-        """Keep the patch that the next frame's motion starts from."""
-        self._previous = patch
+    def keep(self, patch: Patch, position: Array) -> None:
+        """Keep the patch that the next motion starts from, and the vehicle's position in it, px."""
+        self._previous = patch, position
 
     def first_motion(self, patch: Patch, size: Array) -> Array | None:
         """Motion in px of what moves against the background inside the first box, if anything does.
 
         `patch` shows the second frame around the first position, moved with the background.
         """
-        previous = self._previous
-        assert previous is not None, "keep the first patch before"
+        assert self._previous is not None, "keep the first patch before"
+        previous, _ = self._previous
         places = _grid(_FIRST_GRID, 0.45)
         start = (places * size * previous.zoom + previous.side / 2 - 0.5).astype(np.float32)
         start = start[:, np.newaxis]
@@ -128,17 +128,16 @@ class SurfacePoints:
             return None
         return np.asarray(np.median(moves[largest], axis=0) / patch.zoom)
 
-    def track(self, patch: Patch, move: Array, position: Array, size: Array) -> float | None:
+    def track(self, patch: Patch, position: Array, size: Array) -> float | None:
         """Track all points into the present patch and judge how many survived.
 
         Parameters
         ----------
         patch : Patch
             Shows the present frame.
-        move : (2,) array
-            Displacement of the vehicle since the last frame, px; where the search starts.
         position, size : (2,) arrays
-            Estimated centre, and width and height, px.
+            Estimated centre, and width and height, px; the search starts from the displacement
+            since the patch that was kept.
 
         Returns
         -------
@@ -146,7 +145,7 @@ class SurfacePoints:
             `survival`; None where no set is old enough.
         """
         self.stretch = np.zeros(2)
-        self._move_points(patch, move, size)
+        self._move_points(patch, position, size)
         shares = []
         for points in self._sets:
             points.age += 1
@@ -177,15 +176,15 @@ class SurfacePoints:
             alive = np.ones(len(places), bool)
             self._sets.append(_PointSet(places, position + places * size, alive))
 
-    def _move_points(self, patch: Patch, move: Array, size: Array) -> None:
-        previous = self._previous
+    def _move_points(self, patch: Patch, position: Array, size: Array) -> None:
         alive = np.concatenate([points.alive for points in self._sets] or [np.zeros(0, bool)])
-        if previous is None or not alive.any():
+        if self._previous is None or not alive.any():
             return
+        previous, started = self._previous
         positions = np.concatenate([points.positions for points in self._sets])
         before = positions[alive]
         start = np.asarray(previous.to_patch(before) - 0.5, np.float32)
-        guess = np.asarray(patch.to_patch(before + move) - 0.5, np.float32)
+        guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
         end, found = _flow(previous, patch, start[:, np.newaxis], guess[:, np.newaxis], _FLOW)
         after = patch.to_frame(end[:, 0].astype(np.float64) + 0.5)
         self.stretch = self.kernels.shared_stretch(before[found], after[found], size)

@@ -85,7 +85,6 @@ class FusionTracker(Track):
         _ = self.target  # says what is wrong before the start
         elapsed = min(elapsed, _LONGEST_STEP)
         self._frames += 1
-        before = self._position
         self._move_with_camera(frame, elapsed)
         self._set_off = False
         if self._frames == 1:
@@ -93,10 +92,9 @@ class FusionTracker(Track):
         left_image = self._predict(frame, elapsed)
         view = self._observe(frame, elapsed)
         position, response = self._locate(frame, view)
+        self._calm = self._is_calm(response)
         if self._visible:
-            self._judge_points(
-                self._appearance.usual_patch(view.patch), position - before, position
-            )
+            self._judge_points(self._appearance.usual_patch(view.patch), position)
         was_visible = self._visible
         self._visible = self._particles.probability_visible > 0.5
         seen = Seen(view, position, response, again=not was_visible)
@@ -110,7 +108,8 @@ class FusionTracker(Track):
             self._position = self._kept_inside(frame, self._particles.mean)
             self._velocity = self._particles.mean_velocity
         patch = self._appearance.usual_patch(view.patch)
-        self._points.keep(patch)
+        if self._measures_size:
+            self._points.keep(patch, self._position)
         self._surface.keep(patch, self._position, self._size)
         outcome = self._outcome(frame, response, left_image)
         count = self.parameters.num_particles
@@ -189,14 +188,17 @@ class FusionTracker(Track):
         position, response = likeliest_peak(view, self._particles, self._extent)
         return self._kept_inside(frame, position), response
 
-    def _judge_points(self, patch: Patch, move: Array, position: Array) -> None:
+    def _judge_points(self, patch: Patch, position: Array) -> None:
         """Take the share of the surface that moves with the vehicle as evidence on visibility."""
         evidence = self.parameters.visibility
         if not evidence.points_slope:
             self._surface.forget_share()
             return
-        self._points.track(patch, move, position, self._size)
-        share = self._surface.judge(patch, position, self._size)
+        if self._measures_size:
+            self._points.track(patch, position, self._size)
+        share: float | None = self._surface.share
+        if self._learns:
+            share = self._surface.judge(patch, position, self._size)
         if share is not None:
             self._particles = self._particles.witnessed(points_evidence(share, evidence))
 
