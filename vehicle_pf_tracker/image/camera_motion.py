@@ -82,7 +82,8 @@ class CameraMotion:
     @property
     def still(self) -> bool:
         """True if the background does not move."""
-        return bool(np.array_equal(self.turn, np.eye(2)) and not self.shift.any())
+        (scale, across), (down, same) = self.turn.tolist()
+        return scale == same == 1 and across == down == 0 and not self.shift.any()
 
 
 def fit_camera_motion(
