@@ -43,6 +43,7 @@ CHANGES: Mapping[str, Mapping[str, Value]] = {
     "no camera motion": {"motion.camera": False},
     "no perspective while hidden": {"motion.perspective": False},
     "no colour": {"filter.colour": False},
+    "no dated filters": {"filter.memory": 0},
     "no points": {"visibility.points_slope": 0.0},
     "learns while points end": {"visibility.learning_points": 0.0},
     "no second look": {"visibility.second_look": False},

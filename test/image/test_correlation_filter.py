@@ -182,7 +182,7 @@ def test_a_wide_patch_shows_the_target_wherever_it_is(x, y):
     wide = 0.3 * features(4, 64)
     row, column = 16 + y, 16 + x
     wide[:, row : row + SIDE, column : column + SIDE] = cells_of(made)
-    response = made.respond_wide(wide)
+    response = made.respond_wide(made.wide_spectrum(wide))
     assert response.shape == (128, 128)
     assert peak(response) == (2 * x, 2 * y)
 

@@ -141,10 +141,12 @@ class CorrelationFilter:
             confined = self._target.spectrum_of(cells)
         return FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)
 
-    def respond(self, spectrum: Spectrum) -> Response:
-        """Respond to cells (half spectrum), at `UPSAMPLING` places per cell."""
-        assert self.weights is not None, "train the filter first"
-        return self._response(spectrum, self.weights.spectrum)
+    def respond(self, spectrum: Spectrum, weights: FilterWeights | None = None) -> Response:
+        """Respond to cells (half spectrum), at `UPSAMPLING` places per cell.
+
+        By the present weights, unless others that this filter has had are given.
+        """
+        return self._response(spectrum, self._chosen(weights).spectrum)
 
     @property
     def extent(self) -> tuple[int, int]:
@@ -164,12 +166,19 @@ class CorrelationFilter:
         # Long dot products of BLAS are summed by several threads, and rounded otherwise then.
         return float(np.einsum("rcx,rcx->", seen, self.weights.faded))
 
-    def respond_wide(self, features: CellFeatures) -> Response:
-        """Respond to the cells (channels, m, m) of a larger patch, m even and above n."""
-        assert self.weights is not None, "train the filter first"
-        whole, target = self._wide(features.shape[1])
-        spectrum = target.spectrum_of(self.weights.target)
-        return self._response(whole.spectrum_of(features), spectrum)
+    def wide_spectrum(self, features: CellFeatures) -> Spectrum:
+        """Half spectrum of the cells (channels, m, m) of a larger patch, m even and above n."""
+        return self._wide(features.shape[1])[0].spectrum_of(features)
+
+    def respond_wide(self, spectrum: Spectrum, weights: FilterWeights | None = None) -> Response:
+        """Respond to the cells of a larger patch, by the present weights or given ones."""
+        target = self._wide(len(spectrum))[1]
+        return self._response(spectrum, target.spectrum_of(self._chosen(weights).target))
+
+    def _chosen(self, weights: FilterWeights | None) -> FilterWeights:
+        chosen = weights or self.weights
+        assert chosen is not None, "train the filter first"
+        return chosen
 
     def _response(self, spectrum: Spectrum, weights: Spectrum) -> Response:
         return upsampled(self.kernels.correlated(spectrum, weights), UPSAMPLING)

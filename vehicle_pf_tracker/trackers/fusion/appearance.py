@@ -19,6 +19,7 @@ from __future__ import annotations
 import copy
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -30,6 +31,7 @@ from vehicle_pf_tracker.image.canonical_patch import Patch, cut_image, cut_patch
 from vehicle_pf_tracker.image.correlation_filter import (
     UPSAMPLING,
     CorrelationFilter,
+    FilterWeights,
     Response,
 )
 from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures, Grey
@@ -130,6 +132,13 @@ def _vertex(before: float, at: float, after: float) -> float:
     return min(max(0.5 * (before - after) / bend, -0.5), 0.5) if bend < 0 else 0.0
 
 
+class _Dated(NamedTuple):
+    """What the filter was at some time, and the usual response to it."""
+
+    weights: FilterWeights
+    usual_response: float
+
+
 class Appearance:
     """Learns the target from patches of canonical size, and responds to others.
 
@@ -154,6 +163,7 @@ class Appearance:
         self.kernels = kernels
         self.usual_response = 0.0
         self._least_usual = 0.0
+        self._dated: tuple[_Dated, ...] = ()
 
     @property
     def kernels(self) -> Kernels:
@@ -179,18 +189,31 @@ class Appearance:
         """Return the part of a wide patch that a usual one shows; a usual one itself."""
         return patch if patch.side == self._side else patch.middle(self._side)
 
-    def view(self, patch: Patch) -> View:
-        """Respond to a patch."""
+    def view(self, patch: Patch, *, recall: bool = False) -> View:
+        """Respond to a patch; with `recall`, by the best of the present and the dated filters."""
         features = self._features(patch.image, patch.grey)
-        if patch.side > self._side:
-            spectrum, response = None, self._filter.respond_wide(features)
-        else:
-            spectrum = self._filter.spectrum(features)
-            response = self._filter.respond(spectrum)
+        wide = patch.side > self._side
+        respond = self._filter.respond_wide if wide else self._filter.respond
+        transform = self._filter.wide_spectrum if wide else self._filter.spectrum
+        spectrum = transform(features)
+        response = respond(spectrum)
         if not self.usual_response:
             least = max(self._least_usual, _LEAST_USUAL)
             self.usual_response = max(float(response.max()), least)
-        return View(patch, spectrum, response / np.float32(self.usual_response))
+        response = response / np.float32(self.usual_response)
+        for dated in self._dated if recall else ():
+            once = respond(spectrum, dated.weights) / np.float32(dated.usual_response)
+            response = np.maximum(response, once)
+        return View(patch, None if wide else spectrum, response)
+
+    def remember(self, count: int) -> None:
+        """Keep the present filter as a dated one: the first and the latest ones, `count` in all."""
+        if self._filter.weights is None or not self.usual_response:
+            return
+        dated = *self._dated, _Dated(self._filter.weights, self.usual_response)
+        if len(dated) > count:
+            dated = (*dated[: min(count, 1)], *dated[len(dated) - max(count - 1, 0) :])
+        self._dated = dated
 
     def response_at(self, frame: Frame, position: Array, size: Array) -> float:
         """Response to a box of this centre and size (px), relative to the usual one."""

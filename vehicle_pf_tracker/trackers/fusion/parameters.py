@@ -45,6 +45,13 @@ class FilterParameters:
         tuned=(0.03, 1.0),
     )
     colour: bool = parameter(True, "Off: luminance and colour take no part, only gradients do.")
+    memory: int = parameter(
+        3,
+        "More: a hidden vehicle is recognised by what it looked like at more times; 0: only last.",
+        minimum=0,
+        maximum=20,
+        unit="dated filters",
+    )
     level_rate: float = parameter(
         0.05,
         "Higher: the usual response follows the response of visible frames faster.",

@@ -54,6 +54,8 @@ flow judged and appearance learnt in the next. That saves a quarter of the time 
 costs nothing else that could be seen (docs/fusion.md)."""
 _SETTLED = 10
 """Frames before which none is calm."""
+_DATED_EVERY = 40
+"""Frames between two filters that are kept, all of calm frames: in a second a vehicle turns."""
 _STRONG = 0.8
 """Probability of visibility from which the size is followed."""
 _WEAK_RESPONSE = 0.6
@@ -100,7 +102,7 @@ class Track(ParticleTracker[FusionParameters]):
         self._size = np.array([box.width, box.height], float)
         self._position = np.array(box.centre, float)
         self._velocity = np.zeros(2)
-        self._frames = self._searches = 0
+        self._frames = self._searches = self._next_dated = 0
         self._visible, self._calm = True, False
         self._sightings = Sightings()
         self._points = SurfacePoints(self.kernels)
@@ -188,6 +190,9 @@ class Track(ParticleTracker[FusionParameters]):
         if self._measures_size and self.parameters.visibility.points_slope:
             self._points.renew(self._position, self._size)
         self._learn_appearance(frame, seen.view, seen.response)
+        if self._calm and self._frames >= self._next_dated:
+            self._appearance.remember(self.parameters.filter.memory)
+            self._next_dated = self._frames + _DATED_EVERY
         if seen.again:  # what was kept shows an occluder; until now its share bounds the learning
             self._surface.restart()
 

@@ -171,7 +171,8 @@ class FusionTracker(Track):
         """Weigh the hypotheses by the filter's response where they are, or close by."""
         wide = not self._visible and self._particles.spread > WIDE_FROM * self._extent
         patch = self._appearance.patch(frame, self._particles.mean, self._learnt_size, wide=wide)
-        view = self._appearance.view(patch)
+        recall = not self._visible and self.parameters.filter.memory > 0
+        view = self._appearance.view(patch, recall=recall)
         climb = CLIMB_FREELY if self._visible else CLIMB_ON_PATH
         climb = STAY if self._set_off else climb
         positions, log_ratios = response_evidence(
