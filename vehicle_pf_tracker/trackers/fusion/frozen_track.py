@@ -42,8 +42,10 @@ from vehicle_pf_tracker.trackers.fusion.visibility import SAME_VEHICLE, WIDE_FRO
 _COMPARED_FOR = 30.0
 """Frames after a return for which other places are compared: one second, in which a look-alike that
 came out first shows more than the vehicle behind it."""
+LOOKS_EVERY = 2
+"""Frames from one comparison to the next, each of which costs as much as a whole step."""
 _MARGIN = 1.5
-"""Log ratio by which another place has to be likelier (odds of 4.5 to 1), in each of two frames."""
+"""Log ratio by which another place has to be likelier (odds of 4.5 to 1), in two looks in a row."""
 _CONFIRMED = 2
 _LEAST_SIGMA = 0.1
 """Least standard deviation of the predicted position, of the size: about that of peaks."""

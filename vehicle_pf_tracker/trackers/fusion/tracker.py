@@ -40,7 +40,7 @@ from vehicle_pf_tracker.image.window import is_outside, keep_inside
 from vehicle_pf_tracker.trackers.base import Outcome
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.fusion.appearance import View
-from vehicle_pf_tracker.trackers.fusion.frozen_track import FrozenTrack
+from vehicle_pf_tracker.trackers.fusion.frozen_track import LOOKS_EVERY, FrozenTrack
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
     DOUBT,
@@ -222,6 +222,8 @@ class FusionTracker(Track):
             return seen
         if seen.again:
             frozen.take_return(self._appearance, self._sightings)
+            return seen
+        if self._frames % LOOKS_EVERY and not frozen.is_over:
             return seen
         options = self.parameters.visibility
         found = frozen.likelier_place(frame, seen.position, self._padding, options)
