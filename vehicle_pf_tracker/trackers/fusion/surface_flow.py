@@ -87,7 +87,7 @@ class SurfaceFlow:
         Share of the points in the box that move with the vehicle, of the usual share; 1 where flow
         tells nothing.
     tells : bool
-        True where it was judged in the present frame.
+        True where flow told something when it was last asked.
     """
 
     def __init__(self, kernels: MotionKernels = shared_motion) -> None:
