@@ -133,7 +133,7 @@ def _vertex(before: float, at: float, after: float) -> float:
 
 
 class _Dated(NamedTuple):
-    """What the filter was at some time, and the usual response to it."""
+    """An earlier filter, and the usual response at its time."""
 
     weights: FilterWeights
     usual_response: float

@@ -53,7 +53,7 @@ _CALM_RESPONSE, _CALM_SHARE = 0.9, 0.9
 flow judged and appearance learnt in the next. That saves a quarter of the time and, over 633 runs,
 costs nothing else that could be seen (docs/fusion.md)."""
 _SETTLED = 10
-"""Frames before which none is calm."""
+"""Frames before which none is calm: the usual response and share are not known yet."""
 _DATED_EVERY = 40
 """Frames between two filters that are kept, all of calm frames: in a second a vehicle turns."""
 _STRONG = 0.8
