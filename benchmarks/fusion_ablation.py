@@ -45,7 +45,7 @@ CHANGES: Mapping[str, Mapping[str, Value]] = {
     "no colour": {"filter.colour": False},
     "no dated filters": {"filter.memory": 0},
     "no points": {"visibility.points_slope": 0.0},
-    "learns while points end": {"visibility.learning_points": 0.0},
+    "no partial state": {"visibility.partial_slope": 0.0},
     "no second look": {"visibility.second_look": False},
     "no outlines in turns": {"motion.turns": False},
     "first size kept": {"size.step": 0.0},

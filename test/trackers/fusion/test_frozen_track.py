@@ -97,6 +97,15 @@ def test_a_return_out_of_the_prediction_s_reach_loses_to_any_clear_answer():
     assert looks(frozen({(0, 0): 0.8}), (300, 0))[1] is not None
 
 
+def test_the_longer_since_the_return_the_clearer_has_another_place_to_be():
+    """4.8 to 2.4: 1.5 are enough at once, and 1.5 + 25 * 0.051 asked after 25 frames unseen."""
+    peaks = {(0, 0): 0.9, (20, 0): 0.7}
+    assert looks(frozen(peaks, spread=100.0), (20, 0))[1] is not None
+    later = frozen(peaks, spread=100.0)
+    later.pass_time(25.0, STILL)
+    assert looks(later, (20, 0)) == [None] * 3
+
+
 def test_a_return_is_compared_for_thirty_frames():
     track = frozen({})
     track.pass_time(29.0, STILL)

@@ -275,7 +275,27 @@ def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
     assert stiffness(0.4, 0.8) == []
     assert stiffness(0.4, 0.95, tells=False) == []
     assert stiffness(0.4, 0.95, outlines=True) == []
-    assert stiffness(0.6, 0.3) == []
+    tracker._wholeness.probability = 0.4
+    assert stiffness(0.9, 1.0) == []
+    assert stiffness(0.4, 0.95) == [pytest.approx(0.4 * usual)]
+
+
+def test_of_a_vehicle_that_is_partly_hidden_nothing_is_learnt_and_its_size_is_kept(monkeypatch):
+    street, tracker = Street(speed=2.0), fusion()
+    follow(tracker, street, range(8))
+    monkeypatch.setattr(tracker._surface, "judge", lambda *_: tracker._surface.share)
+    tracker._surface.share = 0.5
+    for time in (8, 9):  # the first frames may still count as whole
+        tracker.step(street.frame(time))
+    done, size = counted(tracker, monkeypatch), tracker._size
+    usual = tracker._appearance.usual_response
+    estimate = tracker.step(street.frame(10))
+    assert estimate.similarities["whole"] < 0.5
+    assert estimate.mode is Mode.TRACKING
+    assert done == ["track", "judge"]
+    assert (tracker._size == size).all()
+    assert tracker._appearance.usual_response == usual
+    assert not tracker._sightings._clear[-1]
 
 
 def counted(tracker, monkeypatch):

@@ -140,7 +140,9 @@ class FrozenTrack:
         scores[same] = -np.inf
         row, column = np.unravel_index(int(scores.argmax()), scores.shape)
         clear = float(view.response[row, column]) > CLEAR_RESPONSE
-        better = clear and float(scores[row, column]) > here + _MARGIN
+        # There the vehicle would have stayed hidden all the time since the return.
+        unseen = -float(np.log1p(-parameters.return_rate)) * (self._since_return or 0.0)
+        better = clear and float(scores[row, column]) > here + _MARGIN + unseen
         self._better = self._better + 1 if better else 0
         if self._better < _CONFIRMED:
             return None

@@ -101,7 +101,7 @@ class VehicleMotionParameters:
         tuned=(0.005, 0.06),
     )
     hidden_velocity_sigma: float = parameter(
-        0.012,
+        0.008,
         "Larger: a hidden vehicle is expected to change its speed more.",
         minimum=0.0,
         maximum=1.0,
@@ -171,13 +171,21 @@ class VisibilityParameters:
     second_look: bool = parameter(
         True, "Off: a return is final, though the vehicle may appear at a likelier place after."
     )
-    learning_points: float = parameter(
-        0.4,
-        "Higher: nothing is learnt while fewer points have been lost.",
+    partial_slope: float = parameter(
+        8.0,
+        "Higher: fewer frames decide that a vehicle is partly hidden; 0: none ever is.",
+        minimum=0.0,
+        maximum=50.0,
+        unit="log ratio per usual share",
+        tuned=(2.0, 20.0),
+    )
+    partial_middle: float = parameter(
+        0.7,
+        "Higher: a smaller loss of points speaks for a partial occlusion: nothing is learnt then.",
         minimum=0.0,
         maximum=1.0,
         unit="of the usual share",
-        tuned=(0.1, 0.8),
+        tuned=(0.4, 0.95),
     )
 
 

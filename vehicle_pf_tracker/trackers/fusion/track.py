@@ -37,6 +37,7 @@ from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.turning import Turned, TurningBranch
+from vehicle_pf_tracker.trackers.fusion.visibility import Wholeness
 
 _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
@@ -104,6 +105,7 @@ class Track(ParticleTracker[FusionParameters]):
         self._velocity = np.zeros(2)
         self._frames = self._searches = self._next_dated = 0
         self._visible, self._calm = True, False
+        self._wholeness = Wholeness()
         self._sightings = Sightings()
         self._points = SurfacePoints(self.kernels)
         self._surface = SurfaceFlow(self.kernels)
@@ -176,12 +178,15 @@ class Track(ParticleTracker[FusionParameters]):
     # A sighting
 
     def _take_sighting(self, frame: Frame, seen: Seen, elapsed: float) -> None:
-        """Follow position, velocity and size to the peak, and learn."""
+        """Follow position, velocity and, of a vehicle seen whole, size to the peak, and learn."""
+        if not seen.again:  # until then the share is of what was there before
+            self._wholeness.judge(self._surface.share, elapsed, self.parameters.visibility)
         self._gather(frame, seen.position, elapsed, again=seen.again)
-        surely = self._particles.probability_visible > _STRONG
+        whole = self._wholeness.is_likely
+        surely = whole and self._particles.probability_visible > _STRONG
         if self._measures_size and surely and seen.response > _WEAK_RESPONSE:
             self._follow_size(frame, again=seen.again)
-        self._sightings.add(self._position, self._size, seen.response)
+        self._sightings.add(self._position, self._size, seen.response, whole=whole)
         if seen.again:
             self._points.restart()
         if surely and seen.response > CLEAR_RESPONSE:
@@ -233,13 +238,12 @@ class Track(ParticleTracker[FusionParameters]):
         self._size = self._bounded(frame, searched_size(size, self._searches, peak, options))
 
     def _learn_appearance(self, frame: Frame, view: View, response: float) -> None:
-        """Train the filter, the less the less surely the vehicle is visible."""
+        """Train the filter on a whole or turning vehicle, the less the less surely it shows."""
         options = self.parameters.filter
         share = self._surface.share
         turns = self._surface.tells and share > _TURNING_SHARE and response < _TURNING_RESPONSE
         turns &= not self._turning.can_begin  # outlines tell more of a turn, size included
-        whole = share > self.parameters.visibility.learning_points
-        if not turns and (response <= _LEAST_LEARNT or not whole):
+        if not turns and (response <= _LEAST_LEARNT or not self._wholeness.is_likely):
             return
         visible = self._particles.probability_visible
         rate = max(options.level_rate, 1 / (self._frames + 1)) * visible
@@ -285,7 +289,10 @@ class Track(ParticleTracker[FusionParameters]):
         return Outcome(
             Cloud(positions, particles.weights), (x, y), (vx, vy),
             "visible" if self._visible else "occluded", particles.probability_visible,
-            {"response": min(max(response, 0.0), 1.0), "points": self._surface.share},
+            {
+                "response": min(max(response, 0.0), 1.0), "points": self._surface.share,
+                "whole": self._wholeness.probability,
+            },
             left_image=left_image,
         )  # fmt: skip
 

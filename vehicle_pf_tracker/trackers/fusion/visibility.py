@@ -12,11 +12,17 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Evidence for the vehicle being visible: log-likelihood ratios of visible against hidden."""
+"""Evidence on visibility: log-likelihood ratios of visible to hidden, and of whole to partial.
+
+The vehicle is whole, partly hidden or hidden. Each hypothesis judges for itself whether it is
+hidden (`Hypotheses`); whether all of a visible one is seen, is judged here, for all of them.
+"""
 
 from __future__ import annotations
 
 import functools
+import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +35,8 @@ from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
 
 _LARGEST_LOG_RATIO = 6.0
 """Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
+_LARGEST_RATIO = 3.0
+"""The same of whole against partial, 20 to 1: errors of flow last over frames."""
 _HIGHEST_RESPONSE = 1.2
 """Response above which more of it tells nothing more."""
 _PEAK_REACH = 6
@@ -115,3 +123,37 @@ def likeliest_peak(view: View, particles: Hypotheses, extent: float) -> tuple[Ar
 def points_evidence(share: float, parameters: VisibilityParameters) -> float:
     """Log-likelihood ratio by the share of the surface's points that move with the vehicle."""
     return parameters.points_slope * (min(share, 1.0) - parameters.points_middle)
+
+
+@dataclass(slots=True)
+class Wholeness:
+    """The states *whole* and *partial* of a vehicle that is visible, as a Markov chain.
+
+    Attributes
+    ----------
+    probability : float
+        Probability that it is whole, given that it is visible.
+    """
+
+    probability: float = 0.99
+
+    @property
+    def is_likely(self) -> bool:
+        """True where whole is likelier than partial."""
+        return self.probability > 0.5
+
+    def judge(self, share: float, elapsed: float, parameters: VisibilityParameters) -> None:
+        """Let `elapsed` frames pass, and take the share of the surface as evidence.
+
+        Covering begins and ends as often as occlusions do; an occluder shows in the share while
+        response and position do not yet fall.
+        """
+        if not parameters.partial_slope:
+            self.probability = 1.0
+            return
+        covered = 1 - (1 - parameters.hiding_rate) ** elapsed
+        uncovered = 1 - (1 - parameters.return_rate) ** elapsed
+        before = self.probability * (1 - covered) + (1 - self.probability) * uncovered
+        ratio = parameters.partial_slope * (share - parameters.partial_middle)
+        whole = before * math.exp(min(max(ratio, -_LARGEST_RATIO), _LARGEST_RATIO))
+        self.probability = whole / (whole + (1 - before))

@@ -1,0 +1,96 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Evidence on visibility, by hand: the surface's share, and the states whole and partial."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters, VisibilityParameters
+from vehicle_pf_tracker.trackers.fusion.visibility import Wholeness, points_evidence
+
+DEFAULT = VisibilityParameters()
+
+
+def visibility(**values):
+    prefixed = {f"visibility.{name}": value for name, value in values.items()}
+    return from_mapping(FusionParameters, prefixed).visibility
+
+
+def test_the_surface_s_share_speaks_for_a_visible_vehicle_above_the_middle():
+    """Slope 4, middle 0.5; more than the usual share tells no more."""
+    assert points_evidence(0.75, DEFAULT) == pytest.approx(1.0)
+    assert points_evidence(0.25, DEFAULT) == pytest.approx(-1.0)
+    assert points_evidence(1.3, DEFAULT) == points_evidence(1.0, DEFAULT) == pytest.approx(2.0)
+
+
+def test_a_share_at_the_middle_leaves_the_chain_to_itself():
+    """Rates of 0.02 and 0.05: 0.5 * 0.98 + 0.5 * 0.05."""
+    seen = Wholeness(0.5)
+    seen.judge(0.7, 1.0, DEFAULT)
+    assert seen.probability == pytest.approx(0.515)
+    seen = Wholeness(0.5)
+    seen.judge(0.7, 2.0, DEFAULT)
+    assert seen.probability == pytest.approx(0.5 * 0.98**2 + 0.5 * (1 - 0.95**2))
+
+
+def test_the_share_changes_the_odds_by_its_ratio():
+    """Slope 8: 0.2 below the middle is a ratio of -1.6."""
+    seen = Wholeness(0.5)
+    seen.judge(0.5, 1.0, DEFAULT)
+    odds = seen.probability / (1 - seen.probability)
+    assert odds == pytest.approx(0.515 / 0.485 * math.exp(-1.6))
+
+
+def test_one_frame_is_not_believed_beyond_twenty_to_one():
+    """No share at all would be -5.6."""
+    seen = Wholeness(0.5)
+    seen.judge(0.0, 1.0, DEFAULT)
+    odds = seen.probability / (1 - seen.probability)
+    assert odds == pytest.approx(0.515 / 0.485 * math.exp(-3))
+
+
+def test_half_a_vehicle_is_partial_within_three_frames_and_whole_again_as_fast():
+    seen = Wholeness()
+    assert seen.is_likely
+    for _ in range(3):
+        seen.judge(0.4, 1.0, DEFAULT)
+    assert not seen.is_likely
+    for _ in range(3):
+        seen.judge(1.0, 1.0, DEFAULT)
+    assert seen.is_likely
+
+
+def test_nothing_is_partial_without_a_slope():
+    seen, off = Wholeness(), visibility(partial_slope=0.0, hiding_rate=0.5, return_rate=1e-6)
+    for _ in range(50):
+        seen.judge(0.0, 1.0, off)
+    assert seen.is_likely
+
+
+@given(
+    st.lists(st.tuples(st.floats(0, 1), st.floats(0, 30)), max_size=30), st.floats(0, 50),
+    st.floats(0, 1), st.floats(1e-6, 0.5), st.floats(1e-6, 0.5),
+)  # fmt: skip
+def test_the_probability_stays_one(frames, slope, middle, hiding, returning):
+    seen, options = Wholeness(), visibility(
+        partial_slope=slope, partial_middle=middle, hiding_rate=hiding, return_rate=returning
+    )  # fmt: skip
+    for share, elapsed in frames:
+        seen.judge(share, elapsed, options)
+        assert 0 <= seen.probability <= 1
