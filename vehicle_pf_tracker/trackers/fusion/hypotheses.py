@@ -52,7 +52,7 @@ _GROWTH_SIGMA = 0.004
 class Hypotheses:
     """A weighted set of hypotheses.
 
-    The visibility of each is a two-state Markov chain, {visible, hidden}, that is summed out
+    The visibility of each is a Markov chain, {visible, hidden}, that is summed out
     (Rao-Blackwell): a hypothesis gains weight by evidence only in so far as it says "visible".
 
     Attributes
