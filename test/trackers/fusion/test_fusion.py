@@ -295,7 +295,6 @@ def test_of_a_vehicle_that_is_partly_hidden_nothing_is_learnt_and_its_size_is_ke
     assert done == ["track", "judge"]
     assert (tracker._size == size).all()
     assert tracker._appearance.usual_response == usual
-    assert not tracker._sightings._clear[-1]
 
 
 def counted(tracker, monkeypatch):

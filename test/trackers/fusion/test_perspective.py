@@ -116,14 +116,6 @@ def test_only_clear_sightings_are_fitted():
     assert motion.position_at(last.age) == pytest.approx([43, 50])
 
 
-def test_a_vehicle_that_was_partly_hidden_is_not_fitted():
-    sightings = Sightings()
-    sightings.add(np.zeros(2), np.ones(2), 1.0, whole=False)
-    assert sightings.fit(perspective=True) is None
-    sightings.add(np.ones(2), np.ones(2), 1.0)
-    assert sightings.fit(perspective=True)[1].position == pytest.approx([1, 1])
-
-
 def test_without_clear_sightings_there_is_nothing_to_fit():
     sightings = Sightings()
     assert sightings.fit(perspective=True) is None

@@ -113,18 +113,16 @@ class Sightings:
         self._positions = np.empty((0, 2))
         self._sizes = np.empty((0, 2))
         self._responses = np.empty(0)
-        self._clear = np.empty(0, bool)
 
     def __len__(self) -> int:
         return len(self._ages)
 
-    def add(self, position: Array, size: Array, response: float, *, whole: bool = True) -> None:
-        """Add a sighting of the present frame; one that is not `whole` is never clear."""
+    def add(self, position: Array, size: Array, response: float) -> None:
+        """Add a sighting of the present frame."""
         self._ages = np.append(self._ages, 0.0)
         self._positions = np.vstack([self._positions, position])
         self._sizes = np.vstack([self._sizes, size])
         self._responses = np.append(self._responses, response)
-        self._clear = np.append(self._clear, whole and response >= CLEAR_RESPONSE)
 
     def pass_time(self, elapsed: float, camera: CameraMotion) -> None:
         """Let `elapsed` frames pass and the camera move."""
@@ -132,13 +130,12 @@ class Sightings:
         self._ages = self._ages[first:] + elapsed
         self._positions = self._positions[first:]
         self._sizes, self._responses = self._sizes[first:], self._responses[first:]
-        self._clear = self._clear[first:]
         if not camera.still:
             self._positions = camera.apply(self._positions)
 
     def fit(self, *, perspective: bool) -> tuple[PerspectiveMotion, Sighting] | None:
         """Fit the motion to clear sightings; also give the last of them, which is at time 0."""
-        clear = np.flatnonzero(self._clear)[-_FITTED:]
+        clear = np.flatnonzero(self._responses >= CLEAR_RESPONSE)[-_FITTED:]
         if not len(clear):
             return None
         whole = made_whole(self._ages, self._positions, self._sizes, self._responses)

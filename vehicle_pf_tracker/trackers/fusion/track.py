@@ -182,11 +182,10 @@ class Track(ParticleTracker[FusionParameters]):
         if not seen.again:  # until then the share is of what was there before
             self._wholeness.judge(self._surface.share, elapsed, self.parameters.visibility)
         self._gather(frame, seen.position, elapsed, again=seen.again)
-        whole = self._wholeness.is_likely
-        surely = whole and self._particles.probability_visible > _STRONG
+        surely = self._wholeness.is_likely and self._particles.probability_visible > _STRONG
         if self._measures_size and surely and seen.response > _WEAK_RESPONSE:
             self._follow_size(frame, again=seen.again)
-        self._sightings.add(self._position, self._size, seen.response, whole=whole)
+        self._sightings.add(self._position, self._size, seen.response)
         if seen.again:
             self._points.restart()
         if surely and seen.response > CLEAR_RESPONSE:
