@@ -101,7 +101,7 @@ class VehicleMotionParameters:
         tuned=(0.005, 0.06),
     )
     hidden_velocity_sigma: float = parameter(
-        0.008,
+        0.012,
         "Larger: a hidden vehicle is expected to change its speed more.",
         minimum=0.0,
         maximum=1.0,
