@@ -35,7 +35,7 @@ from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
 
 _LARGEST_LOG_RATIO = 6.0
 """Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
-_LARGEST_RATIO = 3.0
+_LARGEST_PARTIAL_LOG_RATIO = 3.0
 """The same of whole against partial, 20 to 1: errors of flow last over frames."""
 _HIGHEST_RESPONSE = 1.2
 """Response above which more of it tells nothing more."""
@@ -155,5 +155,6 @@ class Wholeness:
         uncovered = 1 - (1 - parameters.return_rate) ** elapsed
         before = self.probability * (1 - covered) + (1 - self.probability) * uncovered
         ratio = parameters.partial_slope * (share - parameters.partial_middle)
-        whole = before * math.exp(min(max(ratio, -_LARGEST_RATIO), _LARGEST_RATIO))
+        bound = _LARGEST_PARTIAL_LOG_RATIO
+        whole = before * math.exp(min(max(ratio, -bound), bound))
         self.probability = whole / (whole + (1 - before))
