@@ -173,7 +173,7 @@ class VisibilityParameters:
     )
     partial_slope: float = parameter(
         8.0,
-        "Higher: fewer frames decide that a vehicle is partly hidden; 0: never, and walls are learnt.",
+        "Higher: a vehicle is taken as partly hidden sooner; 0: never, and walls are learnt.",
         minimum=0.0,
         maximum=50.0,
         unit="log ratio per usual share",
