@@ -101,12 +101,20 @@ class VehicleMotionParameters:
         tuned=(0.005, 0.06),
     )
     hidden_velocity_sigma: float = parameter(
-        0.012,
+        0.005,
         "Larger: a hidden vehicle is expected to change its speed more.",
         minimum=0.0,
         maximum=1.0,
         unit="of the size, per frame squared",
-        tuned=(0.003, 0.04),
+        tuned=(0.002, 0.03),
+    )
+    camera_velocity_sigma: float = parameter(
+        0.011,
+        "Larger: before a moving camera a hidden vehicle is looked for farther from its path.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="of the size, per frame squared",
+        tuned=(0.004, 0.04),
     )
     perspective: bool = parameter(
         True, "Off: a hidden vehicle keeps speed and size, though it drives into depth."

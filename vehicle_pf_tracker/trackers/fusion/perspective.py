@@ -24,7 +24,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.standing_occluder import made_whole
 
-_KEPT_FRAMES = 60.0
+KEPT_FRAMES = 60.0
 """Age in frames from which a sighting tells nothing about the present motion."""
 _FITTED = 24
 """Sightings that the motion is fitted to: most of a second."""
@@ -126,7 +126,7 @@ class Sightings:
 
     def pass_time(self, elapsed: float, camera: CameraMotion) -> None:
         """Let `elapsed` frames pass and the camera move."""
-        first = int((self._ages >= _KEPT_FRAMES).sum())  # the oldest stand first
+        first = int((self._ages >= KEPT_FRAMES).sum())  # the oldest stand first
         self._ages = self._ages[first:] + elapsed
         self._positions = self._positions[first:]
         self._sizes, self._responses = self._sizes[first:], self._responses[first:]

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -32,7 +33,7 @@ from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
+from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, KEPT_FRAMES, Sightings
 from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
@@ -105,6 +106,7 @@ class Track(ParticleTracker[FusionParameters]):
         self._velocity = np.zeros(2)
         self._frames = self._searches = self._next_dated = 0
         self._visible, self._calm = True, False
+        self._camera_stood = math.inf
         self._wholeness = Wholeness()
         self._sightings = Sightings()
         self._points = SurfacePoints(self.kernels)
@@ -152,6 +154,18 @@ class Track(ParticleTracker[FusionParameters]):
     def _extent(self) -> float:
         """Geometric mean of the sides of the box, px."""
         return float(np.sqrt(self._size.prod()))
+
+    @property
+    def _hidden_velocity_sigma(self) -> float:
+        """Change of a hidden vehicle's velocity, of the size, per frame squared.
+
+        Larger where sightings were carried along with a camera that moved: the background's motion
+        is not quite that of the road under the vehicle.
+        """
+        motion = self.parameters.motion
+        if self._camera_stood > KEPT_FRAMES:
+            return motion.hidden_velocity_sigma
+        return math.hypot(motion.hidden_velocity_sigma, motion.camera_velocity_sigma)
 
     @property
     def _learnt_size(self) -> Array:

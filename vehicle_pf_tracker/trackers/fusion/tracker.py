@@ -129,7 +129,9 @@ class FusionTracker(Track):
                 self._turning.keep(small, still=camera.still)
         self._sightings.pass_time(elapsed, camera)
         self._surface.move_with_camera(camera)
+        self._camera_stood += elapsed
         if not camera.still:
+            self._camera_stood = 0.0
             self._position = camera.apply(self._position)
             self._particles = self._particles.moved(camera)
         if self._frozen is not None:
@@ -150,14 +152,14 @@ class FusionTracker(Track):
         if self._visible:
             sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
         else:
-            sigmas = motion.hidden_position_sigma * extent, motion.hidden_velocity_sigma * extent
+            sigmas = motion.hidden_position_sigma * extent, self._hidden_velocity_sigma * extent
             growth = float(self._particles.weights @ self._particles.growths)
             grown = np.minimum(self._size * np.exp(growth * elapsed), self._largest_hidden)
             self._size = self._bounded(frame, grown)
         across = 1.0 if self._visible else ACROSS_LANES
         driven = self._particles.driven(self._rng, elapsed, sigmas, across=across)
         if self._frozen is not None:
-            hidden = motion.hidden_position_sigma, motion.hidden_velocity_sigma
+            hidden = motion.hidden_position_sigma, self._hidden_velocity_sigma
             self._frozen.drive(self._rng, elapsed, hidden)
         rates = self.parameters.visibility
         driven = driven.passed(elapsed, rates.hiding_rate, rates.return_rate)
@@ -250,7 +252,7 @@ class FusionTracker(Track):
             self._turning.begin(motion, last)
         self._size = last.size * motion.scale_at(last.age)
         self._largest_hidden = LARGEST_GROWTH * self._size
-        sigma, count = self.parameters.motion.hidden_velocity_sigma, self.parameters.num_particles
+        sigma, count = self._hidden_velocity_sigma, self.parameters.num_particles
         self._particles = hidden_hypotheses(self._rng, motion, last.age, count, self._extent, sigma)
         self._frozen = FrozenTrack(self._appearance, self._sightings, self._particles, self._size)
 
