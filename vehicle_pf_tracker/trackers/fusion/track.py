@@ -31,7 +31,7 @@ from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
-from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, Hypotheses
+from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, FASTEST_GROWTH, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, KEPT_FRAMES, Sightings
 from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
@@ -107,6 +107,7 @@ class Track(ParticleTracker[FusionParameters]):
         self._frames = self._searches = self._next_dated = 0
         self._visible, self._calm = True, False
         self._camera_stood = math.inf
+        self._growth = 0.0
         self._wholeness = Wholeness()
         self._sightings = Sightings()
         self._points = SurfacePoints(self.kernels)
@@ -193,8 +194,13 @@ class Track(ParticleTracker[FusionParameters]):
 
     def _take_sighting(self, frame: Frame, seen: Seen, elapsed: float) -> None:
         """Follow position, velocity and, of a vehicle seen whole, size to the peak, and learn."""
+        was_whole = self._wholeness.is_likely
         if not seen.again:  # until then the share is of what was there before
             self._wholeness.judge(self._surface.share, elapsed, self.parameters.visibility)
+        if not self._wholeness.is_likely:
+            if was_whole:
+                self._growth = self._fitted_growth()
+            self._size = self._bounded(frame, self._size * np.exp(self._growth * elapsed))
         self._gather(frame, seen.position, elapsed, again=seen.again)
         surely = self._wholeness.is_likely and self._particles.probability_visible > _STRONG
         if self._measures_size and surely and seen.response > _WEAK_RESPONSE:
@@ -213,6 +219,10 @@ class Track(ParticleTracker[FusionParameters]):
             self._next_dated = self._frames + _DATED_EVERY
         if seen.again:  # what was kept shows an occluder; until now its share bounds the learning
             self._surface.restart()
+
+    def _fitted_growth(self) -> float:
+        fitted = self._sightings.fit(perspective=self.parameters.motion.perspective)
+        return 0.0 if fitted is None else min(max(fitted[0].rate, -FASTEST_GROWTH), FASTEST_GROWTH)
 
     def _gather(self, frame: Frame, position: Array, elapsed: float, *, again: bool) -> None:
         """Centre the hypotheses on the sighting; their velocities take on the displacement."""
