@@ -27,6 +27,7 @@ hidden; flow on the surface gives a second one for all of them. docs/fusion.md h
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,6 +45,7 @@ from vehicle_pf_tracker.trackers.fusion.frozen_track import LOOKS_EVERY, FrozenT
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
     DOUBT,
+    HIDDEN_SCALES,
     LARGEST_GROWTH,
     hidden_hypotheses,
 )
@@ -63,6 +65,15 @@ _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
 _MEASURED_SPREAD = 0.3
 """Spread of the hypotheses after a first motion was measured, of the one before: about a px."""
+
+
+class _Look(NamedTuple):
+    """The hypotheses, judged by the response at one size; see `response_evidence`."""
+
+    view: View
+    positions: Array
+    log_ratios: Array
+    scale: float
 
 
 class FusionTracker(Track):
@@ -90,7 +101,7 @@ class FusionTracker(Track):
         if self._frames == 1:
             self._take_first_motion(frame)
         left_image = self._predict(frame, elapsed)
-        view = self._observe(frame, elapsed)
+        view = self._observe(frame)
         position, response = self._locate(frame, view)
         self._calm = self._is_calm(response)
         if self._visible:
@@ -169,19 +180,36 @@ class FusionTracker(Track):
 
     # Observe
 
-    def _observe(self, frame: Frame, elapsed: float) -> View:
-        """Weigh the hypotheses by the filter's response where they are, or close by."""
-        wide = not self._visible and self._particles.spread > WIDE_FROM * self._extent
-        patch = self._appearance.patch(frame, self._particles.mean, self._learnt_size, wide=wide)
-        recall = not self._visible and self.parameters.filter.memory > 0
-        view = self._appearance.view(patch, recall=recall)
-        climb = CLIMB_FREELY if self._visible else CLIMB_ON_PATH
+    def _observe(self, frame: Frame) -> View:
+        """Weigh the hypotheses by the filter's response where they are, or close by.
+
+        A hidden vehicle is looked for at other sizes too; the likeliest of them is taken over once
+        it is visible.
+        """
+        if self._visible:
+            look = self._look(frame, 1.0)
+        else:
+            looks = [self._look(frame, scale) for scale in HIDDEN_SCALES]
+            look = max(looks, key=lambda look: self._particles.evidence(look.log_ratios))
+        moved = replace(self._particles, positions=look.positions)
+        self._particles = moved.observed(look.log_ratios)
+        if self._particles.probability_visible > 0.5:
+            self._size = self._size * look.scale
+        return look.view
+
+    def _look(self, frame: Frame, scale: float) -> _Look:
+        """Judge the hypotheses by the response to a vehicle `scale` times as large as believed."""
+        particles, hidden = self._particles, not self._visible
+        wide = hidden and particles.spread > WIDE_FROM * self._extent
+        size = scale * self._learnt_size
+        patch = self._appearance.patch(frame, particles.mean, size, wide=wide)
+        view = self._appearance.view(patch, recall=hidden and self.parameters.filter.memory > 0)
+        climb = CLIMB_ON_PATH if hidden else CLIMB_FREELY
         climb = STAY if self._set_off else climb
-        positions, log_ratios = response_evidence(
-            view, self._particles.positions, climb, self.parameters.visibility, self.kernels
+        evidence = response_evidence(
+            view, particles.positions, climb, self.parameters.visibility, self.kernels
         )
-        self._particles = replace(self._particles, positions=positions).observed(log_ratios)
-        return view
+        return _Look(view, *evidence, scale)
 
     def _locate(self, frame: Frame, view: View) -> tuple[Array, float]:
         """Peak of the response at the best of the visible hypotheses, and its height."""
