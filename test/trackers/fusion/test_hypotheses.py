@@ -51,6 +51,13 @@ def test_two_hypotheses_are_weighed_by_hand():
     assert observed.probability_visible == pytest.approx((0.25 * 4 + 0.75 * 0.2) / (first + second))
 
 
+def test_the_evidence_of_a_set_is_what_its_weights_are_normalised_by():
+    """0.25 * 4.5 + 0.75 * 0.4, and nothing for a vehicle that is surely hidden."""
+    log_ratios = np.log([8.0, 0.25])
+    assert hypotheses([0.5, 0.8], [0.25, 0.75]).evidence(log_ratios) == pytest.approx(1.425)
+    assert hypotheses([0.0, 0.0], [0.25, 0.75]).evidence(log_ratios) == 1.0
+
+
 def test_evidence_counts_only_for_hypotheses_that_say_visible():
     """A hidden vehicle predicts nothing: its hypothesis keeps its weight relative to others."""
     observed = hypotheses([0.0, 0.0], [0.3, 0.7]).observed(np.array([5.0, -5.0]))

@@ -21,10 +21,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters, VisibilityParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.visibility import Wholeness, points_evidence
-
-DEFAULT = VisibilityParameters()
 
 
 def visibility(**values):
@@ -32,27 +30,33 @@ def visibility(**values):
     return from_mapping(FusionParameters, prefixed).visibility
 
 
+ROUND = visibility(
+    points_slope=4.0, points_middle=0.5, hiding_rate=0.02, return_rate=0.05, partial_slope=8.0,
+    partial_middle=0.7,
+)  # fmt: skip
+
+
 def test_the_surface_s_share_speaks_for_a_visible_vehicle_above_the_middle():
     """Slope 4, middle 0.5; more than the usual share tells no more."""
-    assert points_evidence(0.75, DEFAULT) == pytest.approx(1.0)
-    assert points_evidence(0.25, DEFAULT) == pytest.approx(-1.0)
-    assert points_evidence(1.3, DEFAULT) == points_evidence(1.0, DEFAULT) == pytest.approx(2.0)
+    assert points_evidence(0.75, ROUND) == pytest.approx(1.0)
+    assert points_evidence(0.25, ROUND) == pytest.approx(-1.0)
+    assert points_evidence(1.3, ROUND) == points_evidence(1.0, ROUND) == pytest.approx(2.0)
 
 
 def test_a_share_at_the_middle_leaves_the_chain_to_itself():
     """Rates of 0.02 and 0.05: 0.5 * 0.98 + 0.5 * 0.05."""
     seen = Wholeness(0.5)
-    seen.judge(0.7, 1.0, DEFAULT)
+    seen.judge(0.7, 1.0, ROUND)
     assert seen.probability == pytest.approx(0.515)
     seen = Wholeness(0.5)
-    seen.judge(0.7, 2.0, DEFAULT)
+    seen.judge(0.7, 2.0, ROUND)
     assert seen.probability == pytest.approx(0.5 * 0.98**2 + 0.5 * (1 - 0.95**2))
 
 
 def test_the_share_changes_the_odds_by_its_ratio():
     """Slope 8: 0.2 below the middle is a ratio of -1.6."""
     seen = Wholeness(0.5)
-    seen.judge(0.5, 1.0, DEFAULT)
+    seen.judge(0.5, 1.0, ROUND)
     odds = seen.probability / (1 - seen.probability)
     assert odds == pytest.approx(0.515 / 0.485 * math.exp(-1.6))
 
@@ -60,7 +64,7 @@ def test_the_share_changes_the_odds_by_its_ratio():
 def test_one_frame_is_not_believed_beyond_twenty_to_one():
     """No share at all would be -5.6."""
     seen = Wholeness(0.5)
-    seen.judge(0.0, 1.0, DEFAULT)
+    seen.judge(0.0, 1.0, ROUND)
     odds = seen.probability / (1 - seen.probability)
     assert odds == pytest.approx(0.515 / 0.485 * math.exp(-3))
 
@@ -69,10 +73,10 @@ def test_half_a_vehicle_is_partial_within_three_frames_and_whole_again_as_fast()
     seen = Wholeness()
     assert seen.is_likely
     for _ in range(3):
-        seen.judge(0.4, 1.0, DEFAULT)
+        seen.judge(0.4, 1.0, ROUND)
     assert not seen.is_likely
     for _ in range(3):
-        seen.judge(1.0, 1.0, DEFAULT)
+        seen.judge(1.0, 1.0, ROUND)
     assert seen.is_likely
 
 

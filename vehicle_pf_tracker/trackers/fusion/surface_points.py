@@ -15,7 +15,8 @@
 """Points on the vehicle, tracked from frame to frame: its first motion, and its change of size.
 
 Points that stay behind with a standing occluder, or go away with a moving one, leave their place in
-the box and end; and no others are placed while many have ended, since they would lie on it.
+the box and end; and no others are placed on a vehicle that is partly hidden, since they would lie
+on the occluder.
 """
 
 from __future__ import annotations
@@ -33,24 +34,18 @@ from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.shared_motion import MotionKernels
 
 _GRID = 6
-"""Points along each axis of a set; 36 points give a survival to within 0.08."""
+"""Points along each axis of a set; the median of their distances is good to half a percent."""
 _REACH = 0.4
 """Outermost points from the centre, of the size: the box's rim is background."""
 _SEEDED_EVERY = 5
-"""Frames between two sets. A set is judged from this age on: younger ones have hardly lost any."""
+"""Frames between two sets: points that are lost are soon replaced."""
 _OLDEST = 10
-"""Age in frames at which a set ends: two sets overlap, so that one is always of judging age."""
+"""Age in frames at which a set ends; two sets overlap, so that sizes are told all the time."""
 _STRAYED = 0.2
 """Distance from its place in the box, which turns with the others, of the size, from which on a
 point has left the vehicle."""
 _ROUND_TRIP_PX = 1.0
 """Largest error in canonical px of a point tracked forth and back (Kalal et al. 2010)."""
-_HEALTHY = 0.6
-"""Survival, of the usual one, below which no new set is placed: it would lie on the occluder."""
-_LEAST_USUAL = 0.3
-"""Usual survival below which points tell nothing: a vehicle of a few px, or motion blur."""
-_USUAL_RATE = 0.05
-"""Rate per frame at which the usual survival follows the present one in clear frames."""
 _CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 8, 0.05)
 _FLOW = {"winSize": (9, 9), "maxLevel": 0, "criteria": _CRITERIA,
          "flags": cv2.OPTFLOW_USE_INITIAL_FLOW}  # fmt: skip
@@ -77,29 +72,24 @@ class _PointSet:
 
 
 class SurfacePoints:
-    """Sets of points on the vehicle, and how many usually survive.
+    """Sets of points on the vehicle.
 
     Attributes
     ----------
     kernels : MotionKernels
         What fits the motion of points.
-    survival : float
-        Share of the points that live, of the usual share; 1 where points tell nothing.
     stretch : (2,) array
         Change of the logarithm of width and height in the last frame by the points' spread.
     """
 
     def __init__(self, kernels: MotionKernels = shared_motion) -> None:
         self.kernels = kernels
-        self._usual = 0.0
-        self._latest = 1.0
         self._previous: tuple[Patch, Array] | None = None
         self.restart()
 
     def restart(self) -> None:
-        """Discard all points, but not the usual survival."""
+        """Discard all points."""
         self._sets: list[_PointSet] = []
-        self.survival = 1.0
         self.stretch = np.zeros(2)
 
     def keep(self, patch: Patch, position: Array) -> None:
@@ -128,8 +118,8 @@ class SurfacePoints:
             return None
         return np.asarray(np.median(moves[largest], axis=0) / patch.zoom)
 
-    def track(self, patch: Patch, position: Array, size: Array) -> float | None:
-        """Track all points into the present patch and judge how many survived.
+    def track(self, patch: Patch, position: Array, size: Array) -> None:
+        """Track all points into the present patch, measure how they spread, and end strays.
 
         Parameters
         ----------
@@ -138,40 +128,19 @@ class SurfacePoints:
         position, size : (2,) arrays
             Estimated centre, and width and height, px; the search starts from the displacement
             since the patch that was kept.
-
-        Returns
-        -------
-        float or None
-            `survival`; None where no set is old enough.
         """
         self.stretch = np.zeros(2)
         self._move_points(patch, position, size)
-        shares = []
         for points in self._sets:
             points.age += 1
             present = (points.positions - position) / size
             points.alive = self.kernels.staying(points.places, present, points.alive, _STRAYED)
-            if points.age >= _SEEDED_EVERY:
-                shares.append(np.count_nonzero(points.alive) / len(points.alive))
-        if not shares:
-            return None
-        self._latest = min(shares)
-        if not self._usual:
-            self._usual = self._latest
-        telling = self._usual >= _LEAST_USUAL
-        self.survival = self._latest / self._usual if telling else 1.0
-        return self.survival if telling else None
 
-    def learn_usual(self) -> None:
-        """Count the present survival as one of a clear frame."""
-        if any(points.age >= _SEEDED_EVERY for points in self._sets):
-            self._usual += _USUAL_RATE * (self._latest - self._usual)
-
-    def renew(self, position: Array, size: Array) -> None:
-        """End old sets, and place a new one if it is time and the vehicle is whole."""
+    def renew(self, position: Array, size: Array, *, whole: bool = True) -> None:
+        """End old sets, and place a new one if it is time, and the vehicle is whole or has none."""
         self._sets = [points for points in self._sets if points.age < _OLDEST]
         youngest = min((points.age for points in self._sets), default=None)
-        if youngest is None or (youngest >= _SEEDED_EVERY and self.survival > _HEALTHY):
+        if youngest is None or (youngest >= _SEEDED_EVERY and whole):
             places = _grid(_GRID, _REACH)
             alive = np.ones(len(places), bool)
             self._sets.append(_PointSet(places, position + places * size, alive))

@@ -194,13 +194,7 @@ class Track(ParticleTracker[FusionParameters]):
 
     def _take_sighting(self, frame: Frame, seen: Seen, elapsed: float) -> None:
         """Follow position, velocity and, of a vehicle seen whole, size to the peak, and learn."""
-        was_whole = self._wholeness.is_likely
-        if not seen.again:  # until then the share is of what was there before
-            self._wholeness.judge(self._surface.share, elapsed, self.parameters.visibility)
-        if not self._wholeness.is_likely:
-            if was_whole:
-                self._growth = self._fitted_growth()
-            self._size = self._bounded(frame, self._size * np.exp(self._growth * elapsed))
+        self._judge_wholeness(frame, elapsed, again=seen.again)
         self._gather(frame, seen.position, elapsed, again=seen.again)
         surely = self._wholeness.is_likely and self._particles.probability_visible > _STRONG
         if self._measures_size and surely and seen.response > _WEAK_RESPONSE:
@@ -209,10 +203,10 @@ class Track(ParticleTracker[FusionParameters]):
         if seen.again:
             self._points.restart()
         if surely and seen.response > CLEAR_RESPONSE:
-            self._points.learn_usual()
             self._surface.learn_usual()
         if self._measures_size and self.parameters.visibility.points_slope:
-            self._points.renew(self._position, self._size)
+            whole = self._wholeness.is_likely
+            self._points.renew(self._position, self._size, whole=whole)
         self._learn_appearance(frame, seen.view, seen.response)
         if self._calm and self._frames >= self._next_dated:
             self._appearance.remember(self.parameters.filter.memory)
@@ -220,9 +214,21 @@ class Track(ParticleTracker[FusionParameters]):
         if seen.again:  # what was kept shows an occluder; until now its share bounds the learning
             self._surface.restart()
 
-    def _fitted_growth(self) -> float:
-        fitted = self._sightings.fit(perspective=self.parameters.motion.perspective)
-        return 0.0 if fitted is None else min(max(fitted[0].rate, -FASTEST_GROWTH), FASTEST_GROWTH)
+    def _judge_wholeness(self, frame: Frame, elapsed: float, *, again: bool) -> None:
+        """Judge whether all of the vehicle is seen; predict the size of one that is partly hidden.
+
+        It grows as it did in the sightings before: what shows of it tells no size.
+        """
+        was_whole = self._wholeness.is_likely
+        if not again:  # until then the share is of what was there before
+            self._wholeness.judge(self._surface.share, elapsed, self.parameters.visibility)
+        if self._wholeness.is_likely:
+            return
+        if was_whole:
+            fitted = self._sightings.fit(perspective=self.parameters.motion.perspective)
+            rate = 0.0 if fitted is None else fitted[0].rate
+            self._growth = min(max(rate, -FASTEST_GROWTH), FASTEST_GROWTH)
+        self._size = self._bounded(frame, self._size * math.exp(self._growth * elapsed))
 
     def _gather(self, frame: Frame, position: Array, elapsed: float, *, again: bool) -> None:
         """Centre the hypotheses on the sighting; their velocities take on the displacement."""
