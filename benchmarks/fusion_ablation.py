@@ -41,6 +41,7 @@ DEFAULT = "default"
 CHANGES: Mapping[str, Mapping[str, Value]] = {
     DEFAULT: {},
     "no camera motion": {"motion.camera": False},
+    "hidden before a moving camera as before a standing one": {"motion.camera_velocity_sigma": 0.0},
     "no perspective while hidden": {"motion.perspective": False},
     "no colour": {"filter.colour": False},
     "no dated filters": {"filter.memory": 0},

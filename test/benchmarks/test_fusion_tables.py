@@ -15,6 +15,7 @@
 """Tables of fusion's ablation and reliability, from scores counted by hand."""
 
 from collections import namedtuple
+from dataclasses import replace
 
 import pytest
 
@@ -94,3 +95,5 @@ def test_a_camera_has_no_part_in_the_fit_that_is_judged_on_it():
 def test_the_objective_by_hand():
     assert objective(score(0.8, recovered=1, judged=2)) == pytest.approx(0.8 + 0.5 + 0.5)
     assert objective(score(0.8)) == pytest.approx(0.8 + 0.5 + 1.0)
+    doubts = replace(score(0.8), doubted=0.1, claimed_hidden=0.2)
+    assert objective(doubts) == pytest.approx(0.8 + 0.5 + 1.0 - 0.3)
