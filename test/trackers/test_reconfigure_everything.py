@@ -40,6 +40,7 @@ SINKING = {time: abs(index - 6) / 6 for index, time in enumerate(range(HALT, HAL
 WITHOUT_EFFECT = {
     ("ms", "seed"): "mean shift draws no random numbers",
     ("fusion", "motion.camera"): "the camera of these images stands still",
+    ("fusion", "motion.camera_velocity_sigma"): "the camera of these images stands still",
     ("fusion", "motion.turns"): "nothing turns in these images",
     ("fusion", "visibility.second_look"): "no return is in doubt in these images",
     ("fusion", "evidence.occluded_below"): "visibility is nearly certain in these images",

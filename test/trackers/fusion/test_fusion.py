@@ -317,6 +317,9 @@ def test_a_vehicle_that_grew_is_partly_hidden_with_the_growth_that_was_seen():
     tracker._judge_wholeness(Street().frame(3), 2.0, again=False)
     assert tracker._growth == pytest.approx(0.01, abs=0.0026)
     assert tracker._size == pytest.approx(before * math.exp(2 * tracker._growth))
+    for _ in range(100):
+        tracker._judge_wholeness(Street().frame(3), 1.0, again=False)
+    assert tracker._size == pytest.approx(1.5 * before)
 
 
 def test_a_hidden_vehicle_is_found_though_its_size_was_mistaken(monkeypatch):

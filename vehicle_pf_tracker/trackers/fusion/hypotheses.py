@@ -32,8 +32,8 @@ LARGEST_GROWTH = 3.0
 """Bound of the growth in one occlusion: the vehicles of real sequences that drive towards a fixed
 camera grow fivefold from where they are first seen to where they leave the image."""
 HIDDEN_SCALES = (1.0, 1.2, 1 / 1.2)
-"""Sizes that a hidden vehicle is looked for at, of the predicted one: behind painted walls that is
-wrong by a fifth in the median, and mostly too small, as the wall has cut the last sightings."""
+"""Sizes that a hidden vehicle is looked for at, of the predicted one: behind painted walls it is a
+fifth too low in the median when the vehicle comes out, as the wall has cut the last sightings."""
 _DEGENERATE = 0.5
 """Share of the particles below which the effective sample size asks for resampling (usual)."""
 DOUBT = 0.02

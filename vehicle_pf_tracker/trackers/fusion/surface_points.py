@@ -34,7 +34,8 @@ from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.shared_motion import MotionKernels
 
 _GRID = 6
-"""Points along each axis of a set; the median of their distances is good to half a percent."""
+"""Points along each axis of a set: two thirds of 36 may be lost until they tell no more of the size
+(`shared_motion.FEWEST_POINTS`)."""
 _REACH = 0.4
 """Outermost points from the centre, of the size: the box's rim is background."""
 _SEEDED_EVERY = 5

@@ -194,7 +194,7 @@ class FusionTracker(Track):
         moved = replace(self._particles, positions=look.positions)
         self._particles = moved.observed(look.log_ratios)
         if self._particles.probability_visible > 0.5:
-            self._size = self._size * look.scale
+            self._size = self._bounded(frame, look.scale * self._size)
         return look.view
 
     def _look(self, frame: Frame, scale: float) -> _Look:
