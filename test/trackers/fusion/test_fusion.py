@@ -320,6 +320,10 @@ def test_a_vehicle_that_grew_is_partly_hidden_with_the_growth_that_was_seen():
     for _ in range(100):
         tracker._judge_wholeness(Street().frame(3), 1.0, again=False)
     assert tracker._size == pytest.approx(1.5 * before)
+    # What it grew by while it was hidden is no part of the bound.
+    tracker._size = returned = 2.5 * before
+    tracker._judge_wholeness(Street().frame(3), 1.0, again=True)
+    assert tracker._size == pytest.approx(returned * math.exp(tracker._growth))
 
 
 def test_a_hidden_vehicle_is_found_though_its_size_was_mistaken(monkeypatch):

@@ -68,8 +68,9 @@ _WHOLE = 0.8
 """Share of the surface from which the spread of points tells the size: what an occluder covers,
 shrinks."""
 _LARGEST_PARTIAL = 1.5
-"""Bound of the growth, and of the shrinking, of a partly hidden vehicle. It is a tenth on the real
-sequences; an error of the rate must not go on for as long as a vehicle waits behind a hedge."""
+"""Bound of the growth, and of the shrinking, of a partly hidden vehicle, since it became that or came
+back as that. It is a tenth on the real sequences; an error of the rate must not go on for as long as
+a vehicle waits behind a hedge."""
 _LEAST_SIDE, _LARGEST_SHARE = 3.0, 1.5
 """Bounds of the sides: px, and share of the image."""
 _NEW_VELOCITY = 3.0
@@ -110,7 +111,7 @@ class Track(ParticleTracker[FusionParameters]):
         self._frames = self._searches = self._next_dated = 0
         self._visible, self._calm = True, False
         self._camera_stood = math.inf
-        self._growth, self._whole_size = 0.0, self._size
+        self._growth = self._grown = 0.0
         self._wholeness = Wholeness()
         self._sightings = Sightings()
         self._points = SurfacePoints(self.kernels)
@@ -231,10 +232,10 @@ class Track(ParticleTracker[FusionParameters]):
             fitted = self._sightings.fit(perspective=self.parameters.motion.perspective)
             rate = 0.0 if fitted is None else fitted[0].rate
             self._growth = min(max(rate, -FASTEST_GROWTH), FASTEST_GROWTH)
-            self._whole_size = self._size
-        grown = self._size * math.exp(self._growth * elapsed)
-        low, high = self._whole_size / _LARGEST_PARTIAL, self._whole_size * _LARGEST_PARTIAL
-        self._size = self._bounded(frame, np.minimum(np.maximum(grown, low), high))
+        before = 0.0 if was_whole or again else self._grown
+        bound = math.log(_LARGEST_PARTIAL)
+        self._grown = min(max(before + self._growth * elapsed, -bound), bound)
+        self._size = self._bounded(frame, self._size * math.exp(self._grown - before))
 
     def _gather(self, frame: Frame, position: Array, elapsed: float, *, again: bool) -> None:
         """Centre the hypotheses on the sighting; their velocities take on the displacement."""
