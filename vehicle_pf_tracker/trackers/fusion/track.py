@@ -68,9 +68,9 @@ _WHOLE = 0.8
 """Share of the surface from which the spread of points tells the size: what an occluder covers,
 shrinks."""
 _LARGEST_PARTIAL = 1.5
-"""Bound of the growth, and of the shrinking, of a partly hidden vehicle, since it became that or came
-back as that. It is a tenth on the real sequences; an error of the rate must not go on for as long as
-a vehicle waits behind a hedge."""
+"""Bound of the growth, and of the shrinking, of a partly hidden vehicle, since it became that or
+came back as that. It is a tenth on the real sequences; an error of the rate must not go on for as
+long as a vehicle waits behind a hedge."""
 _LEAST_SIDE, _LARGEST_SHARE = 3.0, 1.5
 """Bounds of the sides: px, and share of the image."""
 _NEW_VELOCITY = 3.0
