@@ -42,6 +42,11 @@ from sensor_msgs.msg import Image, RegionOfInterest
 from vehicle_pf_tracker.ros.messages import NOT_READY
 
 TIMEOUT = 20.0
+RELIABLE = "qos_overrides./image.subscription.reliability:=reliable"
+"""A node's images come by best effort: on a busy machine DDS may drop one, beside a flood above all.
+
+An image without an answer would then say nothing about the node.
+"""
 TRACKED = {"TRACKING", "OCCLUDED", "LOST"}
 _TOPICS = {RegionOfInterest: "set_target", PolygonStamped: "set_box", PointStamped: "clicked_point"}
 
@@ -67,7 +72,7 @@ class NodeProcess:
     ) -> None:
         os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         box = zip(("x", "y", "width", "height"), target or (), strict=target is not None)
-        words = [*(f"target.{name}:={value}" for name, value in box), *assignments]
+        words = [RELIABLE, *(f"target.{name}:={value}" for name, value in box), *assignments]
         self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - open as long as the node
         code = (
             "from vehicle_pf_tracker.ros.executables import main;"

@@ -319,6 +319,8 @@ def report(soak: Soak, seconds: float, output: str) -> bool:
     images = len(soak.latencies) + len(soak.waiting)
     print(f"{soak.traffic.begun} vehicles in {images} images, {seconds:.0f} s")
     print(f"images without an answer: {len(soak.waiting)}")
+    for key in sorted(soak.waiting):
+        print(f"  with the stamp {key / 1e9:.3f} s")
     for answer, count in sorted(soak.answers.items()):
         print(f"  {answer:18} {count}")
     soak.numbers.report()
