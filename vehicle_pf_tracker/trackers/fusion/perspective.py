@@ -19,6 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
@@ -26,17 +27,18 @@ from vehicle_pf_tracker.trackers.fusion.standing_occluder import made_whole
 
 KEPT_FRAMES = 60.0
 """Age in frames from which a sighting tells nothing about the present motion."""
-_FITTED = 24
-"""Sightings that the motion is fitted to: most of a second."""
 CLEAR_RESPONSE = 0.75
 """Least response, of the usual one, of a sighting that the fit believes. While an occluder moves in
 it drags positions along and shrinks the box; 5 % of visible frames have less than 0.8."""
+_SIZE_RESPONSE = 0.9
+"""The same of one whose size is believed: the box shrinks before the response does."""
 _RATES = np.linspace(-0.04, 0.04, 33)
 """Rates of approach per frame that are tried."""
 _RATE_NEEDS = 8
-"""Sightings below which the size is taken to stay."""
+"""Sightings below which the size is taken to stay, and the response of their sizes not asked for."""
 _MEMORY = 10.0
-"""Frames after which an older sighting counts for 1 / e."""
+"""Frames after which an older position counts for 1 / e: a vehicle changes its speed. Sizes count
+alike for as long as they are kept, as the road stays what it is."""
 _POSITION_SIGMA = 0.03
 """Standard deviation of a sighting's position, of the size."""
 _SIZE_SIGMA = 0.04
@@ -46,7 +48,7 @@ _RATE_SIGMA = 0.02
 _LEAST_DIVISOR = 0.25
 """A vehicle that comes closer passes the camera; it does not grow without bound."""
 _LARGEST_CHANGE = 0.7
-"""Largest change of the inverse size within the fitted sightings."""
+"""Largest share of its size, two seconds ago, that a vehicle may have lost."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +61,14 @@ class PerspectiveMotion:
         p0 in px and V in px per frame, at time 0.
     rate : float
         Rate of approach r per frame: above 0 the vehicle comes closer.
+    extent : float
+        s0, geometric mean of the sides in px.
     """
 
     position: Array
     velocity: Array
     rate: float
+    extent: float = 0.0
 
     def _divisor(self, time: float) -> float:
         return max(1.0 - self.rate * time, _LEAST_DIVISOR)
@@ -135,20 +140,31 @@ class Sightings:
 
     def fit(self, *, perspective: bool) -> tuple[PerspectiveMotion, Sighting] | None:
         """Fit the motion to clear sightings; also give the last of them, which is at time 0."""
-        clear = np.flatnonzero(self._responses >= CLEAR_RESPONSE)[-_FITTED:]
-        if not len(clear):
+        clear = self._responses >= CLEAR_RESPONSE
+        if not clear.any():
             return None
         whole = made_whole(self._ages, self._positions, self._sizes, self._responses)
         positions, sizes = whole or (self._positions, self._sizes)
         positions, sizes, ages = positions[clear], sizes[clear], self._ages[clear]
-        last = Sighting(float(ages[-1]), positions[-1], sizes[-1], whole is not None)
         extents = np.sqrt(sizes.prod(axis=1))
-        motion = fit_motion(last.age - ages, positions, extents, perspective=perspective)
-        return motion, last
+        believed = self._responses[clear] >= _SIZE_RESPONSE
+        if believed.sum() < _RATE_NEEDS:
+            believed[:] = True
+        motion = fit_motion(
+            ages[-1] - ages, positions, extents, believed, perspective=perspective
+        )
+        # The last sizes may be cut by the occluder, and are never too large for it.
+        size = sizes[-1] * max(motion.extent / extents[-1], 1.0)
+        return motion, Sighting(float(ages[-1]), positions[-1], size, whole is not None)
 
 
 def fit_motion(
-    times: Array, positions: Array, sizes: Array, *, perspective: bool = True
+    times: Array,
+    positions: Array,
+    sizes: Array,
+    believed: npt.NDArray[np.bool_] | None = None,
+    *,
+    perspective: bool = True,
 ) -> PerspectiveMotion:
     """Fit to sightings, by weighted least squares over a grid of rates.
 
@@ -160,6 +176,8 @@ def fit_motion(
         px.
     sizes : (N,) array
         Geometric means of the sides, px.
+    believed : (N,) array or None
+        Sightings whose sizes count; None for all.
     perspective : bool
         False holds the rate at 0: constant velocity and size in the image.
 
@@ -180,12 +198,15 @@ def fit_motion(
     spread = off**2 @ weights + 1e-9
     velocities = (off * weights) @ (positions - middle) / spread[:, np.newaxis]
     residuals = positions - middle - off[..., np.newaxis] * velocities[:, np.newaxis]
+    counts = np.ones(len(times)) if believed is None else believed.astype(float)
     logs = np.log(sizes * divisors)
-    log_sizes = logs @ weights / total
+    log_sizes = logs @ counts / counts.sum()
     sigma = _POSITION_SIGMA * float(sizes.mean())
     costs = (residuals**2).sum(axis=2) @ weights / sigma**2 + (rates / _RATE_SIGMA) ** 2
-    costs += (logs - log_sizes[:, np.newaxis]) ** 2 @ weights / _SIZE_SIGMA**2
-    possible = np.abs(rates * times[0]) <= _LARGEST_CHANGE
+    costs += (logs - log_sizes[:, np.newaxis]) ** 2 @ counts / _SIZE_SIGMA**2
+    possible = rates * times[0] <= _LARGEST_CHANGE
     best = int(np.argmin(np.where(possible, costs, np.inf)))
     fitted = middle - centres[best] * velocities[best]
-    return PerspectiveMotion(0.5 * (fitted + positions[-1]), velocities[best], float(rates[best]))
+    position = 0.5 * (fitted + positions[-1])
+    extent = float(np.exp(log_sizes[best]))
+    return PerspectiveMotion(position, velocities[best], float(rates[best]), extent)
