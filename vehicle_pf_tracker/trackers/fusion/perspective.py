@@ -16,10 +16,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
@@ -118,6 +118,7 @@ class Sightings:
         self._positions = np.empty((0, 2))
         self._sizes = np.empty((0, 2))
         self._responses = np.empty(0)
+        self._camera_stood = math.inf
 
     def __len__(self) -> int:
         return len(self._ages)
@@ -135,8 +136,15 @@ class Sightings:
         self._ages = self._ages[first:] + elapsed
         self._positions = self._positions[first:]
         self._sizes, self._responses = self._sizes[first:], self._responses[first:]
+        self._camera_stood += elapsed
         if not camera.still:
+            self._camera_stood = 0.0
             self._positions = camera.apply(self._positions)
+
+    @property
+    def are_steady(self) -> bool:
+        """True where the camera has stood for as long as sightings are kept."""
+        return self._camera_stood > KEPT_FRAMES
 
     def fit(self, *, perspective: bool) -> tuple[PerspectiveMotion, Sighting] | None:
         """Fit the motion to clear sightings; also give the last of them, which is at time 0."""
@@ -150,9 +158,9 @@ class Sightings:
         believed = self._responses[clear] >= _SIZE_RESPONSE
         if believed.sum() < _RATE_NEEDS:
             believed[:] = True
-        motion = fit_motion(
-            ages[-1] - ages, positions, extents, believed, perspective=perspective
-        )
+        times = ages[-1] - ages
+        weights = believed * (1.0 if self.are_steady else np.exp(times / _MEMORY))
+        motion = fit_motion(times, positions, extents, weights, perspective=perspective)
         # The last sizes may be cut by the occluder, and are never too large for it.
         size = sizes[-1] * max(motion.extent / extents[-1], 1.0)
         return motion, Sighting(float(ages[-1]), positions[-1], size, whole is not None)
@@ -162,7 +170,7 @@ def fit_motion(
     times: Array,
     positions: Array,
     sizes: Array,
-    believed: npt.NDArray[np.bool_] | None = None,
+    size_weights: Array | None = None,
     *,
     perspective: bool = True,
 ) -> PerspectiveMotion:
@@ -176,8 +184,8 @@ def fit_motion(
         px.
     sizes : (N,) array
         Geometric means of the sides, px.
-    believed : (N,) array or None
-        Sightings whose sizes count; None for all.
+    size_weights : (N,) array or None
+        How much each size counts; None for all alike.
     perspective : bool
         False holds the rate at 0: constant velocity and size in the image.
 
@@ -198,7 +206,7 @@ def fit_motion(
     spread = off**2 @ weights + 1e-9
     velocities = (off * weights) @ (positions - middle) / spread[:, np.newaxis]
     residuals = positions - middle - off[..., np.newaxis] * velocities[:, np.newaxis]
-    counts = np.ones(len(times)) if believed is None else believed.astype(float)
+    counts = np.ones(len(times)) if size_weights is None else size_weights
     logs = np.log(sizes * divisors)
     log_sizes = logs @ counts / counts.sum()
     sigma = _POSITION_SIGMA * float(sizes.mean())

@@ -33,7 +33,7 @@ from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, FASTEST_GROWTH, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, KEPT_FRAMES, Sightings
+from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
 from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
@@ -110,7 +110,6 @@ class Track(ParticleTracker[FusionParameters]):
         self._velocity = np.zeros(2)
         self._frames = self._searches = self._next_dated = 0
         self._visible, self._calm = True, False
-        self._camera_stood = math.inf
         self._growth = self._grown = 0.0
         self._wholeness = Wholeness()
         self._sightings = Sightings()
@@ -168,7 +167,7 @@ class Track(ParticleTracker[FusionParameters]):
         is not quite that of the road under the vehicle.
         """
         motion = self.parameters.motion
-        if self._camera_stood > KEPT_FRAMES:
+        if self._sightings.are_steady:
             return motion.hidden_velocity_sigma
         return math.hypot(motion.hidden_velocity_sigma, motion.camera_velocity_sigma)
 

@@ -140,9 +140,7 @@ class FusionTracker(Track):
                 self._turning.keep(small, still=camera.still)
         self._sightings.pass_time(elapsed, camera)
         self._surface.move_with_camera(camera)
-        self._camera_stood += elapsed
         if not camera.still:
-            self._camera_stood = 0.0
             self._position = camera.apply(self._position)
             self._particles = self._particles.moved(camera)
         if self._frozen is not None:
