@@ -43,7 +43,7 @@ from vehicle_pf_tracker.ros.messages import NOT_READY
 
 TIMEOUT = 20.0
 RELIABLE = "qos_overrides./image.subscription.reliability:=reliable"
-"""A node's images come by best effort: on a busy machine DDS may drop one, beside a flood above all.
+"""Images come by best effort: on a busy machine DDS may drop one, beside a flood above all.
 
 An image without an answer would then say nothing about the node.
 """

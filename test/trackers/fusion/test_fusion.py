@@ -349,9 +349,9 @@ def test_before_a_camera_that_moved_a_hidden_vehicle_is_looked_for_farther_away(
     tracker = fusion(**values)
     follow(tracker, Street(speed=2.0), range(3))
     assert tracker._hidden_velocity_sigma == 0.003
-    tracker._camera_stood = 0.0
+    tracker._sightings.pass_time(1.0, CameraMotion(np.eye(2), np.array([3.0, 0.0])))
     assert tracker._hidden_velocity_sigma == pytest.approx(0.005)
-    tracker._camera_stood = KEPT_FRAMES + 1
+    tracker._sightings.pass_time(KEPT_FRAMES + 1, CameraMotion())
     assert tracker._hidden_velocity_sigma == 0.003
 
 
@@ -363,7 +363,7 @@ def test_a_pan_is_noticed_as_a_camera_that_moves():
             tracker.step(picture)
         else:
             tracker.start(picture, Box.around(tuple(centre), 60, 40))
-    assert tracker._camera_stood == 0
+    assert not tracker._sightings.are_steady
 
 
 def counted(tracker, monkeypatch):

@@ -116,6 +116,65 @@ def test_only_clear_sightings_are_fitted():
     assert motion.position_at(last.age) == pytest.approx([43, 50])
 
 
+def test_a_vehicle_that_has_come_closer_for_two_seconds_is_recovered():
+    """At r = 0.04 it was 3.4 times as small 60 frames ago, which is no reason to doubt the rate."""
+    true = PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), 0.04)
+    times = np.arange(-60.0, 1.0)
+    positions = np.array([true.position_at(time) for time in times])
+    sizes = np.array([80 * true.scale_at(time) for time in times])
+    assert sizes[-1] / sizes[0] == pytest.approx(3.4)
+    assert fit_motion(times, positions, sizes).rate == pytest.approx(0.04)
+
+
+def growing(*, cut_from, response, camera=None):
+    """Sightings of a vehicle that comes closer at a rate of 0.01, of which the last are cut."""
+    sightings = Sightings()
+    for time in range(40):
+        sightings.pass_time(1.0, camera or CameraMotion())
+        size = np.array([30.0, 20.0]) / (1 - 0.01 * (time - 39))
+        is_cut = time >= cut_from
+        if is_cut:
+            size *= 0.97 ** (time - cut_from)
+        sightings.add(np.array([50.0, 50.0]), size, response if is_cut else 1.0)
+    return sightings
+
+
+def test_sizes_that_an_occluder_begins_to_cut_do_not_count():
+    true, _ = growing(cut_from=40, response=1.0).fit(perspective=True)
+    motion, _ = growing(cut_from=32, response=0.89).fit(perspective=True)
+    believed, _ = growing(cut_from=32, response=0.91).fit(perspective=True)
+    assert true.rate == pytest.approx(0.01)
+    assert motion.rate == pytest.approx(0.01)
+    assert believed.rate < 0.008
+
+
+def test_where_few_sizes_can_be_believed_all_clear_ones_count():
+    motion, _ = growing(cut_from=7, response=0.89).fit(perspective=True)
+    assert motion.rate < 0
+
+
+def test_before_a_camera_that_moves_late_sizes_count_for_more():
+    """What drives before a moving camera need not come closer as it did two seconds ago."""
+    moves = CameraMotion(np.eye(2), np.array([0.0, 0.01]))
+    standing = growing(cut_from=24, response=1.0)
+    moving = growing(cut_from=24, response=1.0, camera=moves)
+    assert standing.are_steady and not moving.are_steady
+    rates = [each.fit(perspective=True)[0].rate for each in (standing, moving)]
+    assert rates[1] < rates[0] - 0.003
+
+
+def test_sightings_are_steady_when_the_camera_has_stood_for_as_long_as_they_are_kept():
+    sightings = Sightings()
+    assert sightings.are_steady
+    sightings.pass_time(1.0, CameraMotion(np.eye(2), np.array([3.0, 0.0])))
+    assert not sightings.are_steady
+    for _ in range(60):
+        sightings.pass_time(1.0, CameraMotion())
+    assert not sightings.are_steady
+    sightings.pass_time(1.0, CameraMotion())
+    assert sightings.are_steady
+
+
 def test_without_clear_sightings_there_is_nothing_to_fit():
     sightings = Sightings()
     assert sightings.fit(perspective=True) is None

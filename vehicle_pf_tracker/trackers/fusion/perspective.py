@@ -31,14 +31,14 @@ CLEAR_RESPONSE = 0.75
 """Least response, of the usual one, of a sighting that the fit believes. While an occluder moves in
 it drags positions along and shrinks the box; 5 % of visible frames have less than 0.8."""
 _SIZE_RESPONSE = 0.9
-"""The same of one whose size is believed: the box shrinks before the response does."""
+"""The same of one whose size the fit believes: an occluder shrinks the box first."""
 _RATES = np.linspace(-0.04, 0.04, 33)
 """Rates of approach per frame that are tried."""
 _RATE_NEEDS = 8
-"""Sightings below which the size is taken to stay, and the response of their sizes not asked for."""
+"""Sightings below which the size is taken to stay. Where fewer sizes can be believed, all count."""
 _MEMORY = 10.0
-"""Frames after which an older position counts for 1 / e: a vehicle changes its speed. Sizes count
-alike for as long as they are kept, as the road stays what it is."""
+"""Frames after which an older position counts for 1 / e: a vehicle changes its speed. Before a
+camera that stands all sizes that are kept count alike, as the road stays what it is."""
 _POSITION_SIGMA = 0.03
 """Standard deviation of a sighting's position, of the size."""
 _SIZE_SIGMA = 0.04
@@ -61,14 +61,11 @@ class PerspectiveMotion:
         p0 in px and V in px per frame, at time 0.
     rate : float
         Rate of approach r per frame: above 0 the vehicle comes closer.
-    extent : float
-        s0, geometric mean of the sides in px.
     """
 
     position: Array
     velocity: Array
     rate: float
-    extent: float = 0.0
 
     def _divisor(self, time: float) -> float:
         return max(1.0 - self.rate * time, _LEAST_DIVISOR)
@@ -154,16 +151,14 @@ class Sightings:
         whole = made_whole(self._ages, self._positions, self._sizes, self._responses)
         positions, sizes = whole or (self._positions, self._sizes)
         positions, sizes, ages = positions[clear], sizes[clear], self._ages[clear]
-        extents = np.sqrt(sizes.prod(axis=1))
+        last = Sighting(float(ages[-1]), positions[-1], sizes[-1], whole is not None)
+        times = last.age - ages
         believed = self._responses[clear] >= _SIZE_RESPONSE
         if believed.sum() < _RATE_NEEDS:
             believed[:] = True
-        times = ages[-1] - ages
         weights = believed * (1.0 if self.are_steady else np.exp(times / _MEMORY))
-        motion = fit_motion(times, positions, extents, weights, perspective=perspective)
-        # The last sizes may be cut by the occluder, and are never too large for it.
-        size = sizes[-1] * max(motion.extent / extents[-1], 1.0)
-        return motion, Sighting(float(ages[-1]), positions[-1], size, whole is not None)
+        extents = np.sqrt(sizes.prod(axis=1))
+        return fit_motion(times, positions, extents, weights, perspective=perspective), last
 
 
 def fit_motion(
@@ -215,6 +210,4 @@ def fit_motion(
     possible = rates * times[0] <= _LARGEST_CHANGE
     best = int(np.argmin(np.where(possible, costs, np.inf)))
     fitted = middle - centres[best] * velocities[best]
-    position = 0.5 * (fitted + positions[-1])
-    extent = float(np.exp(log_sizes[best]))
-    return PerspectiveMotion(position, velocities[best], float(rates[best]), extent)
+    return PerspectiveMotion(0.5 * (fitted + positions[-1]), velocities[best], float(rates[best]))
