@@ -156,7 +156,9 @@ class Sightings:
         believed = self._responses[clear] >= _SIZE_RESPONSE
         if believed.sum() < _RATE_NEEDS:
             believed[:] = True
-        weights = believed * (1.0 if self.are_steady else np.exp(times / _MEMORY))
+        weights = believed.astype(float)
+        if not self.are_steady:
+            weights *= np.exp(times / _MEMORY)
         extents = np.sqrt(sizes.prod(axis=1))
         return fit_motion(times, positions, extents, weights, perspective=perspective), last
 
