@@ -24,7 +24,7 @@ from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.evaluation.grid.systems import BASELINE
 from vehicle_pf_tracker.evaluation.stress import KINDS
 
-PAGE = Path(__file__).parents[2] / "docs" / "evaluation.md"
+PAGE = Path(__file__).parents[2] / "laboratory" / "notes" / "stress.md"
 BASE = ["--variants", "ms", "--workers", "1"]
 
 

@@ -27,10 +27,22 @@ def test_the_document_names_every_parameter_of_every_variant(capsys):
     assert main(["params", "all", "--markdown"]) == 0
     _, *sections = capsys.readouterr().out.split("\n## ")
     texts = {section.partition("\n")[0]: section for section in sections}
-    assert list(texts) == ["Every node", *NODES]
+    assert list(texts) == ["Every node", "Several variants", *NODES]
     for name, variant in VARIANTS.items():
-        for one in Configuration.of(variant).specs():
-            assert (f"| `{one}` |" in texts[name]) != (f"| `{one}` |" in texts["Every node"])
+        for one, spec in Configuration.of(variant).specs().items():
+            rows = [
+                line
+                for part in ("Every node", "Several variants", name)
+                for line in texts[part].splitlines()
+                if line.startswith(f"| `{one}` |")
+                and (part != "Several variants" or f"`{name}`" in line.rpartition(" | ")[2])
+            ]
+            assert len(rows) == 1, (name, one)
+            default = str(spec.default).lower() if spec.kind is bool else str(spec.default)
+            assert f"| {default} |" in rows[0]
+            assert spec.bounds in rows[0]
+            assert spec.unit.replace("|", "\\|") in rows[0]
+            assert spec.doc.replace("|", "\\|") in rows[0]
 
 
 def test_the_document_says_how_traffic_differs_from_every_node(capsys):

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the pages promise: their links lead somewhere, and every page is linked."""
+"""What the pages promise: their links lead somewhere, every page is linked, sentences are short."""
 
 import re
 from pathlib import Path
@@ -50,6 +50,32 @@ def test_every_page_can_be_found():
         for target, _ in LINK.findall(page.read_text(encoding="utf-8"))
     }
     assert {page for page in PAGES if page.name != "README.md"} <= linked
+
+
+MOST_WORDS = 40
+"""Words of a sentence that a reader follows at the first reading."""
+MOST_LINES = 2600
+"""Lines of all pages in docs/: one person reads and maintains them."""
+
+
+def sentences(page: Path) -> list[str]:
+    """Text of a page without blocks of code and tables, split behind full stops."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.M)
+    text = re.sub(r"^\|.*$", "", text, flags=re.MULTILINE)
+    return re.split(r"(?<=[.!?])\s+", text)
+
+
+def test_pages_are_short():
+    long = {
+        f"{page.name}: {sentence}"
+        for page in PAGES
+        for sentence in sentences(page)
+        if len(sentence.split()) > MOST_WORDS
+    }
+    assert not long
+    docs = [page for page in PAGES if page.parent.name == "docs"]
+    lines = [len(page.read_text(encoding="utf-8").splitlines()) for page in docs]
+    assert sum(lines) <= MOST_LINES
 
 
 def rows_of(page: str, first: str) -> list[list[str]]:

@@ -165,8 +165,9 @@ def test_nothing_but_the_seed_can_be_chosen():
         make_scene("video01", settings={"speed": 3})
 
 
-def test_the_docs_name_every_scene():
-    page = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text(encoding="utf-8")
+def test_the_notes_name_every_scene():
+    notes = Path(__file__).parents[2] / "laboratory" / "notes"
+    page = (notes / "paper_scenes.md").read_text(encoding="utf-8")
     for name in FIXED_SCENES:
         assert f"`{name}`" in page, name
 

@@ -163,8 +163,8 @@ def test_a_fault_of_a_tracker_is_told_and_costs_only_its_case(few):
 
 
 def test_the_documented_example_runs(drive, tmp_path, monkeypatch, capsys):
-    text = (Path(__file__).parents[3] / "docs" / "evaluation.md").read_text()
-    (example,) = [part for part in text.split("```") if "evaluation.stress import" in part]
+    text = (Path(__file__).parents[3] / "laboratory" / "notes" / "stress.md").read_text()
+    (example,) = [part for part in text.split("```") if "stress import" in part]
     (tmp_path / "recordings").symlink_to(Path(drive.source.path).parents[1])
     monkeypatch.chdir(tmp_path)
     exec(example.removeprefix("python"), {})

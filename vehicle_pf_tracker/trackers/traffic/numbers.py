@@ -14,8 +14,8 @@
 
 """Numbers of `traffic` that can be fitted but that no user turns.
 
-`benchmarks/traffic_fit.py` fits them to synthetic scenes; docs/traffic.md says what came of it. The
-defaults were chosen by hand.
+`laboratory/traffic_fit.py` fits them to synthetic scenes. The defaults were chosen by hand;
+laboratory/notes/traffic.md has the comparison.
 """
 
 from __future__ import annotations

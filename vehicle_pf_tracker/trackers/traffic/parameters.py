@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameters of `traffic`; docs/traffic.md says what each part is for."""
+"""Parameters of `traffic`; laboratory/notes/traffic.md has the model."""
 
 from __future__ import annotations
 
