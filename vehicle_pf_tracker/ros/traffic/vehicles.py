@@ -180,10 +180,11 @@ class Vehicles:
             self.counter.totals.update(totals)
 
     def summary(self) -> dict[str, object]:
-        """Count the vehicles by what is claimed of them."""
+        """Count the vehicles by what is claimed of them, and those dropped for a bad state."""
         modes = Tally(one.mode for one in self.estimates)
         counts = {f"vehicles {mode.value}": modes[mode] for mode in TrackMode}
-        return {"vehicles": len(self.estimates), **counts}
+        dropped = self.session.tracker.bad_states
+        return {"vehicles": len(self.estimates), **counts, "dropped for a bad state": dropped}
 
     def _counter(self) -> Counter | None:
         lines = self._configuration.tracker.lines
