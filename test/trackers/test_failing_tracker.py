@@ -14,10 +14,9 @@
 
 """Trackers that fail on good images, in both sessions."""
 
-import itertools
-
 import numpy as np
 import pytest
+from failing import ERROR, failing
 from street import Street
 from test_session import PERIOD_NS, error, session
 
@@ -27,30 +26,24 @@ from vehicle_pf_tracker.trackers.failures import TrackerError
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
-ANEW = "the tracker failed twice in a row and has started anew: unexpected ZeroDivisionError"
+ANEW = f"the tracker failed twice in a row and has started anew: {ERROR}"
 
 
 def fail(of, method: str, at, reason=ZeroDivisionError):
     """Have a method of a session's tracker raise in the calls of these numbers, from 0."""
-    good, calls = getattr(of.tracker, method), itertools.count()
-
-    def failing(*arguments):
-        if next(calls) in at:
-            raise reason("of a test")
-        return good(*arguments)
-
-    setattr(of.tracker, method, failing)
+    setattr(of.tracker, method, failing(getattr(of.tracker, method), at, reason))
 
 
 def outcomes(of, frames, first: int):
     """Feed frames; an estimate, or the error, for each."""
-    found = []
-    for index, frame in enumerate(frames, start=first):
-        try:
-            found.append(of.feed(frame, (index + 1) * PERIOD_NS))
-        except (TrackerError, InputError) as raised:
-            found.append(raised)
-    return found
+    return [outcome(of, frame, (first + at) * PERIOD_NS) for at, frame in enumerate(frames, 1)]
+
+
+def outcome(of, frame, stamp_ns: int):
+    try:
+        return of.feed(frame, stamp_ns)
+    except (TrackerError, InputError) as raised:
+        return raised
 
 
 @pytest.fixture
@@ -85,7 +78,7 @@ def test_one_error_costs_one_image(street, tracking):
     fail(tracking, "step", {0, 2})
     found = outcomes(tracking, map(street.frame, range(10, 14)), 10)
     for raised in found[::2]:
-        assert str(raised) == "unexpected ZeroDivisionError: of a test"
+        assert str(raised) == ERROR
         assert isinstance(raised.__cause__, ZeroDivisionError)
         assert not raised.persists
     assert [one.regime == "start" for one in found[1::2]] == [False, False]
@@ -99,7 +92,7 @@ def test_the_second_error_in_a_row_starts_anew_where_the_target_was_seen(street,
     assert anew.regime == "start"
     assert error(anew, street, 11) < 10
     assert tracking.recovered
-    assert tracking.events == [f"{ANEW}: of a test"]
+    assert tracking.events == [ANEW]
     (after,) = outcomes(tracking, [street.frame(12)], 12)
     assert error(after, street, 12) < 10
     assert (tracking.recovered, tracking.events) == (False, [])
@@ -141,7 +134,7 @@ def test_vehicles_given_by_hand_are_kept(traffic):
     assert kept.label == "van"
     assert kept.position == pytest.approx(before[1].position, abs=3)
     assert traffic.recovered
-    assert traffic.events == [f"{ANEW}: of a test"]
+    assert traffic.events == [ANEW]
     assert traffic.restarts == 1
     outcomes(traffic, [SCENE], 4)
     assert (traffic.recovered, traffic.events) == (False, [])

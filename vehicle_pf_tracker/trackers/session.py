@@ -195,6 +195,8 @@ class Session:
         except InputError as error:
             self._pending = None
             if not self._is_tracking:
+                configured = self.settings.target.box
+                self._pending = configured if configured != box else None
                 raise TargetError(str(error)) from None
             self.refusal = str(error)
             self.events.append(f"target refused: {error}")
