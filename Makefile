@@ -23,7 +23,7 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 .PHONY: demo test test-offline test-footage test-ros test-slow test-noble lint types format config colcon baselines peers bench reproduce clean
 
 demo: .venv/installed
-	$(BIN)/vehicle-pf-tracker demo -o results/demo
+	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
 
 ifdef PYTEST_ARGS
 # A selection of the tests, which says nothing about coverage.

@@ -31,9 +31,9 @@ from reproduction.experiment import (
     Report,
     Size,
 )
+from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.evaluation.output_files import (
     make_folder,
-    output_errors,
     write_json,
     write_text,
 )

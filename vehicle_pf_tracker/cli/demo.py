@@ -31,8 +31,9 @@ from vehicle_pf_tracker.cli.demo_runs import (
     track_through_ros,
 )
 from vehicle_pf_tracker.cli.demo_traffic import follow_all
-from vehicle_pf_tracker.cli.shared_options import natural
+from vehicle_pf_tracker.cli.shared_options import add_overwrite, natural
 from vehicle_pf_tracker.cli.synth import record_scene
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.estimates_recording import write_with_estimates
 from vehicle_pf_tracker.evaluation.following import Pictures, follow
@@ -52,6 +53,7 @@ IN_VIDEO = ("fusion", "pf")
 """Contestants drawn in the video: a third box would hide the other two."""
 PICTURE, VIDEO, ESTIMATES = "demo.png", "demo.mp4", "with_estimates"
 ALL_VEHICLES = "all_vehicles.png"
+PRODUCTS = ("recording", PICTURE, VIDEO, ESTIMATES, ALL_VEHICLES, "summary.*")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -61,6 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, default=Path("results/demo"), metavar="DIR",
         help="folder for recordings, results, pictures and video (default: results/demo)",
     )  # fmt: skip
+    add_overwrite(parser)
     add(
         "--seeds", type=natural, default=5, metavar="N",
         help="how many more seeds to run offline (default: 5)",
@@ -72,7 +75,12 @@ def run(args: argparse.Namespace) -> int:
     absence = absence_of_ros()
     if absence:
         tell_notices([f"{absence}, so the nodes are left out and everything is tracked offline"])
-    folder, steps = make_folder(args.output), itertools.count(1)
+    with claimed([Products(args.output, PRODUCTS)], [], overwrite=args.overwrite):
+        return _run_chain(args, make_folder(args.output), absence)
+
+
+def _run_chain(args: argparse.Namespace, folder: Path, absence: str) -> int:
+    steps = itertools.count(1)
     if takes_long("auto"):
         # Once, and here: the nodes, which start side by side, would each compile all of them.
         _announce(steps, "kernels: the first start compiles for up to a minute, later ones load")

@@ -24,6 +24,7 @@ from vehicle_pf_tracker.cli import report, stress, system_options, traffic_evalu
 from vehicle_pf_tracker.cli.console import print_table, tell_error, tell_notices
 from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers, natural, positive
 from vehicle_pf_tracker.cli.work_progress import stages, telling
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
 from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
@@ -43,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     add(
         "-o", "--output", type=Path, required=True, metavar="DIR",
-        help="evaluation folder; finished runs in it are kept",
+        help="evaluation folder; finished runs in it are kept, the report is written anew",
     )  # fmt: skip
     system_options.add_arguments(parser)
     add(
@@ -102,18 +103,22 @@ def _add_robustness(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the missing cells, write the report, and print the table."""
     traffic_evaluation.check(args)
-    if args.traffic:
-        return traffic_evaluation.run(args)
     stress.check(args)
+    is_grid = not (args.traffic or args.stress)
+    sources = find_recordings(args.sources) if is_grid else args.sources
     try:
-        return stress.run(args) if args.stress else _run_grid(args)
+        with claimed([Products(args.output)], sources, overwrite=True):
+            if is_grid:
+                return _run_grid(args, sources)
+            return stress.run(args) if args.stress else traffic_evaluation.run(args)
     except KeyboardInterrupt:
-        tell_notices(["interrupted; run the same command to resume"])
+        if not args.traffic:
+            tell_notices(["interrupted; run the same command to resume"])
         raise
 
 
-def _run_grid(args: argparse.Namespace) -> int:
-    plan = _plan(args)
+def _run_grid(args: argparse.Namespace, sources: Sequence[str]) -> int:
+    plan = _plan(args, sources)
     with telling("evaluate") as on_progress:
         complete(plan, args.output, _runner(args), on_progress, _tell)
     if args.timing:
@@ -129,10 +134,10 @@ def _tell(notice: str) -> None:
     tell_notices([notice])
 
 
-def _plan(args: argparse.Namespace) -> Plan:
+def _plan(args: argparse.Namespace, sources: Sequence[str]) -> Plan:
     systems, notes = system_options.chosen(args)
     with stages("evaluate") as on_stage:
-        recordings = describe(find_recordings(args.sources), args.topic, args.max_diff, on_stage)
+        recordings = describe(sources, args.topic, args.max_diff, on_stage)
     tell_notices(notes)
     return Plan(
         dict(recordings),

@@ -21,6 +21,8 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import megabytes, tell_notices
 from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.shared_options import add_overwrite
+from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.recordings.importing import (
     FORMATS,
     ExpectedSize,
@@ -47,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--format", choices=FORMATS,
         help="how images are stored (default: JPEG files as they are, videos as JPEG, PNG raw)",
     )  # fmt: skip
-    add("--overwrite", action="store_true", help="overwrite an existing recording")
+    add_overwrite(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -55,7 +57,10 @@ def run(args: argparse.Namespace) -> int:
     expected = expected_size(args.source, fps=args.fps, format=args.format)
     if expected is not None:
         print(f"{args.out} will take {_words(expected)}", flush=True)
-    with counting("imported") as progress:
+    with (
+        claimed([args.out], [args.source, args.truth], overwrite=args.overwrite),
+        counting("imported") as progress,
+    ):
         made = import_recording(
             args.source,
             args.out,

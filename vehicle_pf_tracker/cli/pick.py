@@ -25,11 +25,12 @@ from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.picking import BOXES, POINTS, ask
 from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.cli.road_pairs import write_pairs
-from vehicle_pf_tracker.cli.shared_options import positive
+from vehicle_pf_tracker.cli.shared_options import add_overwrite, positive
 from vehicle_pf_tracker.cli.targets import TargetOption, write_targets
-from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, write_picture
+from vehicle_pf_tracker.core.outputs import claimed
+from vehicle_pf_tracker.evaluation.output_files import write_picture
 from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid
-from vehicle_pf_tracker.recordings.source import frame_at, open_source
+from vehicle_pf_tracker.recordings.source import Source, frame_at, open_source
 from vehicle_pf_tracker.road.calibration import format_pairs
 from vehicle_pf_tracker.road.plane import Pair
 
@@ -57,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--grid", type=Path, metavar="PNG",
         help="no page: write the frame with a grid labelled in px to PNG, to read boxes off",
     )  # fmt: skip
+    add_overwrite(parser)
     add("--topic", help="the image topic, if a recording has several")
     add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states")
 
@@ -64,14 +66,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Serve the page until the user is done, and print or write the targets."""
     source = open_source(args.source, topic=args.topic, fps=args.fps)
+    output = args.output if args.grid is None else args.grid
+    with claimed([output], [args.source], overwrite=args.overwrite):
+        return _pick(args, source)
+
+
+def _pick(args: argparse.Namespace, source: Source) -> int:
     if args.grid is not None:
         with counting("read") as progress:
             frame = frame_at(source, args.frame, progress)
         write_picture(args.grid, draw_pixel_grid(frame))
         print(f"frame {args.frame} with a grid is in {args.grid}")
         return 0
-    if args.output is not None:
-        make_folder(args.output.parent)
     if args.road:
         points = ask(source, POINTS, args.frame)
         _give(points, args.output, write_pairs, "road calibrate --pairs", _pair_words)
@@ -94,8 +100,7 @@ def _give(
     if path is None:
         print(" ".join(words(one) for one in picked))
         return
-    with output_errors(path):
-        write(path, picked)
+    write(path, picked)
     print(f"what was picked ({len(picked)}) is in {path}; use {use} {path}")
 
 

@@ -26,13 +26,18 @@ from typing import TYPE_CHECKING
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.parameter_options import parse_box
 from vehicle_pf_tracker.cli.replay_progress import progress_view
-from vehicle_pf_tracker.cli.shared_options import add_ros_args
+from vehicle_pf_tracker.cli.shared_options import add_overwrite, add_ros_args
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.estimates import write_estimates
 from vehicle_pf_tracker.evaluation.output_files import make_folder
 from vehicle_pf_tracker.recordings.reader import Recording
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions, ReplayReport
+
+
+ANSWERS = ("estimates.csv", "*/estimates.csv")
+"""Files of one node, and of each of several."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -102,6 +107,7 @@ def _add_tracking_arguments(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, metavar="DIR",
         help="write what the nodes answered: estimates.csv, in a folder for each of several nodes",
     )  # fmt: skip
+    add_overwrite(parser)
     add_ros_args(parser)
 
 
@@ -121,9 +127,11 @@ def run(args: argparse.Namespace) -> int:
     recording = Recording(args.recording, args.topic)
     told = recording.notices
     tell_notices(told)
-    if args.output:
-        make_folder(args.output)
-    with noted_interrupts():
+    outputs = [Products(args.output, ANSWERS)] if args.output else []
+    inputs = (args.recording, args.qos_profile_overrides_path)
+    with claimed(outputs, inputs, overwrite=args.overwrite), noted_interrupts():
+        if args.output:
+            make_folder(args.output)
         try:
             with progress_view() as on_progress:
                 report = replay(recording, options_of(args), on_progress, _tell)

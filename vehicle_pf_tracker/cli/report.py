@@ -21,6 +21,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import tell_notices
 from vehicle_pf_tracker.cli.work_progress import stages
+from vehicle_pf_tracker.core.outputs import Products, claimed
 
 FIGURE_FORMATS = ("pdf", "svg", "png")
 """Those of `paper_figures.FORMATS`, which loads matplotlib."""
@@ -29,7 +30,7 @@ FIGURE_FORMATS = ("pdf", "svg", "png")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of this verb."""
     add = parser.add_argument
-    add("folder", type=Path, metavar="DIR", help="evaluation folder; the report is written there")
+    add("folder", type=Path, metavar="DIR", help="evaluation folder; its report is replaced")
     add_report_options(parser)
 
 
@@ -69,7 +70,10 @@ def _formats(text: str) -> tuple[str, ...]:
 
 def run(args: argparse.Namespace) -> int:
     """Write the report, and print its path."""
-    write(args.folder, args)
+    # A folder that is not there is not made, and `write` says so.
+    outputs = [Products(args.folder)] if args.folder.is_dir() else []
+    with claimed(outputs, [], overwrite=True):
+        write(args.folder, args)
     return 0
 
 

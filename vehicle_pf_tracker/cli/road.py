@@ -26,14 +26,15 @@ from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.picking import POINTS, ask
 from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.cli.road_pairs import FORM, read_pairs
-from vehicle_pf_tracker.cli.shared_options import positive
+from vehicle_pf_tracker.cli.shared_options import add_overwrite, positive
+from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.evaluation.output_files import write_picture, write_text
 from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid, draw_road_grid
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
-from vehicle_pf_tracker.recordings.source import frame_at, open_source
+from vehicle_pf_tracker.recordings.source import Source, frame_at, open_source
 from vehicle_pf_tracker.road.calibration import format_pairs, parse_pairs
 from vehicle_pf_tracker.road.lens import MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
@@ -67,12 +68,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "points off instead of a page",
     )  # fmt: skip
     add("-o", "--output", type=Path, metavar="YAML", help="parameter file for nodes and `run`")
+    add_overwrite(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Fit, print the residuals, and write parameters and picture."""
     pairs = (*parse_pairs(";".join(args.pairs)), *(read_pairs(args.file) if args.file else ()))
     source = open_source(args.source, topic=args.topic)
+    inputs = (args.source, args.file)
+    with claimed((args.grid, args.output), inputs, overwrite=args.overwrite):
+        return _calibrate(args, source, pairs)
+
+
+def _calibrate(args: argparse.Namespace, source: Source, pairs: tuple[Pair, ...]) -> int:
     with counting("read") as progress:
         frame = frame_at(source, args.frame, progress)
     if not pairs and args.grid is not None and args.output is None:

@@ -27,11 +27,11 @@ from vehicle_pf_tracker.cli.console import UsageError, show, tell_notices
 from vehicle_pf_tracker.cli.frames import Numbered, numbered_frames, peeked
 from vehicle_pf_tracker.cli.picture_window import PictureWindow
 from vehicle_pf_tracker.cli.progress import counting
-from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_span
+from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_overwrite, add_span
 from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.cli.targets import by_name, parse_target, read_targets
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import max_diff_ns
 from vehicle_pf_tracker.evaluation.estimates import (
@@ -43,7 +43,14 @@ from vehicle_pf_tracker.evaluation.following import Pictures, follow
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.mode_spans import summary
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
-from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describe_run
+from vehicle_pf_tracker.evaluation.run_folder import (
+    ESTIMATES,
+    METRICS,
+    RUN,
+    RunFolder,
+    RunInfo,
+    describe_run,
+)
 from vehicle_pf_tracker.evaluation.run_recording import OnFrame, run_recording
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.tables import comparison
@@ -55,6 +62,7 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 SHEET = "summary.png"
 TRACKS = "tracks.csv"
+PRODUCTS = (ESTIMATES, METRICS, RUN, SHEET, TRACKS)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -71,8 +79,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "-o", "--output", type=Path, metavar="DIR",
         help="folder for estimates.csv, run.json, summary.png, and metrics.json where there is "
-        "truth; those in it are replaced (default: results/ and the source's name)",
+        "truth (default: results/ and the source's name)",
     )  # fmt: skip
+    add_overwrite(parser)
     add("--topic", help="the image topic, if a recording has several")
     add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states")
     add_span(parser)
@@ -84,7 +93,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--recording", type=Path, metavar="OUT",
         help="write images (JPEG), truth, estimates and Foxglove's annotations to the rosbag2 "
-        "folder OUT; a recording there is replaced",
+        "folder OUT",
     )  # fmt: skip
     add("--show", action="store_true", help="show them in a window meanwhile; q ends the run")
     add("--particles", action="store_true", help="draw the particles too")
@@ -107,7 +116,14 @@ def run(args: argparse.Namespace) -> int:
     """Track, write the results, and print a summary of each target."""
     variant = find_variant(args.variant)
     source = open_source(args.source, topic=args.topic, fps=args.fps)
-    folder = RunFolder(args.output or Path("results", Path(args.source).stem or "run"))
+    path = args.output or Path("results", Path(args.source).stem or "run")
+    outputs = (Products(path, PRODUCTS), args.video, args.recording)
+    inputs = (args.source, args.params, args.targets)
+    with claimed(outputs, inputs, overwrite=args.overwrite):
+        return _track(args, variant, source, RunFolder(path))
+
+
+def _track(args: argparse.Namespace, variant: Variant, source: Source, folder: RunFolder) -> int:
     window = PictureWindow(args.source) if args.show else None
     show_in = window.show if window else None
     pictures = Pictures(args.video, particles=args.particles, show=show_in)
@@ -144,10 +160,6 @@ def _recording(
 ) -> AbstractContextManager[OnFrame | None]:
     if args.recording is None:
         return nullcontext()
-    place = args.recording.expanduser().resolve()
-    for taken in (Path(args.source), args.output):
-        if taken is not None and place == taken.expanduser().resolve():
-            raise InputError(f"--recording {args.recording} is taken; name another folder")
     return run_recording(args.recording, f"{variant.name}_tracker", targets, source.truth())
 
 

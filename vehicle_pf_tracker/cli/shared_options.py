@@ -24,6 +24,11 @@ from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 from vehicle_pf_tracker.recordings.span import Moment
 
 
+def add_overwrite(parser: argparse.ArgumentParser) -> None:
+    """Add the option that outputs may replace what exists."""
+    parser.add_argument("--overwrite", action="store_true", help="replace outputs that exist")
+
+
 def add_max_diff(parser: argparse.ArgumentParser) -> None:
     """Add what association of estimates and truth needs."""
     parser.add_argument(

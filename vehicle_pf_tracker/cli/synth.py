@@ -23,9 +23,11 @@ from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.shared_options import add_overwrite
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.evaluation.output_files import write_text
 from vehicle_pf_tracker.evaluation.video_writer import (
     NO_ENCODER,
@@ -66,7 +68,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--format", choices=FORMATS,
         help="pixels, or JPEG files, in a recording (default: raw)",
     )  # fmt: skip
-    add("--overwrite", action="store_true", help="overwrite an existing recording or video")
+    add_overwrite(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -90,7 +92,8 @@ def run(args: argparse.Namespace) -> int:
         f"at {scene.frame_rate:g} frames/s"
     )
     if args.out.suffix != SUFFIX:
-        record_scene(scene, args.out, args.format or "raw", overwrite=args.overwrite)
+        with claimed([args.out], [], overwrite=args.overwrite):
+            record_scene(scene, args.out, args.format or "raw", overwrite=args.overwrite)
         print(f"{facts}, all with truth")
         return 0
     if args.format:
@@ -109,7 +112,7 @@ def _run_traffic(args: argparse.Namespace) -> int:
             "--overwrite"
         )
     scene = make_traffic_scene(args.scene, seed=args.seed, settings=args.settings)
-    with counting("rendered") as progress:
+    with claimed([args.out], [], overwrite=False), counting("rendered") as progress:
         write_mot_folder(scene, args.out, args.seed, progress)
     print(
         f"{args.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
@@ -136,12 +139,10 @@ def record_scene(scene: Scene, out: Path, form: str = "raw", *, overwrite: bool 
 def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
     """Render `scene` into a video, and its truth into a table; return the table and first box."""
     table = out.with_suffix(".csv")
-    for path in (out, table):
-        if path.exists() and not overwrite:
-            raise InputError(f"{path} exists; give --overwrite to replace it")
     lines, boxes = ["frame,x,y,w,h,occ"], []
     size = scene.width, scene.height
     with (
+        claimed([out, table], [], overwrite=overwrite),
         video_writer(out, size, scene.frame_rate) as writer,
         counting("rendered") as progress,
     ):
@@ -152,7 +153,7 @@ def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
             cells = (f"{value:.3f}" for value in (box.x, box.y, box.width, box.height))
             lines.append(f"{number},{','.join(cells)},{rendered.truth.occlusion.value}")
             progress(number, scene.frame_count)
-    write_text(table, "\n".join(lines) + "\n")
+        write_text(table, "\n".join(lines) + "\n")
     return table, boxes[0]
 
 

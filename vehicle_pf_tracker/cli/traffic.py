@@ -29,10 +29,11 @@ from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.frames import numbered_frames, peeked
 from vehicle_pf_tracker.cli.picture_window import PictureWindow
 from vehicle_pf_tracker.cli.progress import counting
-from vehicle_pf_tracker.cli.shared_options import add_span
+from vehicle_pf_tracker.cli.shared_options import add_overwrite, add_span
 from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.cli.targets import TargetOption, by_name, parse_target, read_targets
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.following import Pictures
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
 from vehicle_pf_tracker.evaluation.run_folder import RUN, versions
@@ -40,7 +41,12 @@ from vehicle_pf_tracker.evaluation.traffic.detection_file import DetectionFile
 from vehicle_pf_tracker.evaluation.traffic.detector_choice import detector_maker
 from vehicle_pf_tracker.evaluation.traffic.following import Target, TrafficRun
 from vehicle_pf_tracker.evaluation.traffic.summary import limited
-from vehicle_pf_tracker.evaluation.traffic.track_files import TRACKS, track_files
+from vehicle_pf_tracker.evaluation.traffic.track_files import (
+    COUNTS,
+    MOT_TRACKS,
+    TRACKS,
+    track_files,
+)
 from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.parameters.road import RoadParameters
@@ -58,6 +64,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
 PICTURE = "summary.png"
+PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -72,7 +79,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="folder for tracks.csv, tracks.txt, counts.csv, run.json and summary.png "
         "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
-    add("--overwrite", action="store_true", help="replace the results that are in DIR")
+    add_overwrite(parser)
     add("--topic", help="the image topic, if a recording has several")
     add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states")
     add_span(parser)
@@ -111,7 +118,14 @@ def run(args: argparse.Namespace) -> int:
     check_library()
     setup = _Setup.of(args)
     source = open_source(args.source, topic=args.topic, fps=args.fps)
-    folder = _folder(args)
+    folder = args.output or Path("results", f"{Path(args.source).stem or 'run'}_traffic")
+    outputs = (Products(folder, PRODUCTS), args.video)
+    inputs = (args.source, args.detections, args.model, args.lines, args.targets, args.params)
+    with claimed(outputs, inputs, overwrite=args.overwrite):
+        return _follow(args, setup, source, make_folder(folder))
+
+
+def _follow(args: argparse.Namespace, setup: _Setup, source: Source, folder: Path) -> int:
     window = PictureWindow(args.source) if args.show else None
     pictures = Pictures(args.video, show=window.show if window else None)
     with (
@@ -232,13 +246,6 @@ def _plane(road: RoadParameters) -> RoadPlane | None:
             "road.distortion and road.camera_pose"
         )
     return road.plane(road.lens, road.pose)
-
-
-def _folder(args: argparse.Namespace) -> Path:
-    path: Path = args.output or Path("results", f"{Path(args.source).stem or 'run'}_traffic")
-    if (path / TRACKS).exists() and not args.overwrite:
-        raise InputError(f"{path} has results already; name another folder, or give --overwrite")
-    return make_folder(path)
 
 
 def _description(

@@ -27,13 +27,14 @@ from vehicle_pf_tracker.cli.parameter_sets import settable
 from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers, natural, positive
 from vehicle_pf_tracker.cli.work_progress import stages, telling
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
-from vehicle_pf_tracker.evaluation.output_files import alone_in, make_folder, write_json, write_text
+from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.evaluation.report import write_report
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.tuning import comparison
@@ -54,7 +55,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
 TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100
-BEST = "best"
+BEST, EVALUATION = "best", "evaluation"
 
 Recordings = Sequence[tuple[Source, dict[int, Truth]]]
 
@@ -66,7 +67,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--variant", required=True, metavar="NAME", help=f"one of: {', '.join(VARIANTS)}")
     add(
         "-o", "--output", type=Path, required=True, metavar="DIR",
-        help="folder for best.yaml and the other results; finished runs in it are kept",
+        help="folder for best.yaml and the other results; finished runs in it are kept, the rest "
+        "is written anew",
     )  # fmt: skip
     add(
         "--held-out", nargs="+", default=[], metavar="REC",
@@ -108,14 +110,26 @@ def run(args: argparse.Namespace) -> int:
     configuration = _configuration(variant, args)
     base = system_options.make_system(variant, "", configuration, {})
     what, recordings = _search(variant, base, args)
-    output = make_folder(args.output)
+    outputs = (Products(args.output, (f"{BEST}.yaml",)), Products(args.output / EVALUATION))
+    inputs = (*(source.path for source, _ in recordings), args.params)
     try:
-        with alone_in(output):
-            best = _find_best(what, output, args)
-            lines = _compare(what, best, recordings, output / "evaluation", args)
+        with claimed(outputs, inputs, overwrite=True):
+            return _tune(args, variant, configuration, what, recordings)
     except KeyboardInterrupt:
         tell_notices(["interrupted; run the same command to resume"])
         raise
+
+
+def _tune(
+    args: argparse.Namespace,
+    variant: Variant,
+    configuration: Configuration,
+    what: SearchTask,
+    recordings: Recordings,
+) -> int:
+    output = make_folder(args.output)
+    best = _find_best(what, output, args)
+    lines = _compare(what, best, recordings, output / EVALUATION, args)
     told = comparison.verdict(lines, what.objective)
     file = _write_best(configuration.updated(best.values), variant, what, output)
     head = f"# {variant.name}, tuned for {what.objective.description}\n\n"
