@@ -146,13 +146,6 @@ def test_a_reader_that_leaves_early_is_no_error():
     assert (done.returncode, done.stderr) == (141, "")
 
 
-def test_reproduce_names_the_command_it_became(capsys):
-    assert command.main(["reproduce", "apf-fig4"]) == 2
-    error = capsys.readouterr().err
-    assert "`python -m reproduction FIGURE…`" in error
-    assert "`make reproduce`" in error
-
-
 def test_bag_replay_is_the_verb_replay(capsys):
     assert command.bag_replay(["--help"]) == 0
     assert "usage: vehicle-pf-tracker replay" in capsys.readouterr().out

@@ -77,11 +77,6 @@ _COMPLETION: Mapping[str, str] = MappingProxyType(
 )
 """Options that come alone, with their help."""
 
-_REPRODUCE = (
-    "the papers' experiments are not part of the installed package: run `python -m reproduction "
-    "FIGURE…` or `make reproduce` in the repository"
-)
-
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line `argv`, that of the process if None, and return the exit status."""
@@ -146,8 +141,6 @@ def _parser(words: list[str]) -> argparse.ArgumentParser:
     No other verb is loaded, so that help is quick and nothing needs ROS but what uses it.
     """
     asked = next((word for word in words if not word.startswith("-")), None)
-    if asked == "reproduce":
-        raise UsageError(_REPRODUCE)
     if asked is not None and asked not in VERBS:
         raise UsageError(
             f"there is no verb {asked!r}{suggestion(asked, VERBS)}; the verbs are "

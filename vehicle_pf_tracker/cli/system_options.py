@@ -45,12 +45,6 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
 ALL, ALL_BASELINES = "all", "baselines"
-_FORMER_BASELINE, _FORMER_ALL_BASELINES = "peer:", "peers"
-_RENAMED_OPTIONS = {
-    "--peers-python": "--baselines-python",
-    "--peer-model": "--baseline-model",
-}
-"""The options by their former names, which are refused with a sentence."""
 _BASELINES_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not models)
 
 
@@ -85,21 +79,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--baseline-model", action="append", default=[], metavar="BASELINE:NAME=FILE",
         help="model file of a baseline that needs some, as vit:net=vit.onnx; repeatable",
     )  # fmt: skip
-    for old, new in _RENAMED_OPTIONS.items():
-        add(old, action=_RenamedOption, const=new, help=argparse.SUPPRESS)
-
-
-class _RenamedOption(argparse.Action):
-    """Refuses an option under its name before 0.2, and says the new one."""
-
-    def __call__(
-        self,
-        parser: argparse.ArgumentParser,
-        namespace: argparse.Namespace,
-        values: object,
-        option_string: str | None = None,
-    ) -> None:
-        parser.error(f"{option_string} is now called {self.const}")
 
 
 def chosen(args: argparse.Namespace) -> tuple[list[System], list[str]]:
@@ -134,7 +113,6 @@ def chosen(args: argparse.Namespace) -> tuple[list[System], list[str]]:
 def _words(text: str) -> list[str]:
     words: list[str] = []
     for word in text.split(","):
-        _refuse_former_name(word)
         if word == ALL:
             words += VARIANTS
         elif word == ALL_BASELINES:
@@ -144,14 +122,6 @@ def _words(text: str) -> list[str]:
     if not words:
         raise UsageError(f"--variants names none; choose of {', '.join([*VARIANTS, ALL])}")
     return list(dict.fromkeys(words))
-
-
-def _refuse_former_name(word: str) -> None:
-    if word == _FORMER_ALL_BASELINES:
-        raise UsageError(f"--variants: {word} is now called {ALL_BASELINES}")
-    if word.startswith(_FORMER_BASELINE):
-        new = BASELINE + word.removeprefix(_FORMER_BASELINE)
-        raise UsageError(f"--variants: {word} is now called {new}")
 
 
 def _variant_system(

@@ -19,7 +19,7 @@ from __future__ import annotations
 import fcntl
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
@@ -62,7 +62,7 @@ def claimed(
 ) -> Iterator[None]:
     """Keep all outputs of a command for it alone, from before its work until its end.
 
-    Folders on the way to an output are made.
+    Folders on the way to an output are made, and removed again if they stay empty.
 
     Parameters
     ----------
@@ -80,10 +80,15 @@ def claimed(
         replaced; if another process has it; or if it cannot be written.
     """
     read = [_input(one) for one in inputs if one is not None]
+    places: list[Path] = []
     with ExitStack() as claims:
         for output in outputs:
             if output is None:
                 continue
+            place = output.folder if isinstance(output, Products) else output
+            if any(_is_same(place, one) for one in places):
+                raise InputError(f"{place} is given for two outputs; name another")
+            places.append(place)
             _check_not_read(output, [path for path in read if path.exists()])
             claims.enter_context(_alone_with(output))
             if not overwrite:
@@ -115,19 +120,6 @@ def output_errors(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise InputError(f"cannot write {path}: {error.strerror or error}") from error
-
-
-@contextmanager
-def alone_in(folder: Path) -> Iterator[None]:
-    """Keep other commands out of an existing folder; a process that dies lets them in again.
-
-    Raises
-    ------
-    InputError
-        If another one is at work there, or the folder cannot be written.
-    """
-    with _locked(folder / ".lock", folder):
-        yield
 
 
 def _input(given: str | Path) -> Path:
@@ -170,17 +162,23 @@ def _is_same(one: Path, other: Path) -> bool:
 
 @contextmanager
 def _alone_with(output: Output) -> Iterator[None]:
-    folder = output.folder if isinstance(output, Products) else output.resolve().parent
-    with output_errors(folder):
-        if isinstance(output, Products) and folder.exists() and not folder.is_dir():
-            raise InputError(f"the output {folder} is a file; name a folder")
-        folder.mkdir(parents=True, exist_ok=True)
     if isinstance(output, Products):
-        with alone_in(folder):
+        folder, lock, named = output.folder, output.folder / ".lock", output.folder
+    else:
+        folder = output.resolve().parent
+        lock, named = folder / f".{output.resolve().name}.lock", output
+    with output_errors(folder):
+        if folder.exists() and not folder.is_dir():
+            raise InputError(f"the output {folder} is a file; name a folder")
+        made = [one for one in (folder, *folder.parents) if not one.exists()]
+        folder.mkdir(parents=True, exist_ok=True)
+    try:
+        with _locked(lock, named):
             yield
-        return
-    with _locked(folder / f".{output.resolve().name}.lock", output):
-        yield
+    finally:
+        with suppress(OSError):  # they hold something
+            for one in made:
+                one.rmdir()
 
 
 @contextmanager
