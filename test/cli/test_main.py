@@ -18,6 +18,7 @@ import re
 import resource
 import subprocess
 import sys
+from dataclasses import is_dataclass
 
 import pytest
 
@@ -57,9 +58,9 @@ def test_every_verb_has_help_of_its_own(capsys, verb):
 
 
 @pytest.mark.parametrize("verb", command.VERBS)
-def test_every_verb_has_the_two_functions(verb):
+def test_every_verb_has_a_request_and_runs_it(verb):
     module = importlib.import_module(f"vehicle_pf_tracker.cli.{command.VERBS[verb][0]}")
-    assert callable(module.add_arguments)
+    assert is_dataclass(module.Request)
     assert callable(module.run)
 
 

@@ -29,6 +29,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError
+from vehicle_pf_tracker.cli.requests import add_options
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_text
 from vehicle_pf_tracker.scenes.catalogue import SCENES
 from vehicle_pf_tracker.scenes.traffic_catalogue import TRAFFIC_SCENES
@@ -84,7 +85,7 @@ def run(words: Sequence[str], verbs: Mapping[str, tuple[str, str]]) -> int:
 def _words_of(verb: str, module: str) -> VerbWords:
     parser = argparse.ArgumentParser()
     with suppress(ModuleNotFoundError):  # of an extra that is not installed, as the verb will say
-        importlib.import_module(f"vehicle_pf_tracker.cli.{module}").add_arguments(parser)
+        add_options(parser, importlib.import_module(f"vehicle_pf_tracker.cli.{module}").Request)
     options: list[str] = []
     values: dict[str, Sequence[str]] = {}
     arguments = list(_ARGUMENTS.get(verb, ()))

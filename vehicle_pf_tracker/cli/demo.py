@@ -16,9 +16,9 @@
 
 from __future__ import annotations
 
-import argparse
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import show, tell_notices
@@ -31,7 +31,8 @@ from vehicle_pf_tracker.cli.demo_runs import (
     track_through_ros,
 )
 from vehicle_pf_tracker.cli.demo_traffic import follow_all
-from vehicle_pf_tracker.cli.shared_options import add_overwrite, natural
+from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption, natural
 from vehicle_pf_tracker.cli.synth import record_scene
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
@@ -56,30 +57,30 @@ ALL_VEHICLES = "all_vehicles.png"
 PRODUCTS = ("recording", PICTURE, VIDEO, ESTIMATES, ALL_VEHICLES, "summary.*")
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add(
+@dataclass(frozen=True, kw_only=True)
+class Request(OverwriteOption):
+    """Request of `demo`."""
+
+    output: Path = option(
         "-o", "--output", type=Path, default=Path("results/demo"), metavar="DIR",
         help="folder for recordings, results, pictures and video (default: results/demo)",
     )  # fmt: skip
-    add_overwrite(parser)
-    add(
+    seeds: int = option(
         "--seeds", type=natural, default=5, metavar="N",
         help="how many more seeds to run offline (default: 5)",
     )  # fmt: skip
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Run the whole chain; return 1 if ROS and offline runs differ."""
     absence = absence_of_ros()
     if absence:
         tell_notices([f"{absence}, so the nodes are left out and everything is tracked offline"])
-    with claimed([Products(args.output, PRODUCTS)], [], overwrite=args.overwrite):
-        return _run_chain(args, make_folder(args.output), absence)
+    with claimed([Products(request.output, PRODUCTS)], [], overwrite=request.overwrite):
+        return _run_chain(request, make_folder(request.output), absence)
 
 
-def _run_chain(args: argparse.Namespace, folder: Path, absence: str) -> int:
+def _run_chain(request: Request, folder: Path, absence: str) -> int:
     steps = itertools.count(1)
     if takes_long("auto"):
         # Once, and here: the nodes, which start side by side, would each compile all of them.
@@ -92,13 +93,13 @@ def _run_chain(args: argparse.Namespace, folder: Path, absence: str) -> int:
         nodes = ", ".join(f"{name}_tracker" for name in CONTESTANTS)
         _announce(steps, f"the nodes {nodes}, fed in lock-step through ROS")
         answers = track_through_ros(recording)
-    _announce(steps, f"{', '.join(CONTESTANTS)} offline, and {args.seeds} more seeds of each")
-    runs = track_offline(recording, args.seeds)
+    _announce(steps, f"{', '.join(CONTESTANTS)} offline, and {request.seeds} more seeds of each")
+    runs = track_offline(recording, request.seeds)
     rows = answers or {name: of_seed[0].rows for name, of_seed in runs.items()}
     same = {name: _numbers(rows[name]) == _numbers(runs[name][0].rows) for name in rows}
     _announce(steps, "the picture and the video")
     scores = {name: score_frames(found, recording.truth()) for name, found in rows.items()}
-    _write_runs(folder, recording, runs, scores, args.command, bool(answers))
+    _write_runs(folder, recording, runs, scores, request.command, bool(answers))
     _draw(folder, recording, scores, bool(answers))
     _announce(steps, "every vehicle of the scene, found by motion, and a picture of all paths")
     found = follow_all(recording, folder / "traffic", folder / ALL_VEHICLES)
