@@ -71,7 +71,7 @@ def run(words: Sequence[str], verbs: Mapping[str, tuple[str, str]]) -> int:
     if shell not in SHELLS or len(rest) > 1:
         raise UsageError(f"say for which shell: {action} {' or '.join(SHELLS)}")
     found = {name: _words_of(name, module) for name, (module, _) in verbs.items()}
-    text = {"bash": _bash, "zsh": _zsh}[shell](found)
+    text = _filled({"bash": _BASH, "zsh": _ZSH}[shell], found)
     if action == PRINT:
         print(text, end="")
         return 0
@@ -135,14 +135,6 @@ _{function}() {{
 }}
 _{function} "$@"
 """
-
-
-def _bash(verbs: Mapping[str, VerbWords]) -> str:
-    return _filled(_BASH, verbs)
-
-
-def _zsh(verbs: Mapping[str, VerbWords]) -> str:
-    return _filled(_ZSH, verbs)
 
 
 def _filled(template: str, verbs: Mapping[str, VerbWords]) -> str:

@@ -62,13 +62,12 @@ class Request(OverwriteOption):
     """Request of `demo`."""
 
     output: Path = option(
-        "-o", "--output", type=Path, default=Path("results/demo"), metavar="DIR",
+        "-o", type=Path, default=Path("results/demo"), metavar="DIR",
         help="folder for recordings, results, pictures and video (default: results/demo)",
     )  # fmt: skip
     seeds: int = option(
-        "--seeds", type=natural, default=5, metavar="N",
-        help="how many more seeds to run offline (default: 5)",
-    )  # fmt: skip
+        type=natural, default=5, metavar="N", help="how many more seeds to run offline (default: 5)"
+    )
 
 
 def run(request: Request) -> int:

@@ -44,17 +44,13 @@ class RobustnessOptions(VerbRequest):
     GROUP = "robustness runs, in addition to the grid"
 
     shifted_starts: bool = switch(
-        "--shifted-starts",
-        help="also start on twelve shifted and scaled boxes, with the first seed",
-    )  # fmt: skip
+        help="also start on twelve shifted and scaled boxes, with the first seed"
+    )
     start_frames: int = option(
-        "--start-frames", type=natural, default=0, metavar="N",
+        type=natural, default=0, metavar="N",
         help="also start in N other frames, with the first seed",
     )  # fmt: skip
-    restarts: bool = switch(
-        "--restarts",
-        help="also run with a new start after each failure, and count those",
-    )  # fmt: skip
+    restarts: bool = switch(help="also run with a new start after each failure, and count those")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,21 +58,20 @@ class Request(RobustnessOptions, StressRequest, TrafficRequest, ReportParts, Max
     """Request of `evaluate`."""
 
     scheduler: str | None = option(
-        "--scheduler", metavar="URL",
+        metavar="URL",
         help="run on the Dask cluster of this scheduler, as tcp://host:8786; the workers read the "
         "recordings at the same paths or URLs",
     )  # fmt: skip
-    topic: str | None = option("--topic", help="the image topic, where recordings have several")
+    topic: str | None = option(help="the image topic, where recordings have several")
     max_rmse: float | None = option(
-        "--max-rmse", type=float, metavar="PX",
+        type=float, metavar="PX",
         help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
     )  # fmt: skip
     timing: bool = switch(
-        "--timing",
-        help="afterwards measure the speed of each system in turn, on an otherwise idle machine",
-    )  # fmt: skip
+        help="afterwards measure the speed of each system in turn, on an otherwise idle machine"
+    )
     timing_frames: int = option(
-        "--timing-frames", type=positive, default=TIMING_FRAMES, metavar="N",
+        type=positive, default=TIMING_FRAMES, metavar="N",
         help="frames per recording for --timing (default: %(default)s)",
     )  # fmt: skip
 

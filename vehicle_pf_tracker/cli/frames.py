@@ -46,14 +46,17 @@ class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
     """Request to track in a source, or in a part of it."""
 
     start: Moment | None = option(
-        "--start", type=_moment, metavar="AT",
+        type=_moment, metavar="AT",
         help="first frame: its number, from 1, or its time in seconds, as 4.3s",
     )  # fmt: skip
-    end: Moment | None = option("--end", type=_moment, metavar="AT", help="last frame, likewise")
-    targets: Path | None = option(
-        "--targets", type=Path, metavar="FILE", help="targets that `pick` wrote"
-    )
-    show: bool = switch("--show", help="show them in a window meanwhile; q ends the run")
+    end: Moment | None = option(type=_moment, metavar="AT", help="last frame, likewise")
+    targets: Path | None = option(type=Path, metavar="FILE", help="targets that `pick` wrote")
+    show: bool = switch(help="show them in a window meanwhile; q ends the run")
+
+    @property
+    def inputs(self) -> tuple[str | Path | None, ...]:
+        """The source, and the files that options name."""
+        return self.source, self.params, self.targets
 
 
 Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]

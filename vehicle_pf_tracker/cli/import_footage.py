@@ -21,7 +21,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import megabytes, tell_notices
 from vehicle_pf_tracker.cli.progress import counting
-from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.requests import option, positional
 from vehicle_pf_tracker.cli.shared_options import OverwriteOption
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.recordings.importing import (
@@ -36,21 +36,21 @@ from vehicle_pf_tracker.recordings.importing import (
 class Request(OverwriteOption):
     """Request of `import`."""
 
-    source: Path = option(
+    source: Path = positional(
         type=Path, metavar="SRC",
         help="video file, or folder of images, with groundtruth.csv where truth is known",
     )  # fmt: skip
-    out: Path = option(type=Path, metavar="OUT", help="rosbag2 folder to write")
+    out: Path = positional(type=Path, metavar="OUT", help="rosbag2 folder to write")
     truth: Path | None = option(
-        "--truth", type=Path, metavar="FILE",
+        type=Path, metavar="FILE",
         help="truth of a video: a table frame,x,y,w,h,occ (frames from 1, top-left corner in px, "
         "0 in view, 1 partly, 2 totally hidden); a frame without a row has none",
     )  # fmt: skip
     fps: float | None = option(
-        "--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SRC states"
+        type=float, metavar="HZ", help="frame rate, instead of the one that SRC states"
     )
     format: str | None = option(
-        "--format", choices=FORMATS,
+        choices=FORMATS,
         help="how images are stored (default: JPEG files as they are, videos as JPEG, PNG raw)",
     )  # fmt: skip
 

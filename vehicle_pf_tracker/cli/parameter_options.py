@@ -42,14 +42,14 @@ class ParameterOptions(VerbRequest):
     """Options that choose parameters."""
 
     params: Path | None = option(
-        "--params", type=Path, metavar="FILE", help="ROS parameter file, as `params` prints it"
+        type=Path, metavar="FILE", help="ROS parameter file, as `params` prints it"
     )
     assignments: Sequence[str] = option(
         "--set", action="append", default=[], metavar="NAME=VALUE",
         help="set a parameter, over the file; repeatable",
     )  # fmt: skip
     seed: int | None = option(
-        "--seed", type=int, help="seed of the random numbers; -1 draws one and run.json keeps it"
+        type=int, help="seed of the random numbers; -1 draws one and run.json keeps it"
     )
 
 
@@ -65,7 +65,7 @@ def parse_box(text: str) -> Box:
 
 
 def chosen(variant: Variant, request: ParameterOptions) -> Configuration:
-    """Collect the parameters that the options of `add_arguments` choose.
+    """Collect the parameters that a request chooses.
 
     Raises
     ------

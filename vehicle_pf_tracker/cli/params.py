@@ -20,7 +20,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli.config_files import config_path
-from vehicle_pf_tracker.cli.requests import VerbRequest, option, switch
+from vehicle_pf_tracker.cli.requests import VerbRequest, positional, switch
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec
 from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant, find_node
@@ -40,15 +40,11 @@ for doubles. What a change does while a target is followed is in the last column
 class Request(VerbRequest):
     """Request of `params`."""
 
-    variant: str = option(
+    variant: str = positional(
         help="name of the variant, apf for instance; with --markdown, all for every one"
-    )  # fmt: skip
-    path: bool = switch(
-        "--path", exclusive="form", help="print where the installed parameter file is"
-    )  # fmt: skip
-    markdown: bool = switch(
-        "--markdown", exclusive="form", help="print a table for documents, not YAML"
-    )  # fmt: skip
+    )
+    path: bool = switch(exclusive="form", help="print where the installed parameter file is")
+    markdown: bool = switch(exclusive="form", help="print a table for documents, not YAML")
 
 
 def run(request: Request) -> int:

@@ -43,19 +43,18 @@ class Request(SourceOptions, OverwriteOption):
     """Request of `pick`."""
 
     frame: int = option(
-        "--frame", type=positive, default=1, metavar="N", help="frame to begin with (default: 1)"
+        type=positive, default=1, metavar="N", help="frame to begin with (default: 1)"
     )
     output: Path | None = option(
-        "-o", "--output", type=Path, metavar="FILE",
+        "-o", type=Path, metavar="FILE",
         help="write the targets to FILE, for run --targets, or the points, for road calibrate "
         "--pairs; otherwise they are printed",
     )  # fmt: skip
     road: bool = switch(
-        "--road",
-        help="pick points of the road instead, four or more, with their places in m",
-    )  # fmt: skip
+        help="pick points of the road instead, four or more, with their places in m"
+    )
     grid: Path | None = option(
-        "--grid", type=Path, metavar="PNG",
+        type=Path, metavar="PNG",
         help="no page: write the frame with a grid labelled in px to PNG, to read boxes off",
     )  # fmt: skip
 

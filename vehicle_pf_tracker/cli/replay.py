@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.parameter_options import parse_box
 from vehicle_pf_tracker.cli.replay_progress import progress_view
-from vehicle_pf_tracker.cli.requests import option, switch
+from vehicle_pf_tracker.cli.requests import option, positional, switch
 from vehicle_pf_tracker.cli.shared_options import (
     OverwriteOption,
     RosOption,
@@ -77,77 +77,69 @@ def _absolute(topic: str) -> str:
 class Request(RosOption, OverwriteOption):
     """Request of `replay`, with options named as the rosbag2 player's where it has them."""
 
-    recording: Path = option(type=Path, help="rosbag2 folder or MCAP file")
+    recording: Path = positional(type=Path, help="rosbag2 folder or MCAP file")
     rate: float | None = option(
-        "-r", "--rate", type=positive_number, metavar="X", help="speed, 1.0 is as recorded"
+        "-r", type=positive_number, metavar="X", help="speed, 1.0 is as recorded"
     )
     start_offset: float = option(
-        "--start-offset", type=_seconds, default=0.0, metavar="S", help="skip this many seconds"
+        type=_seconds, default=0.0, metavar="S", help="skip this many seconds"
     )
     playback_duration: float | None = option(
-        "--playback-duration", type=_seconds, metavar="S", help="play only this many seconds"
+        type=_seconds, metavar="S", help="play only this many seconds"
     )
-    loop: bool = switch("-l", "--loop", help="restart at the end")
-    delay: float = option(
-        "-d", "--delay", type=_seconds, default=0.0, metavar="S", help="wait before playing"
-    )
-    start_paused: bool = switch("--start-paused", help="begin paused, until ~/resume is called")
+    loop: bool = switch("-l", help="restart at the end")
+    delay: float = option("-d", type=_seconds, default=0.0, metavar="S", help="wait before playing")
+    start_paused: bool = switch(help="begin paused, until ~/resume is called")
     topics: Sequence[str] = option(
-        "--topics", nargs="+", default=[], metavar="TOPIC", help="play these topics only"
+        nargs="+", default=[], metavar="TOPIC", help="play these topics only"
     )
-    regex: str = option(
-        "-e", "--regex", type=_pattern, default="", help="play topics that match this whole"
-    )
+    regex: str = option("-e", type=_pattern, default="", help="play topics that match this whole")
     exclude: Sequence[str] = option(
         "--exclude", "--exclude-topics", nargs="+", default=[], metavar="TOPIC",
         help="play all but these topics",
     )  # fmt: skip
     exclude_regex: str = option(
-        "-x", "--exclude-regex", type=_pattern, default="", metavar="REGEX",
+        "-x", type=_pattern, default="", metavar="REGEX",
         help="play all but topics that match this whole",
     )  # fmt: skip
     qos_profile_overrides_path: Path | None = option(
-        "--qos-profile-overrides-path", type=Path, metavar="FILE",
+        type=Path, metavar="FILE",
         help="YAML of QoS by recorded topic; others are published as recorded, but reliably",
     )  # fmt: skip
     remap: Sequence[tuple[str, str]] = option(
-        "-m", "--remap", nargs="+", action="extend", default=[], type=_remapping,
+        "-m", nargs="+", action="extend", default=[], type=_remapping,
         metavar="FROM:=TO", help="publish a recorded topic under another name",
     )  # fmt: skip
     clock: float | None = option(
-        "--clock", nargs="?", type=positive_number, const=40.0, metavar="HZ",
+        nargs="?", type=positive_number, const=40.0, metavar="HZ",
         help="publish /clock, 40 times a second unless said otherwise",
     )  # fmt: skip
-    wait_for_subscribers: bool = switch(
-        "--wait-for-subscribers",
-        help="begin when somebody subscribes to the images",
-    )  # fmt: skip
+    wait_for_subscribers: bool = switch(help="begin when somebody subscribes to the images")
     lockstep: bool = switch(
-        "--lockstep",
-        help="publish an image only when every node has answered the one before",
-    )  # fmt: skip
-    decompress: bool = switch("--decompress", help="publish compressed images as raw ones")
+        help="publish an image only when every node has answered the one before"
+    )
+    decompress: bool = switch(help="publish compressed images as raw ones")
     topic: str | None = option(
-        "--topic", metavar="TOPIC", help="the image topic, if the recording has several"
+        metavar="TOPIC", help="the image topic, if the recording has several"
     )
     node: Sequence[str] = option(
-        "--node", action="append", default=[], metavar="NAME",
+        action="append", default=[], metavar="NAME",
         help="a tracker node that takes part, repeatable; all that subscribe if none is named",
     )  # fmt: skip
     target: Box | None = option(
-        "--target", type=parse_box, metavar="X,Y,W,H",
+        type=parse_box, metavar="X,Y,W,H",
         exclusive="target",
         help="box to start on in px, top-left corner and size; otherwise the first true box",
     )  # fmt: skip
     no_target: bool = switch(
-        "--no-target", exclusive="target", help="neither set the nodes' targets nor reset them"
-    )  # fmt: skip
+        exclusive="target", help="neither set the nodes' targets nor reset them"
+    )
     timeout: float = option(
-        "--timeout", type=positive_number, default=10.0, metavar="S",
+        type=positive_number, default=10.0, metavar="S",
         help="longest wait for a node in seconds (default: 10)",
     )  # fmt: skip
     output: Path | None = option(
-        "-o", "--output", type=Path, metavar="DIR",
+        "-o", type=Path, metavar="DIR",
         help="write what the nodes answered: estimates.csv, in a folder for each of several nodes",
     )  # fmt: skip
 

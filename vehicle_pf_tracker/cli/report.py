@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import tell_notices
-from vehicle_pf_tracker.cli.requests import VerbRequest, option, switch
+from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, switch
 from vehicle_pf_tracker.cli.work_progress import stages
 from vehicle_pf_tracker.core.outputs import Products, claimed
 
@@ -48,27 +48,25 @@ class ReportParts(VerbRequest):
         "--no-images", action="store_false",
         help="leave the stills of the recordings out of report.html",
     )  # fmt: skip
-    video: bool = switch("--video", help="write videos with the boxes to DIR/videos")
+    video: bool = switch(help="write videos with the boxes to DIR/videos")
     recordings: bool = switch(
-        "--recordings",
-        help="write the recordings with truth and all estimates to DIR/estimates, for Foxglove",
-    )  # fmt: skip
+        help="write the recordings with truth and all estimates to DIR/estimates, for Foxglove"
+    )
     figures: tuple[str, ...] = option(
-        "--figures", type=_formats, default=(), metavar="FORMATS",
+        type=_formats, default=(), metavar="FORMATS",
         help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
         "pdf, svg or png, several with commas",
     )  # fmt: skip
     trajectories: bool = switch(
-        "--trajectories",
-        help="write truth and estimates as TUM files to DIR/trajectories, for evo",
-    )  # fmt: skip
+        help="write truth and estimates as TUM files to DIR/trajectories, for evo"
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Request(ReportParts):
     """Request of `report`."""
 
-    folder: Path = option(
+    folder: Path = positional(
         type=Path, metavar="DIR", help="evaluation folder; its report is replaced"
     )
 

@@ -42,12 +42,12 @@ RequestT = TypeVar("RequestT", bound=VerbRequest)
 
 
 def option(*flags: str, exclusive: str = "", **settings: Any) -> Any:
-    """Declare the option that a field is read from; a positional one if it has no flags.
+    """Declare the option that a field is read from.
 
     Parameters
     ----------
     flags : str
-        Its words, as ``-o`` and ``--output``.
+        Its words; to a short one alone, as to none, comes ``--`` with the field's name.
     exclusive : str
         Name that options share of which only one may be given.
     settings
@@ -61,22 +61,34 @@ def switch(*flags: str, exclusive: str = "", help: str) -> Any:  # noqa: A002 - 
     return option(*flags, exclusive=exclusive, action="store_true", help=help)
 
 
+def positional(**settings: Any) -> Any:
+    """Declare the argument without a flag that a field is read from."""
+    return field(metadata={"settings": settings})
+
+
 def add_options(parser: argparse.ArgumentParser, kind: type[VerbRequest]) -> None:
     """Add the options that the fields of a request are read from."""
     declared = {one.name: one.metadata for one in fields(kind) if one.metadata}
-    exclusives: dict[str, Any] = {}
+    places: dict[str, Any] = {}
     for base in reversed(kind.__mro__):
         heading = vars(base).get("GROUP")
         place: Any = parser.add_argument_group(heading) if heading else parser
         for name in filter(declared.__contains__, inspect.get_annotations(base)):
-            flags, exclusive = declared[name]["flags"], declared[name]["exclusive"]
-            where = place
-            if exclusive:
-                if exclusive not in exclusives:
-                    exclusives[exclusive] = place.add_mutually_exclusive_group()
-                where = exclusives[exclusive]
-            naming = {"dest": name} if flags else {}
-            where.add_argument(*(flags or (name,)), **naming, **declared[name]["settings"])
+            settings = declared[name]["settings"]
+            if "flags" not in declared[name]:
+                place.add_argument(name, **settings)
+                continue
+            exclusive = declared[name]["exclusive"]
+            if exclusive and exclusive not in places:
+                places[exclusive] = place.add_mutually_exclusive_group()
+            words = _words(name, declared[name]["flags"])
+            places.get(exclusive, place).add_argument(*words, dest=name, **settings)
+
+
+def _words(name: str, flags: Sequence[str]) -> Sequence[str]:
+    """Return the words of the option of a field."""
+    is_named = any(flag.startswith("--") for flag in flags)
+    return flags if is_named else (*flags, f"--{name.replace('_', '-')}")
 
 
 def request_of(kind: type[RequestT], args: argparse.Namespace) -> RequestT:

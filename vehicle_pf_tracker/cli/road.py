@@ -25,7 +25,7 @@ import numpy as np
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.picking import POINTS, ask
 from vehicle_pf_tracker.cli.progress import counting
-from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.requests import option, positional
 from vehicle_pf_tracker.cli.road_pairs import FORM, read_pairs
 from vehicle_pf_tracker.cli.shared_options import OverwriteOption, positive
 from vehicle_pf_tracker.core.outputs import claimed
@@ -47,34 +47,30 @@ _TITLE = "Road. Written by `vehicle-pf-tracker road calibrate`."
 class Request(OverwriteOption):
     """Request of `road calibrate`."""
 
-    action: str = option(choices=("calibrate",), help="fit the mapping from pixels to metres")
-    source: str = option(
+    action: str = positional(choices=("calibrate",), help="fit the mapping from pixels to metres")
+    source: str = positional(
         metavar="SOURCE",
         help="recording, video, folder of images, camera or stream that shows the road",
     )  # fmt: skip
-    topic: str | None = option("--topic", help="the image topic, if a recording has several")
-    frame: int = option(
-        "--frame", type=positive, default=1, metavar="N", help="image to use (default: 1)"
-    )
+    topic: str | None = option(help="the image topic, if a recording has several")
+    frame: int = option(type=positive, default=1, metavar="N", help="image to use (default: 1)")
     pairs: Sequence[str] = option(
         "--pair", action="append", default=[], metavar="U,V=X,Y",
         help="a pixel and the point of the road that it shows, px and m; repeatable; without pairs "
         "a page is served on which to click them",
     )  # fmt: skip
     file: Path | None = option("--pairs", type=Path, metavar="FILE", help=f"YAML file with {FORM}")
-    intrinsics: str = option(
-        "--intrinsics", default="", metavar="FX,FY,CX,CY", help="as in CameraInfo"
-    )
-    distortion_model: str = option("--distortion-model", default="none", choices=MODELS)
-    distortion: str = option("--distortion", default="", metavar="K1,K2,…", help="as in CameraInfo")
-    frame_id: str = option("--frame-id", default="road", help="frame of the road (default: road)")
+    intrinsics: str = option(default="", metavar="FX,FY,CX,CY", help="as in CameraInfo")
+    distortion_model: str = option(default="none", choices=MODELS)
+    distortion: str = option(default="", metavar="K1,K2,…", help="as in CameraInfo")
+    frame_id: str = option(default="road", help="frame of the road (default: road)")
     grid: Path | None = option(
-        "--grid", type=Path, metavar="PNG",
+        type=Path, metavar="PNG",
         help="picture with the road's lines; without pairs and -o, with pixel coordinates to read "
         "points off instead of a page",
     )  # fmt: skip
     output: Path | None = option(
-        "-o", "--output", type=Path, metavar="YAML", help="parameter file for nodes and `run`"
+        "-o", type=Path, metavar="YAML", help="parameter file for nodes and `run`"
     )
 
 

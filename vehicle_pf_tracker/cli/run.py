@@ -70,31 +70,28 @@ class Request(TrackingRequest, MaxDiffOption):
     """Request of `run`."""
 
     variant: str = option(
-        "--variant", default="fusion", metavar="NAME",
-        help=f"one of: {', '.join(VARIANTS)} (default: fusion)",
-    )  # fmt: skip
+        default="fusion", metavar="NAME", help=f"one of: {', '.join(VARIANTS)} (default: fusion)"
+    )
     output: Path | None = option(
-        "-o", "--output", type=Path, metavar="DIR",
+        "-o", type=Path, metavar="DIR",
         help="folder for estimates.csv, run.json, summary.png, and metrics.json where there is "
         "truth (default: results/ and the source's name)",
     )  # fmt: skip
     video: Path | None = option(
-        "--video", type=Path, metavar="FILE",
-        help="write the frames with box, path and mode to FILE, an mp4",
-    )  # fmt: skip
+        type=Path, metavar="FILE", help="write the frames with box, path and mode to FILE, an mp4"
+    )
     recording: Path | None = option(
-        "--recording", type=Path, metavar="OUT",
+        type=Path, metavar="OUT",
         help="write images (JPEG), truth, estimates and Foxglove's annotations to the rosbag2 "
         "folder OUT",
     )  # fmt: skip
-    particles: bool = switch("--particles", help="draw the particles too")
+    particles: bool = switch(help="draw the particles too")
     interpolate_occlusions: bool = switch(
-        "--interpolate-occlusions",
         help="add columns to estimates.csv with the path drawn straight through the frames that "
         "are not TRACKING; they are not scored",
     )  # fmt: skip
     target: Sequence[TargetOption] = option(
-        "--target", type=parse_target, action="append", default=[],
+        type=parse_target, action="append", default=[],
         metavar="[NAME][@FRAME:]X,Y,W,H",
         help="box to start on in px, top-left corner and size, in the first frame or in FRAME; "
         "repeatable, for several vehicles or to correct one later; otherwise the first true box",
@@ -107,8 +104,7 @@ def run(request: Request) -> int:
     source = open_source(request.source, topic=request.topic, fps=request.fps)
     path = request.output or Path("results", Path(request.source).stem or "run")
     outputs = (Products(path, PRODUCTS), request.video, request.recording)
-    inputs = (request.source, request.params, request.targets)
-    with claimed(outputs, inputs, overwrite=request.overwrite):
+    with claimed(outputs, request.inputs, overwrite=request.overwrite):
         return _track(request, variant, source, RunFolder(path))
 
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.parameter_options import parse_box
-from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.requests import option, positional
 from vehicle_pf_tracker.cli.shared_options import RosOption, positive_number
 from vehicle_pf_tracker.core.box import Box
 
@@ -29,15 +29,15 @@ from vehicle_pf_tracker.core.box import Box
 class Request(RosOption):
     """Request of `set-target`."""
 
-    node: str = option(
+    node: str = positional(
         metavar="NODE", help="name of the node, with its namespace: front/apf_tracker"
     )
-    box: Box = option(
+    box: Box = positional(
         type=parse_box, metavar="X,Y,W,H",
         help="box of the vehicle in px of the image, top-left corner and size",
     )  # fmt: skip
     timeout: float = option(
-        "--timeout", type=positive_number, default=10.0, metavar="S",
+        type=positive_number, default=10.0, metavar="S",
         help="longest wait for the node in seconds (default: 10)",
     )  # fmt: skip
 

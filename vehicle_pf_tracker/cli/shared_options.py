@@ -22,7 +22,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.cli.requests import VerbRequest, option, switch
+from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, switch
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 
 
@@ -30,7 +30,7 @@ from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 class OverwriteOption(VerbRequest):
     """Request that can replace outputs."""
 
-    overwrite: bool = switch("--overwrite", help="replace outputs that exist")
+    overwrite: bool = switch(help="replace outputs that exist")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +38,7 @@ class MaxDiffOption(VerbRequest):
     """Request that associates estimates and truth."""
 
     max_diff: float = option(
-        "--max-diff", type=float, default=MAX_DIFF, metavar="S",
+        type=float, default=MAX_DIFF, metavar="S",
         help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
     )  # fmt: skip
 
@@ -48,22 +48,21 @@ class RosOption(VerbRequest):
     """Request with an option after which all words are ROS's."""
 
     ros_args: Sequence[str] = option(
-        "--ros-args", nargs=argparse.REMAINDER, default=[], metavar="...",
-        help="all words after this go to ROS",
-    )  # fmt: skip
+        nargs=argparse.REMAINDER, default=[], metavar="...", help="all words after this go to ROS"
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
 class SourceOptions(VerbRequest):
     """Request that reads images of any source."""
 
-    source: str = option(
+    source: str = positional(
         metavar="SOURCE",
         help="recording, video file, folder of images, index of a camera, or URL of a stream",
     )  # fmt: skip
-    topic: str | None = option("--topic", help="the image topic, if a recording has several")
+    topic: str | None = option(help="the image topic, if a recording has several")
     fps: float | None = option(
-        "--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states"
+        type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states"
     )
 
 
@@ -107,6 +106,6 @@ class WorkersOption(VerbRequest):
     """Request for work in several processes."""
 
     workers: int = option(
-        "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
+        type=positive, default=os.cpu_count() or 1, metavar="N",
         help="processes; results do not depend on it (default: one per processor)",
     )  # fmt: skip

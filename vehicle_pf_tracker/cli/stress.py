@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli.console import UsageError, print_table, tell_notices
+from vehicle_pf_tracker.cli.console import UsageError, print_rows, tell_notices
 from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.shared_options import positive
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest, chosen
@@ -29,7 +29,6 @@ from vehicle_pf_tracker.cli.work_progress import telling
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.stress import Case, Result, StressSystem
-    from vehicle_pf_tracker.evaluation.stress.summary import Group
 
 STORE = "scores.jsonl"
 _OTHERS = ("scheduler", "timing", "shifted_starts", "start_frames", "restarts", "max_rmse")
@@ -43,23 +42,20 @@ class StressRequest(EvaluationRequest):
     GROUP = "stress battery, instead of the grid"
 
     stress: str | None = option(
-        "--stress", choices=("quick", "full"),
+        choices=("quick", "full"),
         help="run systems over cases made of the recordings or frame folders REC: quick, 8 short "
         "ones of each; full, about 55; see docs/evaluation.md",
     )  # fmt: skip
-    kinds: str | None = option("--kinds", metavar="NAME,…", help="only cases of these kinds")
+    kinds: str | None = option(metavar="NAME,…", help="only cases of these kinds")
     per_sequence: int | None = option(
-        "--per-sequence", type=positive, metavar="N",
-        help="at most N cases of each sequence, of all groups in turns",
-    )  # fmt: skip
-    limit: int | None = option(
-        "--limit", type=positive, metavar="N", help="at most N cases, evenly spread"
+        type=positive, metavar="N", help="at most N cases of each sequence, of all groups in turns"
     )
+    limit: int | None = option(type=positive, metavar="N", help="at most N cases, evenly spread")
     max_frames: int | None = option(
-        "--max-frames", type=positive, metavar="N", help="at most N frames of each case"
+        type=positive, metavar="N", help="at most N frames of each case"
     )
     cameras: Path | None = option(
-        "--cameras", type=Path, metavar="FILE",
+        type=Path, metavar="FILE",
         help="table sequence,camera (default: cameras.csv in a folder REC; else each its own)",
     )  # fmt: skip
 
@@ -85,7 +81,7 @@ def check(request: StressRequest) -> None:
 def run(request: StressRequest) -> int:
     """Run the missing cases of the battery, write its report, and print its tables."""
     from vehicle_pf_tracker.evaluation.stress import run_battery
-    from vehicle_pf_tracker.evaluation.stress.report import MARKDOWN, write_report
+    from vehicle_pf_tracker.evaluation.stress.report import MARKDOWN, table_rows, write_report
 
     systems, cases = _systems(request), _cases(request)
     count = request.seeds or FEW_SEEDS
@@ -98,7 +94,8 @@ def run(request: StressRequest) -> int:
         )  # fmt: skip
     found = write_report(results, request.output, _options(request, results))
     for by in ("(all)", "kind"):
-        _show([group for group in found if group.by == by])
+        groups = [group for group in found if group.by == by]
+        print_rows(*table_rows(groups, intervals=False))
     print(f"the report is {request.output / MARKDOWN}")
     return 0
 
@@ -132,18 +129,3 @@ def _options(request: StressRequest, results: Sequence[Result]) -> dict[str, obj
         "runs": len(results),
         "seeds": sorted({result.seed for result in results}),
     }
-
-
-def _show(found: Sequence[Group]) -> None:
-    from rich.table import Table
-    from rich.text import Text
-
-    from vehicle_pf_tracker.evaluation.stress.report import table_rows
-
-    headings, rows = table_rows(found, intervals=False)
-    table = Table()
-    for heading in headings:
-        table.add_column(Text(heading), justify="right")
-    for row in rows:
-        table.add_row(*map(Text, row))
-    print_table(table)

@@ -23,7 +23,7 @@ from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.progress import counting
-from vehicle_pf_tracker.cli.requests import option, switch
+from vehicle_pf_tracker.cli.requests import option, positional, switch
 from vehicle_pf_tracker.cli.shared_options import OverwriteOption
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
@@ -53,26 +53,23 @@ from vehicle_pf_tracker.scenes.traffic_settings import TrafficSceneParameters
 class Request(OverwriteOption):
     """Request of `synth`."""
 
-    scene: str | None = option(
+    scene: str | None = positional(
         nargs="?", metavar="SCENE", help=f"one of: {', '.join((*SCENES, *TRAFFIC_SCENES))}"
     )
-    out: Path | None = option(
+    out: Path | None = positional(
         nargs="?", type=Path, metavar="OUT",
         help="rosbag2 folder to write; or a video, NAME.mp4, with its truth in NAME.csv; the "
         "scenes traffic-* are written as MOTChallenge folders",
     )  # fmt: skip
-    list: bool = switch("--list", help="list the scenes and their settings")
-    seed: int = option(
-        "--seed", type=int, default=0, help="changes textures, noise and traffic (default: 0)"
-    )
+    list: bool = switch(help="list the scenes and their settings")
+    seed: int = option(type=int, default=0, help="changes textures, noise and traffic (default: 0)")
     settings: Sequence[str] = option(
         "--set", action="append", default=[], metavar="NAME=VALUE",
         help="set a setting of the scene; repeatable",
     )  # fmt: skip
     format: str | None = option(
-        "--format", choices=FORMATS,
-        help="pixels, or JPEG files, in a recording (default: raw)",
-    )  # fmt: skip
+        choices=FORMATS, help="pixels, or JPEG files, in a recording (default: raw)"
+    )
 
 
 def run(request: Request) -> int:

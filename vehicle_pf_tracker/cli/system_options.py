@@ -30,7 +30,7 @@ from vehicle_pf_tracker.cli.parameter_sets import (
     read_sets,
     settable,
 )
-from vehicle_pf_tracker.cli.requests import VerbRequest, option, switch
+from vehicle_pf_tracker.cli.requests import option, positional, switch
 from vehicle_pf_tracker.cli.shared_options import WorkersOption, natural, positive
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Baseline, unknown_baseline
@@ -53,17 +53,31 @@ _BASELINES_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not
 
 
 @dataclass(frozen=True, kw_only=True)
-class SystemOptions(VerbRequest):
-    """Options that choose systems."""
+class EvaluationRequest(WorkersOption):
+    """Request to compare systems, in any way."""
 
+    sources: Sequence[str] = positional(
+        nargs="+", metavar="REC",
+        help="rosbag2 folder or MCAP file with truth, a folder of such, or a URL of one",
+    )  # fmt: skip
+    output: Path = option(
+        "-o", type=Path, required=True, metavar="DIR",
+        help="evaluation folder; finished runs in it are kept, the report is written anew",
+    )  # fmt: skip
+    seeds: int | None = option(
+        type=positive, metavar="N",
+        help=f"seeds of each stochastic system (default: {SEEDS}, with --stress "
+        f"{FEW_SEEDS})",
+    )  # fmt: skip
+    first_seed: int = option(type=natural, default=0, metavar="S", help="the first of the seeds")
     variants: str = option(
-        "--variants", default=ALL, metavar="NAME,…",
+        default=ALL, metavar="NAME,…",
         help=f"what to compare: {', '.join(VARIANTS)}; {BASELINE}NAME of OpenCV's "
         f"{', '.join(MODELS)}; {ALL} (default) for all variants, {ALL_BASELINES} for "
         f"{', '.join(_BASELINES_WITHOUT_MODELS)}",
     )  # fmt: skip
     params: Sequence[str] = option(
-        "--params", action="append", default=[], metavar="[VARIANT@]LABEL=FILE",
+        action="append", default=[], metavar="[VARIANT@]LABEL=FILE",
         help="run a parameter file too, under this label; for all variants that it fits, or one",
     )  # fmt: skip
     assignments: Sequence[str] = option(
@@ -71,45 +85,20 @@ class SystemOptions(VerbRequest):
         metavar="[[VARIANT@]LABEL:]NAME=VALUE",
         help="set a parameter: everywhere, or to make or complete the parameter set LABEL",
     )  # fmt: skip
-    without_defaults: bool = switch(
-        "--without-defaults",
-        help="run the parameter sets alone, where a variant has any",
-    )  # fmt: skip
+    without_defaults: bool = switch(help="run the parameter sets alone, where a variant has any")
     baselines_python: Path | None = option(
-        "--baselines-python", type=Path, metavar="FILE",
+        type=Path, metavar="FILE",
         help="interpreter of the baselines (default: .venv-baselines/bin/python, built by "
         "`make baselines`)",
     )  # fmt: skip
     baseline_model: Sequence[str] = option(
-        "--baseline-model", action="append", default=[], metavar="BASELINE:NAME=FILE",
+        action="append", default=[], metavar="BASELINE:NAME=FILE",
         help="model file of a baseline that needs some, as vit:net=vit.onnx; repeatable",
     )  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
-class EvaluationRequest(SystemOptions, WorkersOption):
-    """Request to compare systems, in any way."""
-
-    sources: Sequence[str] = option(
-        nargs="+", metavar="REC",
-        help="rosbag2 folder or MCAP file with truth, a folder of such, or a URL of one",
-    )  # fmt: skip
-    output: Path = option(
-        "-o", "--output", type=Path, required=True, metavar="DIR",
-        help="evaluation folder; finished runs in it are kept, the report is written anew",
-    )  # fmt: skip
-    seeds: int | None = option(
-        "--seeds", type=positive, metavar="N",
-        help=f"seeds of each stochastic system (default: {SEEDS}, with --stress "
-        f"{FEW_SEEDS})",
-    )  # fmt: skip
-    first_seed: int = option(
-        "--first-seed", type=natural, default=0, metavar="S", help="the first of the seeds"
-    )
-
-
-def chosen(request: SystemOptions) -> tuple[list[System], list[str]]:
-    """Return the systems that the options of `add_arguments` choose, and notes about them.
+def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
+    """Return the systems that a request asks for, and notes about them.
 
     Raises
     ------

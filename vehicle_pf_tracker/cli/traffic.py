@@ -71,35 +71,32 @@ class Request(TrackingRequest):
     """Request of `traffic`."""
 
     output: Path | None = option(
-        "-o", "--output", type=Path, metavar="DIR",
+        "-o", type=Path, metavar="DIR",
         help="folder for tracks.csv, tracks.txt, counts.csv, run.json and summary.png "
         "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
     detections: Path | None = option(
-        "--detections", type=Path, metavar="FILE",
+        type=Path, metavar="FILE",
         help="detections as MOTChallenge has them, det.txt, instead of a detector",
     )  # fmt: skip
     detector: str | None = option(
-        "--detector", choices=(MOTION, MODEL, NONE),
+        choices=(MOTION, MODEL, NONE),
         help="find what moves before a standing camera (the default), use a network of yours, or "
         "follow only the vehicles given with --target",
     )  # fmt: skip
-    model: str | None = option(
-        "--model", metavar="FILE", help="the network, .onnx: YOLOX, YOLOv8 or SSD"
-    )
+    model: str | None = option(metavar="FILE", help="the network, .onnx: YOLOX, YOLOv8 or SSD")
     lines: Path | None = option(
-        "--lines", type=Path, metavar="FILE", help="lines and zones to count at, lines.yaml"
+        type=Path, metavar="FILE", help="lines and zones to count at, lines.yaml"
     )
     video: Path | None = option(
-        "--video", type=Path, metavar="FILE",
+        type=Path, metavar="FILE",
         help="write the frames with all vehicles and counts to FILE, an mp4",
     )  # fmt: skip
     visible_only: bool = switch(
-        "--visible-only",
-        help="leave vehicles that are occluded, and so predicted, out of tracks.txt",
-    )  # fmt: skip
+        help="leave vehicles that are occluded, and so predicted, out of tracks.txt"
+    )
     target: Sequence[TargetOption] = option(
-        "--target", type=parse_target, action="append", default=[],
+        type=parse_target, action="append", default=[],
         metavar="[NAME][@FRAME:]X,Y,W,H",
         help="a vehicle to follow from the first frame or from FRAME on, beside those that are "
         "detected: top-left corner and size in px; repeatable",
@@ -113,14 +110,7 @@ def run(request: Request) -> int:
     source = open_source(request.source, topic=request.topic, fps=request.fps)
     folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
     outputs = (Products(folder, PRODUCTS), request.video)
-    inputs = (
-        request.source,
-        request.detections,
-        request.model,
-        request.lines,
-        request.targets,
-        request.params,
-    )
+    inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
         return _follow(request, setup, source, make_folder(folder))
 

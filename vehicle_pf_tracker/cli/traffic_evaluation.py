@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli.console import UsageError, print_table
+from vehicle_pf_tracker.cli.console import UsageError, print_rows
 from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.cli.requests import option, switch
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
@@ -29,7 +29,6 @@ from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.evaluation.traffic.comparison_report import Line
     from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
     from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
@@ -49,16 +48,15 @@ class TrafficRequest(EvaluationRequest):
     GROUP = "many vehicles, instead of the grid"
 
     traffic: bool = switch(
-        "--traffic",
         help="compare `traffic` with SORT, ByteTrack, OC-SORT and C-BIoU; REC are folders as "
         "MOTChallenge has them; see docs/traffic.md",
     )  # fmt: skip
     detections: str | None = option(
-        "--detections", metavar="NAME,…",
+        metavar="NAME,…",
         help="only these files of det/, by name without .txt, and `motion` (default: all)",
     )  # fmt: skip
     perturbations: str | None = option(
-        "--perturbations", metavar="NAME,…",
+        metavar="NAME,…",
         help="only these of dropped, gap20, gap40, squared and halved; `none` for none "
         "(default: all)",
     )  # fmt: skip
@@ -88,6 +86,8 @@ def run(request: TrafficRequest) -> int:
     from vehicle_pf_tracker.evaluation.traffic.comparison import cases_of, compare
     from vehicle_pf_tracker.evaluation.traffic.comparison_report import (
         MARKDOWN,
+        by_case,
+        main_table,
         write_traffic_report,
     )
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
@@ -109,7 +109,8 @@ def run(request: TrafficRequest) -> int:
         }
     lines = write_traffic_report(results, request.output, options)
     write_text(request.output / PAGE, traffic_page(lines, " ".join(request.command)))
-    _show(lines)
+    for title, group in by_case(lines):
+        print_rows(*main_table(group), title)
     print(f"the report is {request.output / PAGE}, and {MARKDOWN} beside it")
     return 0
 
@@ -152,19 +153,3 @@ def _parameters(request: TrafficRequest) -> TrafficParameters:
     configuration = Configuration.of(TRAFFIC).updated(parse_assignments(table, request.assignments))
     parameters: TrafficParameters = configuration.tracker
     return parameters
-
-
-def _show(lines: Sequence[Line]) -> None:
-    from rich.table import Table
-    from rich.text import Text
-
-    from vehicle_pf_tracker.evaluation.traffic.comparison_report import by_case, main_table
-
-    for title, group in by_case(lines):
-        headings, rows = main_table(group)
-        table = Table(title=title)
-        for heading in headings:
-            table.add_column(Text(heading), justify="right")
-        for row in rows:
-            table.add_row(*map(Text, row))
-        print_table(table)

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 from vehicle_pf_tracker.cli import parameter_options, system_options
 from vehicle_pf_tracker.cli.console import print_table, tell_notices
 from vehicle_pf_tracker.cli.parameter_sets import settable
-from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.requests import option, positional
 from vehicle_pf_tracker.cli.shared_options import MaxDiffOption, WorkersOption, natural, positive
 from vehicle_pf_tracker.cli.work_progress import stages, telling
 from vehicle_pf_tracker.core.errors import InputError
@@ -65,51 +65,47 @@ Recordings = Sequence[tuple[Source, dict[int, Truth]]]
 class Request(MaxDiffOption, WorkersOption):
     """Request of `tune`."""
 
-    sources: Sequence[str] = option(
+    sources: Sequence[str] = positional(
         nargs="+", metavar="REC", help="recordings with truth to tune on, or a folder"
     )
-    variant: str = option(
-        "--variant", required=True, metavar="NAME", help=f"one of: {', '.join(VARIANTS)}"
-    )
+    variant: str = option(required=True, metavar="NAME", help=f"one of: {', '.join(VARIANTS)}")
     output: Path = option(
-        "-o", "--output", type=Path, required=True, metavar="DIR",
+        "-o", type=Path, required=True, metavar="DIR",
         help="folder for best.yaml and the other results; finished runs in it are kept, the rest "
         "is written anew",
     )  # fmt: skip
     held_out: Sequence[str] = option(
-        "--held-out", nargs="+", default=[], metavar="REC",
+        nargs="+", default=[], metavar="REC",
         help="held-out recordings, unseen by the search; they show whether its gain is real",
     )  # fmt: skip
     search: Sequence[str] = option(
-        "--search", action="append", default=[], metavar="NAME[=LOW:HIGH],…",
+        action="append", default=[], metavar="NAME[=LOW:HIGH],…",
         help="parameters to search (default: those marked as tuned, "
         f"{', '.join(default_search(find_variant('apf')))} for apf)",
     )  # fmt: skip
     trials: int = option(
-        "--trials", type=positive, default=TRIALS, metavar="N",
+        type=positive, default=TRIALS, metavar="N",
         help="parameter sets to try (default: %(default)s)",
     )  # fmt: skip
     seeds: int = option(
-        "--seeds", type=positive, default=SEEDS, metavar="N",
+        type=positive, default=SEEDS, metavar="N",
         help=f"runs of each on each recording (default: %(default)s); the search takes seeds from "
         f"{SEARCH_SEED} on, the comparison others",
     )  # fmt: skip
     objective: str = option(
-        "--objective", default="success_auc", choices=OBJECTIVES, metavar="METRIC",
+        default="success_auc", choices=OBJECTIVES, metavar="METRIC",
         help=f"what to improve, of {', '.join(OBJECTIVES)} (default: %(default)s): its mean over "
         "the runs of a recording and then over the recordings",
     )  # fmt: skip
     sampler_seed: int = option(
-        "--sampler-seed", type=natural, default=0, metavar="S", help="seed of the search itself"
+        type=natural, default=0, metavar="S", help="seed of the search itself"
     )
-    params: Path | None = option(
-        "--params", type=Path, metavar="FILE", help="parameter file to begin with"
-    )
+    params: Path | None = option(type=Path, metavar="FILE", help="parameter file to begin with")
     assignments: Sequence[str] = option(
         "--set", action="append", default=[], metavar="NAME=VALUE",
         help="begin with this value, over the file; repeatable",
     )  # fmt: skip
-    topic: str | None = option("--topic", help="the image topic, where recordings have several")
+    topic: str | None = option(help="the image topic, where recordings have several")
 
 
 def run(request: Request) -> int:
