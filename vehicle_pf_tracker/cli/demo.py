@@ -30,7 +30,6 @@ from vehicle_pf_tracker.cli.demo_runs import (
     track_offline,
     track_through_ros,
 )
-from vehicle_pf_tracker.cli.demo_traffic import follow_all
 from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.shared_options import OverwriteOption, natural
 from vehicle_pf_tracker.cli.synth import record_scene
@@ -44,10 +43,15 @@ from vehicle_pf_tracker.evaluation.plots import overview_figure, save
 from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
+from vehicle_pf_tracker.evaluation.traffic.following import TrafficRun
+from vehicle_pf_tracker.evaluation.traffic.track_files import track_files
 from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
 from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import make_scene
+from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 SCENE, SCENE_SEED = "highway", 0
 IN_VIDEO = ("fusion", "pf")
@@ -101,7 +105,7 @@ def _run_chain(request: Request, folder: Path, absence: str) -> int:
     _write_runs(folder, recording, runs, scores, request.command, bool(answers))
     _draw(folder, recording, scores, bool(answers))
     _announce(steps, "every vehicle of the scene, found by motion, and a picture of all paths")
-    found = follow_all(recording, folder / "traffic", folder / ALL_VEHICLES)
+    found = _follow_all(recording, folder / "traffic", folder / ALL_VEHICLES)
     table = _table(scores, same if answers else {}, _recoveries(recording, runs))
     show(table)
     write_text(folder / "summary.md", table.to_markdown())
@@ -160,6 +164,15 @@ def _draw(
     follow(trackers, iter(enumerate(recording.frames(), start=1)), Pictures(folder / VIDEO))
     if not has_encoder():
         tell_notices([NO_ENCODER])
+
+
+def _follow_all(recording: Recording, folder: Path, picture: Path) -> list[str]:
+    """Follow all vehicles with the defaults, as `traffic` does; return what was found in lines."""
+    tracking = TrafficRun(TrafficSession(TrafficTracker(), MotionDetector))
+    with track_files(make_folder(folder)) as files:
+        tracking.follow(enumerate(recording.frames(), start=1), files)
+    tracking.paths.write(picture)
+    return tracking.summary.sentences()
 
 
 def _recoveries(

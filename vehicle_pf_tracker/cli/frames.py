@@ -84,3 +84,13 @@ def peeked(frames: Numbered) -> tuple[tuple[int, StampedFrame], Numbered]:
     if first is None:
         raise InputError("the source ended before its first image")
     return first, itertools.chain([first], frames)
+
+
+def cut_short(stop: Stop, source: Source, done: int) -> list[str]:
+    """Say that a signal ended the run after `done` frames; empty if it is whole.
+
+    A live source ends by a signal, and so its run is whole then.
+    """
+    if not stop.came or source.frame_count is None:
+        return []
+    return [f"a signal ended the run after {done} of {source.frame_count} frames"]

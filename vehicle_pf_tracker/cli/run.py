@@ -23,7 +23,13 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError, show, tell_notices
-from vehicle_pf_tracker.cli.frames import Numbered, TrackingRequest, numbered_frames, peeked
+from vehicle_pf_tracker.cli.frames import (
+    Numbered,
+    TrackingRequest,
+    cut_short,
+    numbered_frames,
+    peeked,
+)
 from vehicle_pf_tracker.cli.picture_window import PictureWindow
 from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.cli.requests import option, switch
@@ -123,10 +129,8 @@ def _track(request: Request, variant: Variant, source: Source, folder: RunFolder
         notices += [*tracker.notices, *tracker.road_notices]
     if request.video and not has_encoder():
         notices.append(NO_ENCODER)
-    was_cut_short = stop.came and source.frame_count is not None  # a live source ends so
-    if was_cut_short:
-        done = max(len(found) for found in rows.values())
-        notices.append(f"a signal ended the run after {done} of {source.frame_count} frames")
+    ended = cut_short(stop, source, max(map(len, rows.values())))
+    notices += ended
     tell_notices(notices)
     _write(folder, request, source, trackers, rows, notices)
     pictures.sheet.write(folder.path / SHEET)
@@ -137,7 +141,7 @@ def _track(request: Request, variant: Variant, source: Source, folder: RunFolder
         print(f"the video is {request.video}")
     if request.recording:
         print(f"the recording is {request.recording}, for Foxglove and `ros2 bag play`")
-    return stop.status if was_cut_short else 0
+    return stop.status if ended else 0
 
 
 def _recording(

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
-from vehicle_pf_tracker.cli.frames import TrackingRequest, numbered_frames, peeked
+from vehicle_pf_tracker.cli.frames import TrackingRequest, cut_short, numbered_frames, peeked
 from vehicle_pf_tracker.cli.picture_window import PictureWindow
 from vehicle_pf_tracker.cli.progress import counting
 from vehicle_pf_tracker.cli.requests import option, switch
@@ -129,10 +129,8 @@ def _follow(request: Request, setup: _Setup, source: Source, folder: Path) -> in
     notices = [*source.notices, *setup.notices(), *tracking.notices]
     if request.video and not has_encoder():
         notices.append(NO_ENCODER)
-    was_cut_short = stop.came and source.frame_count is not None  # a live source ends so
-    if was_cut_short:
-        done = tracking.summary.frames
-        notices.append(f"a signal ended the run after {done} of {source.frame_count} frames")
+    ended = cut_short(stop, source, tracking.summary.frames)
+    notices += ended
     tell_notices(limited(notices))
     write_json(folder / RUN, _description(request, source, setup, tracking, notices))
     if not tracking.paths.write(folder / PICTURE, tracking.counter):
@@ -142,7 +140,7 @@ def _follow(request: Request, setup: _Setup, source: Source, folder: Path) -> in
     print(f"results are in {folder}; {PICTURE} shows all paths")
     if request.video:
         print(f"the video is {request.video}")
-    return stop.status if was_cut_short else 0
+    return stop.status if ended else 0
 
 
 @dataclass(frozen=True, slots=True)
