@@ -20,10 +20,10 @@ COVERED := 92
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: demo test test-offline test-footage test-ros test-slow test-noble lint types format config colcon baselines peers bench reproduce clean
+.PHONY: demo test test-offline test-footage test-ros test-slow test-noble lint types format config colcon baselines bench reproduce clean
 
 demo: .venv/installed
-	$(BIN)/vehicle-pf-tracker demo -o results/demo
+	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
 
 ifdef PYTEST_ARGS
 # A selection of the tests, which says nothing about coverage.
@@ -60,9 +60,6 @@ colcon: .venv/colcon
 
 # Trackers to compare with, and TrackEval: two OpenCV packages in one environment overwrite each other.
 baselines: .venv-baselines/locked
-
-peers:
-	@echo "make: the target peers is now called baselines" >&2; exit 2
 
 # Writes results/bench/bench.json and docs/performance.md, and with SEQUENCES=FOLDER the cost of fusion on
 # them, results/fusion_cost; wants a machine with nothing else to do.

@@ -39,7 +39,8 @@ from reproduction.page import write_page
 from reproduction.running import complete
 from vehicle_pf_tracker.cli.console import USAGE, UsageError
 from vehicle_pf_tracker.cli.main import exit_status
-from vehicle_pf_tracker.cli.shared_options import add_workers, natural, positive
+from vehicle_pf_tracker.cli.requests import add_options
+from vehicle_pf_tracker.cli.shared_options import WorkersOption, natural, positive
 from vehicle_pf_tracker.cli.work_progress import telling
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
@@ -78,7 +79,7 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
         "--first-seed", type=natural, default=0, metavar="S",
         help="the first of the seeds; to try things out take others than 0 to 9, from 100 on",
     )  # fmt: skip
-    add_workers(parser)
+    add_options(parser, WorkersOption)
     add(
         "--quick", action="store_true",
         help=f"coarse grids and {QUICK_SEEDS} seeds, to see that everything works",

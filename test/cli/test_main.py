@@ -18,6 +18,7 @@ import re
 import resource
 import subprocess
 import sys
+from dataclasses import is_dataclass
 
 import pytest
 
@@ -57,9 +58,9 @@ def test_every_verb_has_help_of_its_own(capsys, verb):
 
 
 @pytest.mark.parametrize("verb", command.VERBS)
-def test_every_verb_has_the_two_functions(verb):
+def test_every_verb_has_a_request_and_runs_it(verb):
     module = importlib.import_module(f"vehicle_pf_tracker.cli.{command.VERBS[verb][0]}")
-    assert callable(module.add_arguments)
+    assert is_dataclass(module.Request)
     assert callable(module.run)
 
 
@@ -144,13 +145,6 @@ def test_a_reader_that_leaves_early_is_no_error():
     )  # fmt: skip
     os.close(write)
     assert (done.returncode, done.stderr) == (141, "")
-
-
-def test_reproduce_names_the_command_it_became(capsys):
-    assert command.main(["reproduce", "apf-fig4"]) == 2
-    error = capsys.readouterr().err
-    assert "`python -m reproduction FIGURE…`" in error
-    assert "`make reproduce`" in error
 
 
 def test_bag_replay_is_the_verb_replay(capsys):

@@ -19,6 +19,7 @@ import pytest
 
 from vehicle_pf_tracker.cli import replay
 from vehicle_pf_tracker.cli.console import UsageError
+from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions, ReplayReport
@@ -26,8 +27,9 @@ from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptio
 
 def parse(*words):
     parser = argparse.ArgumentParser()
-    replay.add_arguments(parser)
-    return parser.parse_args(["bag", *words])
+    add_options(parser, replay.Request)
+    parser.set_defaults(command=[])
+    return request_of(replay.Request, parser.parse_args(["bag", *words]))
 
 
 def options(*words):

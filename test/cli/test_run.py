@@ -29,7 +29,12 @@ def run(tmp_path):
 
     def call(recording, *words, variant="apf"):
         out = tmp_path / "out"
-        assert main(["run", str(recording), "--variant", variant, "-o", str(out), *words]) == 0
+        assert (
+            main(
+                ["run", str(recording), "--variant", variant, "-o", str(out), "--overwrite", *words]
+            )
+            == 0
+        )
         names = {path.name for path in out.iterdir()}
         assert names == {"estimates.csv", "metrics.json", "run.json", "summary.png"}
         documents = [json.loads((out / name).read_text()) for name in ("metrics.json", "run.json")]

@@ -249,7 +249,7 @@ def test_results_are_not_replaced_unasked(run, capsys):
     out = run()
     before = (out / "tracks.csv").stat().st_mtime_ns
     run(status=1)
-    assert "has results already" in capsys.readouterr().err
+    assert "give --overwrite" in capsys.readouterr().err
     assert (out / "tracks.csv").stat().st_mtime_ns == before
 
 

@@ -16,17 +16,16 @@
 
 from __future__ import annotations
 
-import argparse
 import time
 
 from vehicle_pf_tracker.cli.console import tell_notices
+from vehicle_pf_tracker.cli.requests import VerbRequest
+
+Request = VerbRequest
+"""Request of `compile`, which has no options."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb: there are none."""
-
-
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Compile what is not compiled yet, and say how long it took; 1 if it cannot be kept."""
     from vehicle_pf_tracker.image.kernels.choice import load_kernels
 

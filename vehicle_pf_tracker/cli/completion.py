@@ -29,6 +29,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError
+from vehicle_pf_tracker.cli.requests import add_options
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_text
 from vehicle_pf_tracker.scenes.catalogue import SCENES
 from vehicle_pf_tracker.scenes.traffic_catalogue import TRAFFIC_SCENES
@@ -70,7 +71,7 @@ def run(words: Sequence[str], verbs: Mapping[str, tuple[str, str]]) -> int:
     if shell not in SHELLS or len(rest) > 1:
         raise UsageError(f"say for which shell: {action} {' or '.join(SHELLS)}")
     found = {name: _words_of(name, module) for name, (module, _) in verbs.items()}
-    text = {"bash": _bash, "zsh": _zsh}[shell](found)
+    text = _filled({"bash": _BASH, "zsh": _ZSH}[shell], found)
     if action == PRINT:
         print(text, end="")
         return 0
@@ -84,7 +85,7 @@ def run(words: Sequence[str], verbs: Mapping[str, tuple[str, str]]) -> int:
 def _words_of(verb: str, module: str) -> VerbWords:
     parser = argparse.ArgumentParser()
     with suppress(ModuleNotFoundError):  # of an extra that is not installed, as the verb will say
-        importlib.import_module(f"vehicle_pf_tracker.cli.{module}").add_arguments(parser)
+        add_options(parser, importlib.import_module(f"vehicle_pf_tracker.cli.{module}").Request)
     options: list[str] = []
     values: dict[str, Sequence[str]] = {}
     arguments = list(_ARGUMENTS.get(verb, ()))
@@ -134,14 +135,6 @@ _{function}() {{
 }}
 _{function} "$@"
 """
-
-
-def _bash(verbs: Mapping[str, VerbWords]) -> str:
-    return _filled(_BASH, verbs)
-
-
-def _zsh(verbs: Mapping[str, VerbWords]) -> str:
-    return _filled(_ZSH, verbs)
 
 
 def _filled(template: str, verbs: Mapping[str, VerbWords]) -> str:

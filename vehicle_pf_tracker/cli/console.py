@@ -52,6 +52,19 @@ def show(table: Comparison) -> None:
     print_table(table.to_rich())
 
 
+def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: str = "") -> None:
+    """Print cells as a table on stdout; nothing in them is markup."""
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=title or None)
+    for heading in headings:
+        table.add_column(Text(heading), justify="right")
+    for row in rows:
+        table.add_row(*map(Text, row))
+    print_table(table)
+
+
 def print_table(table: RichTable) -> None:
     """Print a table on stdout; not wrapped where that is not a terminal."""
     from rich.console import Console

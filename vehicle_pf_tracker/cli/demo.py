@@ -16,9 +16,9 @@
 
 from __future__ import annotations
 
-import argparse
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import show, tell_notices
@@ -30,9 +30,10 @@ from vehicle_pf_tracker.cli.demo_runs import (
     track_offline,
     track_through_ros,
 )
-from vehicle_pf_tracker.cli.demo_traffic import follow_all
-from vehicle_pf_tracker.cli.shared_options import natural
+from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption, natural
 from vehicle_pf_tracker.cli.synth import record_scene
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow
 from vehicle_pf_tracker.evaluation.estimates_recording import write_with_estimates
 from vehicle_pf_tracker.evaluation.following import Pictures, follow
@@ -42,37 +43,48 @@ from vehicle_pf_tracker.evaluation.plots import overview_figure, save
 from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describe_run
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
+from vehicle_pf_tracker.evaluation.traffic.following import TrafficRun
+from vehicle_pf_tracker.evaluation.traffic.track_files import track_files
 from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
 from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import make_scene
+from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 SCENE, SCENE_SEED = "highway", 0
 IN_VIDEO = ("fusion", "pf")
 """Contestants drawn in the video: a third box would hide the other two."""
 PICTURE, VIDEO, ESTIMATES = "demo.png", "demo.mp4", "with_estimates"
 ALL_VEHICLES = "all_vehicles.png"
+PRODUCTS = ("recording", PICTURE, VIDEO, ESTIMATES, ALL_VEHICLES, "summary.*")
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add(
-        "-o", "--output", type=Path, default=Path("results/demo"), metavar="DIR",
+@dataclass(frozen=True, kw_only=True)
+class Request(OverwriteOption):
+    """Request of `demo`."""
+
+    output: Path = option(
+        "-o", type=Path, default=Path("results/demo"), metavar="DIR",
         help="folder for recordings, results, pictures and video (default: results/demo)",
     )  # fmt: skip
-    add(
-        "--seeds", type=natural, default=5, metavar="N",
-        help="how many more seeds to run offline (default: 5)",
-    )  # fmt: skip
+    seeds: int = option(
+        type=natural, default=5, metavar="N", help="how many more seeds to run offline (default: 5)"
+    )
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Run the whole chain; return 1 if ROS and offline runs differ."""
     absence = absence_of_ros()
     if absence:
         tell_notices([f"{absence}, so the nodes are left out and everything is tracked offline"])
-    folder, steps = make_folder(args.output), itertools.count(1)
+    with claimed([Products(request.output, PRODUCTS)], [], overwrite=request.overwrite):
+        return _run_chain(request, make_folder(request.output), absence)
+
+
+def _run_chain(request: Request, folder: Path, absence: str) -> int:
+    steps = itertools.count(1)
     if takes_long("auto"):
         # Once, and here: the nodes, which start side by side, would each compile all of them.
         _announce(steps, "kernels: the first start compiles for up to a minute, later ones load")
@@ -84,16 +96,16 @@ def run(args: argparse.Namespace) -> int:
         nodes = ", ".join(f"{name}_tracker" for name in CONTESTANTS)
         _announce(steps, f"the nodes {nodes}, fed in lock-step through ROS")
         answers = track_through_ros(recording)
-    _announce(steps, f"{', '.join(CONTESTANTS)} offline, and {args.seeds} more seeds of each")
-    runs = track_offline(recording, args.seeds)
+    _announce(steps, f"{', '.join(CONTESTANTS)} offline, and {request.seeds} more seeds of each")
+    runs = track_offline(recording, request.seeds)
     rows = answers or {name: of_seed[0].rows for name, of_seed in runs.items()}
     same = {name: _numbers(rows[name]) == _numbers(runs[name][0].rows) for name in rows}
     _announce(steps, "the picture and the video")
     scores = {name: score_frames(found, recording.truth()) for name, found in rows.items()}
-    _write_runs(folder, recording, runs, scores, args.command, bool(answers))
+    _write_runs(folder, recording, runs, scores, request.command, bool(answers))
     _draw(folder, recording, scores, bool(answers))
     _announce(steps, "every vehicle of the scene, found by motion, and a picture of all paths")
-    found = follow_all(recording, folder / "traffic", folder / ALL_VEHICLES)
+    found = _follow_all(recording, folder / "traffic", folder / ALL_VEHICLES)
     table = _table(scores, same if answers else {}, _recoveries(recording, runs))
     show(table)
     write_text(folder / "summary.md", table.to_markdown())
@@ -152,6 +164,15 @@ def _draw(
     follow(trackers, iter(enumerate(recording.frames(), start=1)), Pictures(folder / VIDEO))
     if not has_encoder():
         tell_notices([NO_ENCODER])
+
+
+def _follow_all(recording: Recording, folder: Path, picture: Path) -> list[str]:
+    """Follow all vehicles with the defaults, as `traffic` does; return what was found in lines."""
+    tracking = TrafficRun(TrafficSession(TrafficTracker(), MotionDetector))
+    with track_files(make_folder(folder)) as files:
+        tracking.follow(enumerate(recording.frames(), start=1), files)
+    tracking.paths.write(picture)
+    return tracking.summary.sentences()
 
 
 def _recoveries(

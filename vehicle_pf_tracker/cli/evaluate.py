@@ -16,140 +16,121 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
-from pathlib import Path
+from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli import report, stress, system_options, traffic_evaluation
 from vehicle_pf_tracker.cli.console import print_table, tell_error, tell_notices
-from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers, natural, positive
+from vehicle_pf_tracker.cli.report import ReportParts
+from vehicle_pf_tracker.cli.requests import VerbRequest, option, switch
+from vehicle_pf_tracker.cli.shared_options import MaxDiffOption, natural, positive
+from vehicle_pf_tracker.cli.stress import StressRequest
+from vehicle_pf_tracker.cli.traffic_evaluation import TrafficRequest
 from vehicle_pf_tracker.cli.work_progress import stages, telling
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
 from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.grid.timing import time_systems
 from vehicle_pf_tracker.evaluation.tables import SystemSummary, grid_table, summarise_grid
 
-SEEDS = 5
 TIMING_FRAMES = 200
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add(
-        "sources", nargs="+", metavar="REC",
-        help="rosbag2 folder or MCAP file with truth, a folder of such, or a URL of one",
+@dataclass(frozen=True, kw_only=True)
+class RobustnessOptions(VerbRequest):
+    """Runs in addition to the grid."""
+
+    GROUP = "robustness runs, in addition to the grid"
+
+    shifted_starts: bool = switch(
+        help="also start on twelve shifted and scaled boxes, with the first seed"
+    )
+    start_frames: int = option(
+        type=natural, default=0, metavar="N",
+        help="also start in N other frames, with the first seed",
     )  # fmt: skip
-    add(
-        "-o", "--output", type=Path, required=True, metavar="DIR",
-        help="evaluation folder; finished runs in it are kept",
-    )  # fmt: skip
-    system_options.add_arguments(parser)
-    add(
-        "--seeds", type=positive, metavar="N",
-        help=f"seeds of each stochastic system (default: {SEEDS}, with --stress "
-        f"{stress.SEEDS})",
-    )  # fmt: skip
-    add("--first-seed", type=natural, default=0, metavar="S", help="the first of the seeds")
-    add_workers(parser)
-    add(
-        "--scheduler", metavar="URL",
+    restarts: bool = switch(help="also run with a new start after each failure, and count those")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request(RobustnessOptions, StressRequest, TrafficRequest, ReportParts, MaxDiffOption):
+    """Request of `evaluate`."""
+
+    scheduler: str | None = option(
+        metavar="URL",
         help="run on the Dask cluster of this scheduler, as tcp://host:8786; the workers read the "
         "recordings at the same paths or URLs",
     )  # fmt: skip
-    add("--topic", help="the image topic, where recordings have several")
-    add_max_diff(parser)
-    add(
-        "--max-rmse", type=float, metavar="PX",
+    topic: str | None = option(help="the image topic, where recordings have several")
+    max_rmse: float | None = option(
+        type=float, metavar="PX",
         help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
     )  # fmt: skip
-    _add_timing(parser)
-    report.add_report_options(parser)
-    _add_robustness(parser)
-    stress.add_arguments(parser)
-    traffic_evaluation.add_arguments(parser)
-
-
-def _add_timing(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
-    add(
-        "--timing", action="store_true",
-        help="afterwards measure the speed of each system in turn, on an otherwise idle machine",
-    )  # fmt: skip
-    add(
-        "--timing-frames", type=positive, default=TIMING_FRAMES, metavar="N",
+    timing: bool = switch(
+        help="afterwards measure the speed of each system in turn, on an otherwise idle machine"
+    )
+    timing_frames: int = option(
+        type=positive, default=TIMING_FRAMES, metavar="N",
         help="frames per recording for --timing (default: %(default)s)",
     )  # fmt: skip
 
 
-def _add_robustness(parser: argparse.ArgumentParser) -> None:
-    robust = parser.add_argument_group("robustness runs, in addition to the grid")
-    robust.add_argument(
-        "--shifted-starts", action="store_true",
-        help="also start on twelve shifted and scaled boxes, with the first seed",
-    )  # fmt: skip
-    robust.add_argument(
-        "--start-frames", type=natural, default=0, metavar="N",
-        help="also start in N other frames, with the first seed",
-    )  # fmt: skip
-    robust.add_argument(
-        "--restarts", action="store_true",
-        help="also run with a new start after each failure, and count those",
-    )  # fmt: skip
-
-
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Run the missing cells, write the report, and print the table."""
-    traffic_evaluation.check(args)
-    if args.traffic:
-        return traffic_evaluation.run(args)
-    stress.check(args)
+    traffic_evaluation.check(request)
+    stress.check(request)
+    is_grid = not (request.traffic or request.stress)
+    sources = find_recordings(request.sources) if is_grid else request.sources
     try:
-        return stress.run(args) if args.stress else _run_grid(args)
+        with claimed([Products(request.output)], sources, overwrite=True):
+            if is_grid:
+                return _run_grid(request, sources)
+            return stress.run(request) if request.stress else traffic_evaluation.run(request)
     except KeyboardInterrupt:
-        tell_notices(["interrupted; run the same command to resume"])
+        if not request.traffic:
+            tell_notices(["interrupted; run the same command to resume"])
         raise
 
 
-def _run_grid(args: argparse.Namespace) -> int:
-    plan = _plan(args)
+def _run_grid(request: Request, sources: Sequence[str]) -> int:
+    plan = _plan(request, sources)
     with telling("evaluate") as on_progress:
-        complete(plan, args.output, _runner(args), on_progress, _tell)
-    if args.timing:
+        complete(plan, request.output, _runner(request), on_progress, _tell)
+    if request.timing:
         with telling("timing") as on_progress:
-            time_systems(plan, args.output, args.timing_frames, on_progress)
-    summaries = summarise_grid(plan, args.output)
+            time_systems(plan, request.output, request.timing_frames, on_progress)
+    summaries = summarise_grid(plan, request.output)
     _show(summaries)
-    report.write(args.output, args)
-    return _judge(summaries, args.max_rmse)
+    report.write(request.output, request)
+    return _judge(summaries, request.max_rmse)
 
 
 def _tell(notice: str) -> None:
     tell_notices([notice])
 
 
-def _plan(args: argparse.Namespace) -> Plan:
-    systems, notes = system_options.chosen(args)
+def _plan(request: Request, sources: Sequence[str]) -> Plan:
+    systems, notes = system_options.chosen(request)
     with stages("evaluate") as on_stage:
-        recordings = describe(find_recordings(args.sources), args.topic, args.max_diff, on_stage)
+        recordings = describe(sources, request.topic, request.max_diff, on_stage)
     tell_notices(notes)
     return Plan(
         dict(recordings),
         systems,
-        range(args.first_seed, args.first_seed + (args.seeds or SEEDS)),
-        args.command,
-        args.max_diff,
-        Robustness(args.shifted_starts, args.start_frames, args.restarts),
+        range(request.first_seed, request.first_seed + (request.seeds or system_options.SEEDS)),
+        list(request.command),
+        request.max_diff,
+        Robustness(request.shifted_starts, request.start_frames, request.restarts),
     )
 
 
-def _runner(args: argparse.Namespace) -> Runner:
-    if args.scheduler is None:
-        return on_this_machine(args.workers)
+def _runner(request: Request) -> Runner:
+    if request.scheduler is None:
+        return on_this_machine(request.workers)
     from vehicle_pf_tracker.evaluation.grid.cluster import on_cluster
 
-    return on_cluster(args.scheduler)
+    return on_cluster(request.scheduler)
 
 
 def _show(summaries: Sequence[SystemSummary]) -> None:

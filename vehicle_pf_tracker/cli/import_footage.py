@@ -16,11 +16,14 @@
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import megabytes, tell_notices
 from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.requests import option, positional
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption
+from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.recordings.importing import (
     FORMATS,
     ExpectedSize,
@@ -29,41 +32,46 @@ from vehicle_pf_tracker.recordings.importing import (
 )
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add(
-        "source", type=Path, metavar="SRC",
+@dataclass(frozen=True, kw_only=True)
+class Request(OverwriteOption):
+    """Request of `import`."""
+
+    source: Path = positional(
+        type=Path, metavar="SRC",
         help="video file, or folder of images, with groundtruth.csv where truth is known",
     )  # fmt: skip
-    add("out", type=Path, metavar="OUT", help="rosbag2 folder to write")
-    add(
-        "--truth", type=Path, metavar="FILE",
+    out: Path = positional(type=Path, metavar="OUT", help="rosbag2 folder to write")
+    truth: Path | None = option(
+        type=Path, metavar="FILE",
         help="truth of a video: a table frame,x,y,w,h,occ (frames from 1, top-left corner in px, "
         "0 in view, 1 partly, 2 totally hidden); a frame without a row has none",
     )  # fmt: skip
-    add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SRC states")
-    add(
-        "--format", choices=FORMATS,
+    fps: float | None = option(
+        type=float, metavar="HZ", help="frame rate, instead of the one that SRC states"
+    )
+    format: str | None = option(
+        choices=FORMATS,
         help="how images are stored (default: JPEG files as they are, videos as JPEG, PNG raw)",
     )  # fmt: skip
-    add("--overwrite", action="store_true", help="overwrite an existing recording")
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Import the footage, and print a summary of the recording."""
-    expected = expected_size(args.source, fps=args.fps, format=args.format)
+    expected = expected_size(request.source, fps=request.fps, format=request.format)
     if expected is not None:
-        print(f"{args.out} will take {_words(expected)}", flush=True)
-    with counting("imported") as progress:
+        print(f"{request.out} will take {_words(expected)}", flush=True)
+    with (
+        claimed([request.out], [request.source, request.truth], overwrite=request.overwrite),
+        counting("imported") as progress,
+    ):
         made = import_recording(
-            args.source,
-            args.out,
-            truth=args.truth,
-            fps=args.fps,
-            format=args.format,
+            request.source,
+            request.out,
+            truth=request.truth,
+            fps=request.fps,
+            format=request.format,
             progress=progress,
-            overwrite=args.overwrite,
+            overwrite=request.overwrite,
         )
     tell_notices(made.notices)
     print(

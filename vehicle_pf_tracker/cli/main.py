@@ -36,6 +36,7 @@ from vehicle_pf_tracker.cli.console import (
     tell_error,
 )
 from vehicle_pf_tracker.cli.missing_modules import remedy
+from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
 from vehicle_pf_tracker.core.address_space import check_address_space
 from vehicle_pf_tracker.core.errors import InputError, suggestion
@@ -76,11 +77,6 @@ _COMPLETION: Mapping[str, str] = MappingProxyType(
     }
 )
 """Options that come alone, with their help."""
-
-_REPRODUCE = (
-    "the papers' experiments are not part of the installed package: run `python -m reproduction "
-    "FIGURE…` or `make reproduce` in the repository"
-)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -136,7 +132,7 @@ def _run(words: list[str]) -> int:
         args = _parser(words).parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
         return ended.code if isinstance(ended.code, int) else USAGE
-    status: int = args.run(args)
+    status: int = args.module.run(request_of(args.module.Request, args))
     return status
 
 
@@ -146,8 +142,6 @@ def _parser(words: list[str]) -> argparse.ArgumentParser:
     No other verb is loaded, so that help is quick and nothing needs ROS but what uses it.
     """
     asked = next((word for word in words if not word.startswith("-")), None)
-    if asked == "reproduce":
-        raise UsageError(_REPRODUCE)
     if asked is not None and asked not in VERBS:
         raise UsageError(
             f"there is no verb {asked!r}{suggestion(asked, VERBS)}; the verbs are "
@@ -164,8 +158,8 @@ def _parser(words: list[str]) -> argparse.ArgumentParser:
         if name == asked:
             _check_extra(name)
             module = importlib.import_module(f"vehicle_pf_tracker.cli.{module_name}")
-            module.add_arguments(verb)
-            verb.set_defaults(run=module.run, command=[PROGRAM, *words])
+            add_options(verb, module.Request)
+            verb.set_defaults(module=module, command=[PROGRAM, *words])
     return parser
 
 

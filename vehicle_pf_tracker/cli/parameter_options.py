@@ -18,10 +18,12 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehicle_pf_tracker.cli.requests import VerbRequest, option
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml
@@ -35,15 +37,20 @@ _OF_ROS = ("use_sim_time", "start_type_description_service")
 _OF_ROS_PREFIX = "qos_overrides."
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options that choose parameters."""
-    add = parser.add_argument
-    add("--params", type=Path, metavar="FILE", help="ROS parameter file, as `params` prints it")
-    add(
-        "--set", action="append", default=[], metavar="NAME=VALUE", dest="assignments",
+@dataclass(frozen=True, kw_only=True)
+class ParameterOptions(VerbRequest):
+    """Options that choose parameters."""
+
+    params: Path | None = option(
+        type=Path, metavar="FILE", help="ROS parameter file, as `params` prints it"
+    )
+    assignments: Sequence[str] = option(
+        "--set", action="append", default=[], metavar="NAME=VALUE",
         help="set a parameter, over the file; repeatable",
     )  # fmt: skip
-    add("--seed", type=int, help="seed of the random numbers; -1 draws one and run.json keeps it")
+    seed: int | None = option(
+        type=int, help="seed of the random numbers; -1 draws one and run.json keeps it"
+    )
 
 
 def parse_box(text: str) -> Box:
@@ -57,8 +64,8 @@ def parse_box(text: str) -> Box:
     return Box(x, y, width, height)
 
 
-def chosen(variant: Variant, args: argparse.Namespace) -> Configuration:
-    """Collect the parameters that the options of `add_arguments` choose.
+def chosen(variant: Variant, request: ParameterOptions) -> Configuration:
+    """Collect the parameters that a request chooses.
 
     Raises
     ------
@@ -68,13 +75,13 @@ def chosen(variant: Variant, args: argparse.Namespace) -> Configuration:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
     configuration = Configuration.of(variant)
-    if args.params is not None:
-        configuration = with_file(configuration, variant, args.params)
+    if request.params is not None:
+        configuration = with_file(configuration, variant, request.params)
     # Those of the node alone would change nothing here, so they are refused as unknown.
     table = {**specs(variant.parameters), **specs(type(configuration.session))}
-    configuration = configuration.updated(parse_assignments(table, args.assignments))
-    if args.seed is not None:
-        configuration = configuration.updated({"seed": args.seed})
+    configuration = configuration.updated(parse_assignments(table, request.assignments))
+    if request.seed is not None:
+        configuration = configuration.updated({"seed": request.seed})
     return configuration
 
 

@@ -16,10 +16,11 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli.config_files import config_path
+from vehicle_pf_tracker.cli.requests import VerbRequest, positional, switch
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec
 from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant, find_node
@@ -37,29 +38,26 @@ The last column says what a change does while a target is followed:
 """
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    parser.add_argument(
-        "variant", help="name of the variant, apf for instance; with --markdown, all for every one"
+@dataclass(frozen=True, kw_only=True)
+class Request(VerbRequest):
+    """Request of `params`."""
+
+    variant: str = positional(
+        help="name of the variant, apf for instance; with --markdown, all for every one"
     )
-    forms = parser.add_mutually_exclusive_group()
-    forms.add_argument(
-        "--path", action="store_true", help="print where the installed parameter file is"
-    )
-    forms.add_argument(
-        "--markdown", action="store_true", help="print a table for documents, not YAML"
-    )
+    path: bool = switch(exclusive="form", help="print where the installed parameter file is")
+    markdown: bool = switch(exclusive="form", help="print a table for documents, not YAML")
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Print what is asked for."""
-    if args.markdown and args.variant == ALL:
+    if request.markdown and request.variant == ALL:
         print(all_markdown(), end="")
         return 0
-    variant = find_node(args.variant)
-    if args.path:
+    variant = find_node(request.variant)
+    if request.path:
         print(config_path(variant.name))
-    elif args.markdown:
+    elif request.markdown:
         print(default_markdown(variant), end="")
     else:
         print(default_yaml(variant), end="")

@@ -16,68 +16,70 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.picking import BOXES, POINTS, ask
 from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.requests import option, switch
 from vehicle_pf_tracker.cli.road_pairs import write_pairs
-from vehicle_pf_tracker.cli.shared_options import positive
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption, SourceOptions, positive
 from vehicle_pf_tracker.cli.targets import TargetOption, write_targets
-from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, write_picture
+from vehicle_pf_tracker.core.outputs import claimed
+from vehicle_pf_tracker.evaluation.output_files import write_picture
 from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid
-from vehicle_pf_tracker.recordings.source import frame_at, open_source
+from vehicle_pf_tracker.recordings.source import Source, frame_at, open_source
 from vehicle_pf_tracker.road.calibration import format_pairs
 from vehicle_pf_tracker.road.plane import Pair
 
 PickedT = TypeVar("PickedT")
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add(
-        "source", metavar="SOURCE",
-        help="recording, video file, folder of images, index of a camera, or URL of a stream",
-    )  # fmt: skip
-    add("--frame", type=positive, default=1, metavar="N", help="frame to begin with (default: 1)")
-    add(
-        "-o", "--output", type=Path, metavar="FILE",
+@dataclass(frozen=True, kw_only=True)
+class Request(SourceOptions, OverwriteOption):
+    """Request of `pick`."""
+
+    frame: int = option(
+        type=positive, default=1, metavar="N", help="frame to begin with (default: 1)"
+    )
+    output: Path | None = option(
+        "-o", type=Path, metavar="FILE",
         help="write the targets to FILE, for run --targets, or the points, for road calibrate "
         "--pairs; otherwise they are printed",
     )  # fmt: skip
-    add(
-        "--road", action="store_true",
-        help="pick points of the road instead, four or more, with their places in m",
-    )  # fmt: skip
-    add(
-        "--grid", type=Path, metavar="PNG",
+    road: bool = switch(
+        help="pick points of the road instead, four or more, with their places in m"
+    )
+    grid: Path | None = option(
+        type=Path, metavar="PNG",
         help="no page: write the frame with a grid labelled in px to PNG, to read boxes off",
     )  # fmt: skip
-    add("--topic", help="the image topic, if a recording has several")
-    add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states")
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Serve the page until the user is done, and print or write the targets."""
-    source = open_source(args.source, topic=args.topic, fps=args.fps)
-    if args.grid is not None:
+    source = open_source(request.source, topic=request.topic, fps=request.fps)
+    output = request.output if request.grid is None else request.grid
+    with claimed([output], [request.source], overwrite=request.overwrite):
+        return _pick(request, source)
+
+
+def _pick(request: Request, source: Source) -> int:
+    if request.grid is not None:
         with counting("read") as progress:
-            frame = frame_at(source, args.frame, progress)
-        write_picture(args.grid, draw_pixel_grid(frame))
-        print(f"frame {args.frame} with a grid is in {args.grid}")
+            frame = frame_at(source, request.frame, progress)
+        write_picture(request.grid, draw_pixel_grid(frame))
+        print(f"frame {request.frame} with a grid is in {request.grid}")
         return 0
-    if args.output is not None:
-        make_folder(args.output.parent)
-    if args.road:
-        points = ask(source, POINTS, args.frame)
-        _give(points, args.output, write_pairs, "road calibrate --pairs", _pair_words)
+    if request.road:
+        points = ask(source, POINTS, request.frame)
+        _give(points, request.output, write_pairs, "road calibrate --pairs", _pair_words)
     else:
-        targets = ask(source, BOXES, args.frame)
-        _give(targets, args.output, write_targets, "run --targets", _target_words)
+        targets = ask(source, BOXES, request.frame)
+        _give(targets, request.output, write_targets, "run --targets", _target_words)
     return 0
 
 
@@ -94,8 +96,7 @@ def _give(
     if path is None:
         print(" ".join(words(one) for one in picked))
         return
-    with output_errors(path):
-        write(path, picked)
+    write(path, picked)
     print(f"what was picked ({len(picked)}) is in {path}; use {use} {path}")
 
 

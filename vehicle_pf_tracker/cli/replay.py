@@ -17,16 +17,24 @@
 from __future__ import annotations
 
 import argparse
-import math
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.parameter_options import parse_box
 from vehicle_pf_tracker.cli.replay_progress import progress_view
-from vehicle_pf_tracker.cli.shared_options import add_ros_args
+from vehicle_pf_tracker.cli.requests import option, positional, switch
+from vehicle_pf_tracker.cli.shared_options import (
+    OverwriteOption,
+    RosOption,
+    number,
+    positive_number,
+)
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.estimates import write_estimates
 from vehicle_pf_tracker.evaluation.output_files import make_folder
 from vehicle_pf_tracker.recordings.reader import Recording
@@ -35,77 +43,108 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions, ReplayReport
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb, named as the rosbag2 player's where it has them."""
-    add = parser.add_argument
-    add("recording", type=Path, help="rosbag2 folder or MCAP file")
-    add("-r", "--rate", type=_positive, metavar="X", help="speed, 1.0 is as recorded")
-    add("--start-offset", type=_seconds, default=0.0, metavar="S", help="skip this many seconds")
-    add("--playback-duration", type=_seconds, metavar="S", help="play only this many seconds")
-    add("-l", "--loop", action="store_true", help="restart at the end")
-    add("-d", "--delay", type=_seconds, default=0.0, metavar="S", help="wait before playing")
-    add("--start-paused", action="store_true", help="begin paused, until ~/resume is called")
-    add("--topics", nargs="+", default=[], metavar="TOPIC", help="play these topics only")
-    add("-e", "--regex", type=_pattern, default="", help="play topics that match this whole")
-    add(
+ANSWERS = ("estimates.csv", "*/estimates.csv")
+"""Files of one node, and of each of several."""
+
+
+def _seconds(text: str) -> float:
+    value = number(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"{text} is less than 0")
+    return value
+
+
+def _pattern(text: str) -> str:
+    try:
+        re.compile(text)
+    except re.error as error:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a pattern: {error}") from None
+    return text
+
+
+def _remapping(text: str) -> tuple[str, str]:
+    old, separator, new = text.partition(":=")
+    if not (separator and old and new):
+        raise argparse.ArgumentTypeError(f"{text!r} is not FROM:=TO")
+    return _absolute(old), new
+
+
+def _absolute(topic: str) -> str:
+    return "/" + topic.lstrip("/")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request(RosOption, OverwriteOption):
+    """Request of `replay`, with options named as the rosbag2 player's where it has them."""
+
+    recording: Path = positional(type=Path, help="rosbag2 folder or MCAP file")
+    rate: float | None = option(
+        "-r", type=positive_number, metavar="X", help="speed, 1.0 is as recorded"
+    )
+    start_offset: float = option(
+        type=_seconds, default=0.0, metavar="S", help="skip this many seconds"
+    )
+    playback_duration: float | None = option(
+        type=_seconds, metavar="S", help="play only this many seconds"
+    )
+    loop: bool = switch("-l", help="restart at the end")
+    delay: float = option("-d", type=_seconds, default=0.0, metavar="S", help="wait before playing")
+    start_paused: bool = switch(help="begin paused, until ~/resume is called")
+    topics: Sequence[str] = option(
+        nargs="+", default=[], metavar="TOPIC", help="play these topics only"
+    )
+    regex: str = option("-e", type=_pattern, default="", help="play topics that match this whole")
+    exclude: Sequence[str] = option(
         "--exclude", "--exclude-topics", nargs="+", default=[], metavar="TOPIC",
         help="play all but these topics",
     )  # fmt: skip
-    add(
-        "-x", "--exclude-regex", type=_pattern, default="", metavar="REGEX",
+    exclude_regex: str = option(
+        "-x", type=_pattern, default="", metavar="REGEX",
         help="play all but topics that match this whole",
     )  # fmt: skip
-    add(
-        "--qos-profile-overrides-path", type=Path, metavar="FILE",
+    qos_profile_overrides_path: Path | None = option(
+        type=Path, metavar="FILE",
         help="YAML of QoS by recorded topic; others are published as recorded, but reliably",
     )  # fmt: skip
-    add(
-        "-m", "--remap", nargs="+", action="extend", default=[], type=_remapping,
+    remap: Sequence[tuple[str, str]] = option(
+        "-m", nargs="+", action="extend", default=[], type=_remapping,
         metavar="FROM:=TO", help="publish a recorded topic under another name",
     )  # fmt: skip
-    add(
-        "--clock", nargs="?", type=_positive, const=40.0, metavar="HZ",
+    clock: float | None = option(
+        nargs="?", type=positive_number, const=40.0, metavar="HZ",
         help="publish /clock, 40 times a second unless said otherwise",
     )  # fmt: skip
-    add(
-        "--wait-for-subscribers", action="store_true",
-        help="begin when somebody subscribes to the images",
-    )  # fmt: skip
-    add(
-        "--lockstep", action="store_true",
-        help="publish an image only when every node has answered the one before",
-    )  # fmt: skip
-    add("--decompress", action="store_true", help="publish compressed images as raw ones")
-    _add_tracking_arguments(parser)
-
-
-def _add_tracking_arguments(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
-    add("--topic", metavar="TOPIC", help="the image topic, if the recording has several")
-    add(
-        "--node", action="append", default=[], metavar="NAME",
+    wait_for_subscribers: bool = switch(help="begin when somebody subscribes to the images")
+    lockstep: bool = switch(
+        help="publish an image only when every node has answered the one before"
+    )
+    decompress: bool = switch(help="publish compressed images as raw ones")
+    topic: str | None = option(
+        metavar="TOPIC", help="the image topic, if the recording has several"
+    )
+    node: Sequence[str] = option(
+        action="append", default=[], metavar="NAME",
         help="a tracker node that takes part, repeatable; all that subscribe if none is named",
     )  # fmt: skip
-    target = parser.add_mutually_exclusive_group()
-    target.add_argument(
-        "--target", type=parse_box, metavar="X,Y,W,H",
+    target: Box | None = option(
+        type=parse_box, metavar="X,Y,W,H",
+        exclusive="target",
         help="box to start on in px, top-left corner and size; otherwise the first true box",
     )  # fmt: skip
-    target.add_argument(
-        "--no-target", action="store_true", help="neither set the nodes' targets nor reset them"
+    no_target: bool = switch(
+        exclusive="target", help="neither set the nodes' targets nor reset them"
     )
-    add(
-        "--timeout", type=_positive, default=10.0, metavar="S",
+    timeout: float = option(
+        type=positive_number, default=10.0, metavar="S",
         help="longest wait for a node in seconds (default: 10)",
     )  # fmt: skip
-    add(
-        "-o", "--output", type=Path, metavar="DIR",
+    output: Path | None = option(
+        "-o", type=Path, metavar="DIR",
         help="write what the nodes answered: estimates.csv, in a folder for each of several nodes",
     )  # fmt: skip
-    add_ros_args(parser)
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Play the recording; Ctrl-C ends it normally.
 
     Raises
@@ -113,58 +152,60 @@ def run(args: argparse.Namespace) -> int:
     UsageError
         If options contradict each other, or there is no target to start on.
     """
-    if args.loop and args.output:
+    if request.loop and request.output:
         raise UsageError("-o cannot be combined with --loop, which never ends")
     from vehicle_pf_tracker.ros.replay.interruption import noted_interrupts
     from vehicle_pf_tracker.ros.replay.replaying import NoTargetError, replay
 
-    recording = Recording(args.recording, args.topic)
+    recording = Recording(request.recording, request.topic)
     told = recording.notices
     tell_notices(told)
-    if args.output:
-        make_folder(args.output)
-    with noted_interrupts():
+    outputs = [Products(request.output, ANSWERS)] if request.output else []
+    inputs = (request.recording, request.qos_profile_overrides_path)
+    with claimed(outputs, inputs, overwrite=request.overwrite), noted_interrupts():
+        if request.output:
+            make_folder(request.output)
         try:
             with progress_view() as on_progress:
-                report = replay(recording, options_of(args), on_progress, _tell)
+                report = replay(recording, options_of(request), on_progress, _tell)
         except NoTargetError as error:
             raise UsageError(str(error)) from None
         later = [notice for notice in recording.notices if notice not in told]
         tell_notices([*later, *report.notices])
         print(summary(report), flush=True)
-        if args.output:
-            write_answers(args.output, report.nodes)
+        if request.output:
+            write_answers(request.output, report.nodes)
     return 0
 
 
-def options_of(args: argparse.Namespace) -> ReplayOptions:
+def options_of(request: Request) -> ReplayOptions:
     """Collect the options of a parsed command line."""
     from vehicle_pf_tracker.ros.replay.recorded_qos import read_qos_overrides
     from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
-    qos_file = args.qos_profile_overrides_path
+    qos_file = request.qos_profile_overrides_path
     return ReplayOptions(
-        rate=args.rate,
-        start_offset=args.start_offset,
-        playback_duration=args.playback_duration,
-        loop=args.loop,
-        delay=args.delay,
-        start_paused=args.start_paused,
-        topics=tuple(map(_absolute, args.topics)),
-        regex=args.regex,
-        exclude=tuple(map(_absolute, args.exclude)),
-        exclude_regex=args.exclude_regex,
+        rate=request.rate,
+        start_offset=request.start_offset,
+        playback_duration=request.playback_duration,
+        loop=request.loop,
+        delay=request.delay,
+        start_paused=request.start_paused,
+        topics=tuple(map(_absolute, request.topics)),
+        regex=request.regex,
+        exclude=tuple(map(_absolute, request.exclude)),
+        exclude_regex=request.exclude_regex,
         qos=read_qos_overrides(qos_file) if qos_file else {},
-        remap=dict(args.remap),
-        clock=args.clock,
-        wait_for_subscribers=args.wait_for_subscribers,
-        lockstep=args.lockstep,
-        decompress=args.decompress,
-        nodes=tuple(args.node),
-        target=args.target,
-        set_target=not args.no_target,
-        timeout=args.timeout,
-        ros_args=tuple(args.ros_args),
+        remap=dict(request.remap),
+        clock=request.clock,
+        wait_for_subscribers=request.wait_for_subscribers,
+        lockstep=request.lockstep,
+        decompress=request.decompress,
+        nodes=tuple(request.node),
+        target=request.target,
+        set_target=not request.no_target,
+        timeout=request.timeout,
+        ros_args=tuple(request.ros_args),
     )
 
 
@@ -202,46 +243,3 @@ def summary(report: ReplayReport) -> str:
 
 def _tell(sentence: str) -> None:
     tell_notices([sentence])
-
-
-def _seconds(text: str) -> float:
-    value = _number(text)
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"{text} is less than 0")
-    return value
-
-
-def _positive(text: str) -> float:
-    value = _number(text)
-    if value <= 0:
-        raise argparse.ArgumentTypeError(f"{text} is not more than 0")
-    return value
-
-
-def _number(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
-    return value
-
-
-def _pattern(text: str) -> str:
-    try:
-        re.compile(text)
-    except re.error as error:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a pattern: {error}") from None
-    return text
-
-
-def _remapping(text: str) -> tuple[str, str]:
-    old, separator, new = text.partition(":=")
-    if not (separator and old and new):
-        raise argparse.ArgumentTypeError(f"{text!r} is not FROM:=TO")
-    return _absolute(old), new
-
-
-def _absolute(topic: str) -> str:
-    return "/" + topic.lstrip("/")

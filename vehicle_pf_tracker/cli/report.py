@@ -17,43 +17,16 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import tell_notices
+from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, switch
 from vehicle_pf_tracker.cli.work_progress import stages
+from vehicle_pf_tracker.core.outputs import Products, claimed
 
 FIGURE_FORMATS = ("pdf", "svg", "png")
 """Those of `paper_figures.FORMATS`, which loads matplotlib."""
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add("folder", type=Path, metavar="DIR", help="evaluation folder; the report is written there")
-    add_report_options(parser)
-
-
-def add_report_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that choose the parts of a report."""
-    add = parser.add_argument
-    add(
-        "--no-images", dest="images", action="store_false",
-        help="leave the stills of the recordings out of report.html",
-    )  # fmt: skip
-    add("--video", action="store_true", help="write videos with the boxes to DIR/videos")
-    add(
-        "--recordings", action="store_true",
-        help="write the recordings with truth and all estimates to DIR/estimates, for Foxglove",
-    )  # fmt: skip
-    add(
-        "--figures", type=_formats, default=(), metavar="FORMATS",
-        help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
-        "pdf, svg or png, several with commas",
-    )  # fmt: skip
-    add(
-        "--trajectories", action="store_true",
-        help="write truth and estimates as TUM files to DIR/trajectories, for evo",
-    )  # fmt: skip
 
 
 def _formats(text: str) -> tuple[str, ...]:
@@ -67,18 +40,52 @@ def _formats(text: str) -> tuple[str, ...]:
     return formats
 
 
-def run(args: argparse.Namespace) -> int:
+@dataclass(frozen=True, kw_only=True)
+class ReportParts(VerbRequest):
+    """Parts of a report."""
+
+    images: bool = option(
+        "--no-images", action="store_false",
+        help="leave the stills of the recordings out of report.html",
+    )  # fmt: skip
+    video: bool = switch(help="write videos with the boxes to DIR/videos")
+    recordings: bool = switch(
+        help="write the recordings with truth and all estimates to DIR/estimates, for Foxglove"
+    )
+    figures: tuple[str, ...] = option(
+        type=_formats, default=(), metavar="FORMATS",
+        help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
+        "pdf, svg or png, several with commas",
+    )  # fmt: skip
+    trajectories: bool = switch(
+        help="write truth and estimates as TUM files to DIR/trajectories, for evo"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request(ReportParts):
+    """Request of `report`."""
+
+    folder: Path = positional(
+        type=Path, metavar="DIR", help="evaluation folder; its report is replaced"
+    )
+
+
+def run(request: Request) -> int:
     """Write the report, and print its path."""
-    write(args.folder, args)
+    # A folder that is not there is not made, and `write` says so.
+    outputs = [Products(request.folder)] if request.folder.is_dir() else []
+    with claimed(outputs, [], overwrite=True):
+        write(request.folder, request)
     return 0
 
 
-def write(folder: Path, args: argparse.Namespace) -> None:
-    """Write the report of `folder` as the options of `add_report_options` say."""
+def write(folder: Path, request: ReportParts) -> None:
+    """Write the report of `folder` with the parts that are asked for."""
     from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
 
     options = ReportOptions(
-        args.images, args.video, args.recordings, args.trajectories, args.figures
+        request.images, request.video, request.recordings, request.trajectories, request.figures
     )
     with stages("report") as on_stage:
         page, *_ = write_report(

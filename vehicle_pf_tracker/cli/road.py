@@ -16,8 +16,8 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -25,15 +25,17 @@ import numpy as np
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.picking import POINTS, ask
 from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.requests import option, positional
 from vehicle_pf_tracker.cli.road_pairs import FORM, read_pairs
-from vehicle_pf_tracker.cli.shared_options import positive
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption, positive
+from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.evaluation.output_files import write_picture, write_text
 from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid, draw_road_grid
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
-from vehicle_pf_tracker.recordings.source import frame_at, open_source
+from vehicle_pf_tracker.recordings.source import Source, frame_at, open_source
 from vehicle_pf_tracker.road.calibration import format_pairs, parse_pairs
 from vehicle_pf_tracker.road.lens import MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
@@ -41,65 +43,77 @@ from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
 _TITLE = "Road. Written by `vehicle-pf-tracker road calibrate`."
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add("action", choices=("calibrate",), help="fit the mapping from pixels to metres")
-    add(
-        "source", metavar="SOURCE",
+@dataclass(frozen=True, kw_only=True)
+class Request(OverwriteOption):
+    """Request of `road calibrate`."""
+
+    action: str = positional(choices=("calibrate",), help="fit the mapping from pixels to metres")
+    source: str = positional(
+        metavar="SOURCE",
         help="recording, video, folder of images, camera or stream that shows the road",
     )  # fmt: skip
-    add("--topic", help="the image topic, if a recording has several")
-    add("--frame", type=positive, default=1, metavar="N", help="image to use (default: 1)")
-    add(
-        "--pair", action="append", default=[], metavar="U,V=X,Y", dest="pairs",
+    topic: str | None = option(help="the image topic, if a recording has several")
+    frame: int = option(type=positive, default=1, metavar="N", help="image to use (default: 1)")
+    pairs: Sequence[str] = option(
+        "--pair", action="append", default=[], metavar="U,V=X,Y",
         help="a pixel and the point of the road that it shows, px and m; repeatable; without pairs "
         "a page is served on which to click them",
     )  # fmt: skip
-    add("--pairs", type=Path, metavar="FILE", dest="file", help=f"YAML file with {FORM}")
-    add("--intrinsics", default="", metavar="FX,FY,CX,CY", help="as in CameraInfo")
-    add("--distortion-model", default="none", choices=MODELS)
-    add("--distortion", default="", metavar="K1,K2,…", help="as in CameraInfo")
-    add("--frame-id", default="road", help="frame of the road (default: road)")
-    add(
-        "--grid", type=Path, metavar="PNG",
+    file: Path | None = option("--pairs", type=Path, metavar="FILE", help=f"YAML file with {FORM}")
+    intrinsics: str = option(default="", metavar="FX,FY,CX,CY", help="as in CameraInfo")
+    distortion_model: str = option(default="none", choices=MODELS)
+    distortion: str = option(default="", metavar="K1,K2,…", help="as in CameraInfo")
+    frame_id: str = option(default="road", help="frame of the road (default: road)")
+    grid: Path | None = option(
+        type=Path, metavar="PNG",
         help="picture with the road's lines; without pairs and -o, with pixel coordinates to read "
         "points off instead of a page",
     )  # fmt: skip
-    add("-o", "--output", type=Path, metavar="YAML", help="parameter file for nodes and `run`")
+    output: Path | None = option(
+        "-o", type=Path, metavar="YAML", help="parameter file for nodes and `run`"
+    )
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Fit, print the residuals, and write parameters and picture."""
-    pairs = (*parse_pairs(";".join(args.pairs)), *(read_pairs(args.file) if args.file else ()))
-    source = open_source(args.source, topic=args.topic)
+    pairs = (
+        *parse_pairs(";".join(request.pairs)),
+        *(read_pairs(request.file) if request.file else ()),
+    )
+    source = open_source(request.source, topic=request.topic)
+    inputs = (request.source, request.file)
+    with claimed((request.grid, request.output), inputs, overwrite=request.overwrite):
+        return _calibrate(request, source, pairs)
+
+
+def _calibrate(request: Request, source: Source, pairs: tuple[Pair, ...]) -> int:
     with counting("read") as progress:
-        frame = frame_at(source, args.frame, progress)
-    if not pairs and args.grid is not None and args.output is None:
-        write_picture(args.grid, draw_pixel_grid(frame))
-        print(f"{args.grid}: read off pixels of points whose place on the road you know")
+        frame = frame_at(source, request.frame, progress)
+    if not pairs and request.grid is not None and request.output is None:
+        write_picture(request.grid, draw_pixel_grid(frame))
+        print(f"{request.grid}: read off pixels of points whose place on the road you know")
         return 0
-    pairs = pairs or tuple(ask(source, POINTS, args.frame))
+    pairs = pairs or tuple(ask(source, POINTS, request.frame))
     if not pairs:
         raise UsageError("nothing was picked")
-    road = _road(args, pairs)
+    road = _road(request, pairs)
     plane = road.plane(road.lens, None)
     print(_table(plane, pairs), end="")
-    if args.grid is not None:
-        write_picture(args.grid, draw_road_grid(frame, plane, pairs))
-    if args.output is not None:
-        _write_parameters(args.output, road)
-        print(f"{args.output}: use it with --params, or as params_file of a node")
+    if request.grid is not None:
+        write_picture(request.grid, draw_road_grid(frame, plane, pairs))
+    if request.output is not None:
+        _write_parameters(request.output, road)
+        print(f"{request.output}: use it with --params, or as params_file of a node")
     return 0
 
 
-def _road(args: argparse.Namespace, pairs: tuple[Pair, ...]) -> RoadParameters:
+def _road(request: Request, pairs: tuple[Pair, ...]) -> RoadParameters:
     values = {
         "road.pairs": format_pairs(pairs),
-        "road.intrinsics": args.intrinsics,
-        "road.distortion_model": args.distortion_model,
-        "road.distortion": args.distortion,
-        "road.frame_id": args.frame_id,
+        "road.intrinsics": request.intrinsics,
+        "road.distortion_model": request.distortion_model,
+        "road.distortion": request.distortion,
+        "road.frame_id": request.frame_id,
     }
     return from_mapping(SessionParameters, values).road
 

@@ -23,6 +23,7 @@ from typing import Any
 import yaml
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.output_files import write_text
 from vehicle_pf_tracker.road.calibration import parse_pairs
 from vehicle_pf_tracker.road.plane import Pair
 
@@ -56,4 +57,4 @@ def write_pairs(path: Path, pairs: Sequence[Pair]) -> None:
     """Write a file that `read_pairs` reads."""
     rows = [{"pixel": list(pair.pixel), "road": list(pair.road)} for pair in pairs]
     text = yaml.safe_dump({"pairs": rows}, sort_keys=False, default_flow_style=None)
-    path.write_text(text, encoding="utf-8")
+    write_text(path, text)

@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
@@ -24,14 +23,21 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError, show, tell_notices
-from vehicle_pf_tracker.cli.frames import Numbered, numbered_frames, peeked
+from vehicle_pf_tracker.cli.frames import (
+    Numbered,
+    TrackingRequest,
+    cut_short,
+    numbered_frames,
+    peeked,
+)
 from vehicle_pf_tracker.cli.picture_window import PictureWindow
 from vehicle_pf_tracker.cli.progress import counting
-from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_span
+from vehicle_pf_tracker.cli.requests import option, switch
+from vehicle_pf_tracker.cli.shared_options import MaxDiffOption
 from vehicle_pf_tracker.cli.stopping import stopping
-from vehicle_pf_tracker.cli.targets import by_name, parse_target, read_targets
+from vehicle_pf_tracker.cli.targets import TargetOption, by_name, parse_target, read_targets
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.association import max_diff_ns
 from vehicle_pf_tracker.evaluation.estimates import (
@@ -43,7 +49,14 @@ from vehicle_pf_tracker.evaluation.following import Pictures, follow
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.mode_spans import summary
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
-from vehicle_pf_tracker.evaluation.run_folder import RunFolder, RunInfo, describe_run
+from vehicle_pf_tracker.evaluation.run_folder import (
+    ESTIMATES,
+    METRICS,
+    RUN,
+    RunFolder,
+    RunInfo,
+    describe_run,
+)
 from vehicle_pf_tracker.evaluation.run_recording import OnFrame, run_recording
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.tables import comparison
@@ -55,105 +68,93 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 SHEET = "summary.png"
 TRACKS = "tracks.csv"
+PRODUCTS = (ESTIMATES, METRICS, RUN, SHEET, TRACKS)
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add(
-        "source", metavar="SOURCE",
-        help="recording, video file, folder of images, index of a camera, or URL of a stream",
-    )  # fmt: skip
-    add(
-        "--variant", default="fusion", metavar="NAME",
-        help=f"one of: {', '.join(VARIANTS)} (default: fusion)",
-    )  # fmt: skip
-    add(
-        "-o", "--output", type=Path, metavar="DIR",
+@dataclass(frozen=True, kw_only=True)
+class Request(TrackingRequest, MaxDiffOption):
+    """Request of `run`."""
+
+    variant: str = option(
+        default="fusion", metavar="NAME", help=f"one of: {', '.join(VARIANTS)} (default: fusion)"
+    )
+    output: Path | None = option(
+        "-o", type=Path, metavar="DIR",
         help="folder for estimates.csv, run.json, summary.png, and metrics.json where there is "
-        "truth; those in it are replaced (default: results/ and the source's name)",
+        "truth (default: results/ and the source's name)",
     )  # fmt: skip
-    add("--topic", help="the image topic, if a recording has several")
-    add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states")
-    add_span(parser)
-    add("--targets", type=Path, metavar="FILE", help="targets that `pick` wrote")
-    add(
-        "--video", type=Path, metavar="FILE",
-        help="write the frames with box, path and mode to FILE, an mp4",
-    )  # fmt: skip
-    add(
-        "--recording", type=Path, metavar="OUT",
+    video: Path | None = option(
+        type=Path, metavar="FILE", help="write the frames with box, path and mode to FILE, an mp4"
+    )
+    recording: Path | None = option(
+        type=Path, metavar="OUT",
         help="write images (JPEG), truth, estimates and Foxglove's annotations to the rosbag2 "
-        "folder OUT; a recording there is replaced",
+        "folder OUT",
     )  # fmt: skip
-    add("--show", action="store_true", help="show them in a window meanwhile; q ends the run")
-    add("--particles", action="store_true", help="draw the particles too")
-    add_max_diff(parser)
-    add(
-        "--interpolate-occlusions", action="store_true",
+    particles: bool = switch(help="draw the particles too")
+    interpolate_occlusions: bool = switch(
         help="add columns to estimates.csv with the path drawn straight through the frames that "
         "are not TRACKING; they are not scored",
     )  # fmt: skip
-    parameter_options.add_arguments(parser)
-    add(
-        "--target", type=parse_target, action="append", default=[],
+    target: Sequence[TargetOption] = option(
+        type=parse_target, action="append", default=[],
         metavar="[NAME][@FRAME:]X,Y,W,H",
         help="box to start on in px, top-left corner and size, in the first frame or in FRAME; "
         "repeatable, for several vehicles or to correct one later; otherwise the first true box",
     )  # fmt: skip
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Track, write the results, and print a summary of each target."""
-    variant = find_variant(args.variant)
-    source = open_source(args.source, topic=args.topic, fps=args.fps)
-    folder = RunFolder(args.output or Path("results", Path(args.source).stem or "run"))
-    window = PictureWindow(args.source) if args.show else None
+    variant = find_variant(request.variant)
+    source = open_source(request.source, topic=request.topic, fps=request.fps)
+    path = request.output or Path("results", Path(request.source).stem or "run")
+    outputs = (Products(path, PRODUCTS), request.video, request.recording)
+    with claimed(outputs, request.inputs, overwrite=request.overwrite):
+        return _track(request, variant, source, RunFolder(path))
+
+
+def _track(request: Request, variant: Variant, source: Source, folder: RunFolder) -> int:
+    window = PictureWindow(request.source) if request.show else None
     show_in = window.show if window else None
-    pictures = Pictures(args.video, particles=args.particles, show=show_in)
+    pictures = Pictures(request.video, particles=request.particles, show=show_in)
     with stopping() as stop, counting("tracked") as progress:
-        first, frames = peeked(numbered_frames(source, args, stop, progress))
-        targets = _targets(variant, source, args, first)
+        first, frames = peeked(numbered_frames(source, request, stop, progress))
+        targets = _targets(variant, source, request, first)
         trackers = {name: one.tracker for name, one in targets.items()}
-        with _recording(args, variant, source, list(trackers)) as on_frame:
+        with _recording(request, variant, source, list(trackers)) as on_frame:
             rows = follow(trackers, _doubting(frames, targets), pictures, on_frame)
     notices = list(source.notices)
     for tracker in trackers.values():
         notices += [*tracker.notices, *tracker.road_notices]
-    if args.video and not has_encoder():
+    if request.video and not has_encoder():
         notices.append(NO_ENCODER)
-    was_cut_short = stop.came and source.frame_count is not None  # a live source ends so
-    if was_cut_short:
-        done = max(len(found) for found in rows.values())
-        notices.append(f"a signal ended the run after {done} of {source.frame_count} frames")
+    ended = cut_short(stop, source, max(map(len, rows.values())))
+    notices += ended
     tell_notices(notices)
-    _write(folder, args, source, trackers, rows, notices)
+    _write(folder, request, source, trackers, rows, notices)
     pictures.sheet.write(folder.path / SHEET)
     for name, found in rows.items():
         print(f"{name + ': ' if len(rows) > 1 else ''}{summary(found)}")
     print(f"results are in {folder.path}; {SHEET} shows the key frames")
-    if args.video:
-        print(f"the video is {args.video}")
-    if args.recording:
-        print(f"the recording is {args.recording}, for Foxglove and `ros2 bag play`")
-    return stop.status if was_cut_short else 0
+    if request.video:
+        print(f"the video is {request.video}")
+    if request.recording:
+        print(f"the recording is {request.recording}, for Foxglove and `ros2 bag play`")
+    return stop.status if ended else 0
 
 
 def _recording(
-    args: argparse.Namespace, variant: Variant, source: Source, targets: Sequence[str]
+    request: Request, variant: Variant, source: Source, targets: Sequence[str]
 ) -> AbstractContextManager[OnFrame | None]:
-    if args.recording is None:
+    if request.recording is None:
         return nullcontext()
-    place = args.recording.expanduser().resolve()
-    for taken in (Path(args.source), args.output):
-        if taken is not None and place == taken.expanduser().resolve():
-            raise InputError(f"--recording {args.recording} is taken; name another folder")
-    return run_recording(args.recording, f"{variant.name}_tracker", targets, source.truth())
+    return run_recording(request.recording, f"{variant.name}_tracker", targets, source.truth())
 
 
 def _write(
     folder: RunFolder,
-    args: argparse.Namespace,
+    request: Request,
     source: Source,
     trackers: Mapping[str, OfflineTracker],
     rows: Mapping[str, Sequence[EstimateRow]],
@@ -163,20 +164,22 @@ def _write(
     for earlier in (TRACKS, SHEET):
         (folder.path / earlier).unlink(missing_ok=True)
     for name, tracker in trackers.items():
-        info = RunInfo(args.command, args.source, source.image_topic, tracker.start_frame, notices)
+        info = RunInfo(
+            request.command, request.source, source.image_topic, tracker.start_frame, notices
+        )
         part = folder if len(trackers) == 1 else RunFolder(folder.path / name)
         extra: dict[str, list[float | None]] = tracker.road_columns
-        if args.interpolate_occlusions:
+        if request.interpolate_occlusions:
             extra |= interpolated_columns(rows[name])
         part.write_run(rows[name], describe_run(info, tracker.session), extra)
     if len(trackers) > 1:
         write_tracks(folder.path / TRACKS, rows)
         return
     (found,) = rows.values()
-    metrics = measure(score_frames(found, source.truth(), args.max_diff))
+    metrics = measure(score_frames(found, source.truth(), request.max_diff))
     folder.write_metrics(metrics)
     if metrics.frames_scored:
-        show(comparison({args.variant: metrics}))
+        show(comparison({request.variant: metrics}))
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,16 +191,16 @@ class _Target:
 
 
 def _targets(
-    variant: Variant, source: Source, args: argparse.Namespace, first: tuple[int, StampedFrame]
+    variant: Variant, source: Source, request: Request, first: tuple[int, StampedFrame]
 ) -> dict[str, _Target]:
     """Make a tracker for each target; without any, one that starts on the first true box."""
-    options = [*args.target, *(read_targets(args.targets) if args.targets else [])]
-    configuration = parameter_options.chosen(variant, args)
+    options = [*request.target, *(read_targets(request.targets) if request.targets else [])]
+    configuration = parameter_options.chosen(variant, request)
     parameters, settings = configuration.tracker, configuration.session
     if not options:
-        truth = None if settings.target.box else _first_truth(source, args, first[1].stamp_ns)
+        truth = None if settings.target.box else _first_truth(source, request, first[1].stamp_ns)
         tracker = OfflineTracker(
-            variant, parameters, settings, first_truth=truth, max_diff=args.max_diff
+            variant, parameters, settings, first_truth=truth, max_diff=request.max_diff
         )
         box = settings.target.box
         return {"1": _Target(tracker, {first[0]: box} if box else {})}
@@ -206,17 +209,17 @@ def _targets(
         initial = boxes.get(first[0])
         later = {frame: box for frame, box in boxes.items() if frame != first[0]}
         own = with_target(settings, initial) if initial else settings
-        tracker = OfflineTracker(variant, parameters, own, targets=later, max_diff=args.max_diff)
+        tracker = OfflineTracker(variant, parameters, own, targets=later, max_diff=request.max_diff)
         made[name] = _Target(tracker, boxes)
     return made
 
 
-def _first_truth(source: Source, args: argparse.Namespace, first_ns: int) -> Truth:
-    earliest = first_ns - max_diff_ns(args.max_diff)
+def _first_truth(source: Source, request: Request, first_ns: int) -> Truth:
+    earliest = first_ns - max_diff_ns(request.max_diff)
     truth = next((t for t in source.truth() if t.stamp_ns >= earliest), None)
     if truth is None:
         raise UsageError(
-            f"{args.source} has no truth to start on; give the vehicle's box in the first image "
+            f"{request.source} has no truth to start on; give the vehicle's box in the first image "
             "with --target x,y,w,h"
         )
     return truth

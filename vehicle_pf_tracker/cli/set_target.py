@@ -16,30 +16,33 @@
 
 from __future__ import annotations
 
-import argparse
-import math
+from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.parameter_options import parse_box
-from vehicle_pf_tracker.cli.shared_options import add_ros_args
+from vehicle_pf_tracker.cli.requests import option, positional
+from vehicle_pf_tracker.cli.shared_options import RosOption, positive_number
+from vehicle_pf_tracker.core.box import Box
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add("node", metavar="NODE", help="name of the node, with its namespace: front/apf_tracker")
-    add(
-        "box", type=parse_box, metavar="X,Y,W,H",
+@dataclass(frozen=True, kw_only=True)
+class Request(RosOption):
+    """Request of `set-target`."""
+
+    node: str = positional(
+        metavar="NODE", help="name of the node, with its namespace: front/apf_tracker"
+    )
+    box: Box = positional(
+        type=parse_box, metavar="X,Y,W,H",
         help="box of the vehicle in px of the image, top-left corner and size",
     )  # fmt: skip
-    add(
-        "--timeout", type=_positive, default=10.0, metavar="S",
+    timeout: float = option(
+        type=positive_number, default=10.0, metavar="S",
         help="longest wait for the node in seconds (default: 10)",
     )  # fmt: skip
-    add_ros_args(parser)
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Publish the target and say so.
 
     Raises
@@ -47,20 +50,10 @@ def run(args: argparse.Namespace) -> int:
     UsageError
         If the box has no area.
     """
-    if args.box.width <= 0 or args.box.height <= 0:
-        raise UsageError(f"the box {args.box} has no area; give x,y,w,h with w and h above 0")
+    if request.box.width <= 0 or request.box.height <= 0:
+        raise UsageError(f"the box {request.box} has no area; give x,y,w,h with w and h above 0")
     from vehicle_pf_tracker.ros.target_request import set_target
 
-    name = set_target(args.node, args.box, args.timeout, args.ros_args)
-    print(f"{name} has got the target {args.box}: it starts with the next image")
+    name = set_target(request.node, request.box, request.timeout, request.ros_args)
+    print(f"{name} has got the target {request.box}: it starts with the next image")
     return 0
-
-
-def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not (math.isfinite(value) and value > 0):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0")
-    return value

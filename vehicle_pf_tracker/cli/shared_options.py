@@ -17,35 +17,53 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, switch
 from vehicle_pf_tracker.evaluation.association import MAX_DIFF
-from vehicle_pf_tracker.recordings.span import Moment
 
 
-def add_max_diff(parser: argparse.ArgumentParser) -> None:
-    """Add what association of estimates and truth needs."""
-    parser.add_argument(
-        "--max-diff", type=float, default=MAX_DIFF, metavar="S",
+@dataclass(frozen=True, kw_only=True)
+class OverwriteOption(VerbRequest):
+    """Request that can replace outputs."""
+
+    overwrite: bool = switch(help="replace outputs that exist")
+
+
+@dataclass(frozen=True, kw_only=True)
+class MaxDiffOption(VerbRequest):
+    """Request that associates estimates and truth."""
+
+    max_diff: float = option(
+        type=float, default=MAX_DIFF, metavar="S",
         help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
     )  # fmt: skip
 
 
-def add_workers(parser: argparse.ArgumentParser) -> None:
-    """Add the number of processes."""
-    parser.add_argument(
-        "--workers", type=positive, default=os.cpu_count() or 1, metavar="N",
-        help="processes; results do not depend on it (default: one per processor)",
-    )  # fmt: skip
+@dataclass(frozen=True, kw_only=True)
+class RosOption(VerbRequest):
+    """Request with an option after which all words are ROS's."""
+
+    ros_args: Sequence[str] = option(
+        nargs=argparse.REMAINDER, default=[], metavar="...", help="all words after this go to ROS"
+    )
 
 
-def add_ros_args(parser: argparse.ArgumentParser) -> None:
-    """Add the option after which all words are ROS's."""
-    parser.add_argument(
-        "--ros-args", nargs=argparse.REMAINDER, default=[], metavar="...",
-        help="all words after this go to ROS",
+@dataclass(frozen=True, kw_only=True)
+class SourceOptions(VerbRequest):
+    """Request that reads images of any source."""
+
+    source: str = positional(
+        metavar="SOURCE",
+        help="recording, video file, folder of images, index of a camera, or URL of a stream",
     )  # fmt: skip
+    topic: str | None = option(help="the image topic, if a recording has several")
+    fps: float | None = option(
+        type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states"
+    )
 
 
 def positive(text: str) -> int:
@@ -64,17 +82,30 @@ def _at_least(least: int, text: str) -> int:
     return int(text)
 
 
-def add_span(parser: argparse.ArgumentParser) -> None:
-    """Add the part of the source."""
-    parser.add_argument(
-        "--start", type=_moment, metavar="AT",
-        help="first frame: its number, from 1, or its time in seconds, as 4.3s",
-    )  # fmt: skip
-    parser.add_argument("--end", type=_moment, metavar="AT", help="last frame, likewise")
+def positive_number(text: str) -> float:
+    """Read a finite number above 0."""
+    value = number(text)
+    if value <= 0:
+        raise argparse.ArgumentTypeError(f"{text} is not more than 0")
+    return value
 
 
-def _moment(text: str) -> Moment:
+def number(text: str) -> float:
+    """Read a finite number."""
     try:
-        return Moment.parse(text)
-    except InputError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return value
+
+
+@dataclass(frozen=True, kw_only=True)
+class WorkersOption(VerbRequest):
+    """Request for work in several processes."""
+
+    workers: int = option(
+        type=positive, default=os.cpu_count() or 1, metavar="N",
+        help="processes; results do not depend on it (default: one per processor)",
+    )  # fmt: skip

@@ -16,49 +16,51 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli.console import UsageError, print_table, tell_notices
+from vehicle_pf_tracker.cli.console import UsageError, print_rows, tell_notices
+from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.shared_options import positive
-from vehicle_pf_tracker.cli.system_options import chosen
+from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest, chosen
 from vehicle_pf_tracker.cli.work_progress import telling
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.stress import Case, Result, StressSystem
-    from vehicle_pf_tracker.evaluation.stress.summary import Group
 
-SEEDS = 1
-"""Runs of each case: a battery has variation enough, and many seeds of one case are no more."""
 STORE = "scores.jsonl"
 _OTHERS = ("scheduler", "timing", "shifted_starts", "start_frames", "restarts", "max_rmse")
 """Options of the grid that do not apply to the battery."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the battery."""
-    add = parser.add_argument_group("stress battery, instead of the grid").add_argument
-    add(
-        "--stress", choices=("quick", "full"),
+@dataclass(frozen=True, kw_only=True)
+class StressRequest(EvaluationRequest):
+    """Request of the battery."""
+
+    GROUP = "stress battery, instead of the grid"
+
+    stress: str | None = option(
+        choices=("quick", "full"),
         help="run systems over cases made of the recordings or frame folders REC: quick, 8 short "
         "ones of each; full, about 55; see docs/evaluation.md",
     )  # fmt: skip
-    add("--kinds", metavar="NAME,…", help="only cases of these kinds")
-    add(
-        "--per-sequence", type=positive, metavar="N",
-        help="at most N cases of each sequence, of all groups in turns",
-    )  # fmt: skip
-    add("--limit", type=positive, metavar="N", help="at most N cases, evenly spread")
-    add("--max-frames", type=positive, metavar="N", help="at most N frames of each case")
-    add(
-        "--cameras", type=Path, metavar="FILE",
+    kinds: str | None = option(metavar="NAME,…", help="only cases of these kinds")
+    per_sequence: int | None = option(
+        type=positive, metavar="N", help="at most N cases of each sequence, of all groups in turns"
+    )
+    limit: int | None = option(type=positive, metavar="N", help="at most N cases, evenly spread")
+    max_frames: int | None = option(
+        type=positive, metavar="N", help="at most N frames of each case"
+    )
+    cameras: Path | None = option(
+        type=Path, metavar="FILE",
         help="table sequence,camera (default: cameras.csv in a folder REC; else each its own)",
     )  # fmt: skip
 
 
-def check(args: argparse.Namespace) -> None:
+def check(request: StressRequest) -> None:
     """Refuse options that go with the grid only, or with the battery only.
 
     Raises
@@ -67,77 +69,63 @@ def check(args: argparse.Namespace) -> None:
         If there is one.
     """
     own = ("kinds", "per_sequence", "limit", "max_frames", "cameras")
-    wrong = _OTHERS if args.stress else own
+    wrong = _OTHERS if request.stress else own
     for name in wrong:
-        if getattr(args, name) not in {None, False}:
+        if getattr(request, name) not in {None, False}:
             option = "--" + name.replace("_", "-")
             raise UsageError(
-                f"{option} does not go {'with' if args.stress else 'without'} --stress"
+                f"{option} does not go {'with' if request.stress else 'without'} --stress"
             )
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: StressRequest) -> int:
     """Run the missing cases of the battery, write its report, and print its tables."""
     from vehicle_pf_tracker.evaluation.stress import run_battery
-    from vehicle_pf_tracker.evaluation.stress.report import MARKDOWN, write_report
+    from vehicle_pf_tracker.evaluation.stress.report import MARKDOWN, table_rows, write_report
 
-    systems, cases = _systems(args), _cases(args)
-    count = args.seeds or SEEDS
-    seeds = range(args.first_seed, args.first_seed + count)
+    systems, cases = _systems(request), _cases(request)
+    count = request.seeds or FEW_SEEDS
+    seeds = range(request.first_seed, request.first_seed + count)
     tell_notices([f"{len(cases)} cases of {len({case.sequence for case in cases})} sequences"])
     with telling("stress") as on_progress:
         results = run_battery(
-            cases, systems, seeds=seeds, workers=args.workers, store=args.output / STORE,
+            cases, systems, seeds=seeds, workers=request.workers, store=request.output / STORE,
             on_progress=on_progress,
         )  # fmt: skip
-    found = write_report(results, args.output, _options(args, results))
+    found = write_report(results, request.output, _options(request, results))
     for by in ("(all)", "kind"):
-        _show([group for group in found if group.by == by])
-    print(f"the report is {args.output / MARKDOWN}")
+        groups = [group for group in found if group.by == by]
+        print_rows(*table_rows(groups, intervals=False))
+    print(f"the report is {request.output / MARKDOWN}")
     return 0
 
 
-def _systems(args: argparse.Namespace) -> list[StressSystem]:
+def _systems(request: StressRequest) -> list[StressSystem]:
     from vehicle_pf_tracker.evaluation.stress import StressSystem
 
-    systems, notes = chosen(args)
+    systems, notes = chosen(request)
     tell_notices(notes)
     return [StressSystem.of(system) for system in systems]
 
 
-def _cases(args: argparse.Namespace) -> list[Case]:
+def _cases(request: StressRequest) -> list[Case]:
     from vehicle_pf_tracker.evaluation.stress import find_sequences, list_cases
     from vehicle_pf_tracker.evaluation.stress.battery import QUICK_FRAMES, QUICK_PER_SEQUENCE
 
-    is_quick = args.stress == "quick"
+    is_quick = request.stress == "quick"
     return list_cases(
-        find_sequences([Path(source) for source in args.sources], args.cameras),
-        kinds=args.kinds.split(",") if args.kinds else None,
-        per_sequence=args.per_sequence or (QUICK_PER_SEQUENCE if is_quick else None),
-        limit=args.limit,
-        max_frames=args.max_frames or (QUICK_FRAMES if is_quick else None),
+        find_sequences([Path(source) for source in request.sources], request.cameras),
+        kinds=request.kinds.split(",") if request.kinds else None,
+        per_sequence=request.per_sequence or (QUICK_PER_SEQUENCE if is_quick else None),
+        limit=request.limit,
+        max_frames=request.max_frames or (QUICK_FRAMES if is_quick else None),
     )
 
 
-def _options(args: argparse.Namespace, results: Sequence[Result]) -> dict[str, object]:
+def _options(request: StressRequest, results: Sequence[Result]) -> dict[str, object]:
     return {
-        "command": args.command,
-        "stress": args.stress,
+        "command": request.command,
+        "stress": request.stress,
         "runs": len(results),
         "seeds": sorted({result.seed for result in results}),
     }
-
-
-def _show(found: Sequence[Group]) -> None:
-    from rich.table import Table
-    from rich.text import Text
-
-    from vehicle_pf_tracker.evaluation.stress.report import table_rows
-
-    headings, rows = table_rows(found, intervals=False)
-    table = Table()
-    for heading in headings:
-        table.add_column(Text(heading), justify="right")
-    for row in rows:
-        table.add_row(*map(Text, row))
-    print_table(table)

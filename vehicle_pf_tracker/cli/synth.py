@@ -16,16 +16,19 @@
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
 from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.requests import option, positional, switch
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.evaluation.output_files import write_text
 from vehicle_pf_tracker.evaluation.video_writer import (
     NO_ENCODER,
@@ -46,73 +49,73 @@ from vehicle_pf_tracker.scenes.traffic_catalogue import (
 from vehicle_pf_tracker.scenes.traffic_settings import TrafficSceneParameters
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    names = ", ".join((*SCENES, *TRAFFIC_SCENES))
-    add("scene", nargs="?", metavar="SCENE", help=f"one of: {names}")
-    add(
-        "out", nargs="?", type=Path, metavar="OUT",
+@dataclass(frozen=True, kw_only=True)
+class Request(OverwriteOption):
+    """Request of `synth`."""
+
+    scene: str | None = positional(
+        nargs="?", metavar="SCENE", help=f"one of: {', '.join((*SCENES, *TRAFFIC_SCENES))}"
+    )
+    out: Path | None = positional(
+        nargs="?", type=Path, metavar="OUT",
         help="rosbag2 folder to write; or a video, NAME.mp4, with its truth in NAME.csv; the "
         "scenes traffic-* are written as MOTChallenge folders",
     )  # fmt: skip
-    add("--list", action="store_true", help="list the scenes and their settings")
-    add("--seed", type=int, default=0, help="changes textures, noise and traffic (default: 0)")
-    add(
-        "--set", action="append", default=[], metavar="NAME=VALUE", dest="settings",
+    list: bool = switch(help="list the scenes and their settings")
+    seed: int = option(type=int, default=0, help="changes textures, noise and traffic (default: 0)")
+    settings: Sequence[str] = option(
+        "--set", action="append", default=[], metavar="NAME=VALUE",
         help="set a setting of the scene; repeatable",
     )  # fmt: skip
-    add(
-        "--format", choices=FORMATS,
-        help="pixels, or JPEG files, in a recording (default: raw)",
-    )  # fmt: skip
-    add("--overwrite", action="store_true", help="overwrite an existing recording or video")
+    format: str | None = option(
+        choices=FORMATS, help="pixels, or JPEG files, in a recording (default: raw)"
+    )
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Render the scene, and print a summary."""
-    if args.list:
+    if request.list:
         print("\n".join(_listing()))
         return 0
-    if args.scene is None or args.out is None:
+    if request.scene is None or request.out is None:
         raise UsageError("synth needs SCENE and OUT; `synth --list` shows the scenes")
-    if args.scene in TRAFFIC_SCENES:
-        return _run_traffic(args)
-    if args.scene not in SCENES:
+    if request.scene in TRAFFIC_SCENES:
+        return _run_traffic(request, request.scene, request.out)
+    if request.scene not in SCENES:
         names = (*SCENES, *TRAFFIC_SCENES)
         raise InputError(
-            f"there is no scene {args.scene!r}{suggestion(args.scene, names)}; choose one of "
+            f"there is no scene {request.scene!r}{suggestion(request.scene, names)}; choose one of "
             f"{', '.join(names)}"
         )
-    scene = make_scene(args.scene, seed=args.seed, settings=args.settings)
+    scene = make_scene(request.scene, seed=request.seed, settings=request.settings)
     facts = (
-        f"{args.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
+        f"{request.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
         f"at {scene.frame_rate:g} frames/s"
     )
-    if args.out.suffix != SUFFIX:
-        record_scene(scene, args.out, args.format or "raw", overwrite=args.overwrite)
+    if request.out.suffix != SUFFIX:
+        with claimed([request.out], [], overwrite=request.overwrite):
+            record_scene(scene, request.out, request.format or "raw", overwrite=request.overwrite)
         print(f"{facts}, all with truth")
         return 0
-    if args.format:
+    if request.format:
         raise UsageError("--format is for recordings; a video is H.264 or MPEG-4")
-    truth, box = _film(scene, args.out, overwrite=args.overwrite)
+    truth, box = _film(scene, request.out, overwrite=request.overwrite)
     if not has_encoder():
         tell_notices([NO_ENCODER])
     print(f"{facts}; the truth is in {truth}, and begins with --target {_words(box)}")
     return 0
 
 
-def _run_traffic(args: argparse.Namespace) -> int:
-    if args.format or args.overwrite or args.out.suffix == SUFFIX:
+def _run_traffic(request: Request, name: str, out: Path) -> int:
+    if request.format or request.overwrite or out.suffix == SUFFIX:
         raise UsageError(
-            f"{args.scene} is written as a new MOTChallenge folder: no video, --format or "
-            "--overwrite"
+            f"{name} is written as a new MOTChallenge folder: no video, --format or --overwrite"
         )
-    scene = make_traffic_scene(args.scene, seed=args.seed, settings=args.settings)
-    with counting("rendered") as progress:
-        write_mot_folder(scene, args.out, args.seed, progress)
+    scene = make_traffic_scene(name, seed=request.seed, settings=request.settings)
+    with claimed([out], [], overwrite=False), counting("rendered") as progress:
+        write_mot_folder(scene, out, request.seed, progress)
     print(
-        f"{args.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
+        f"{out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
         f"at {scene.frame_rate:g} frames/s, with truth of {len(scene.vehicles)} vehicles"
     )
     return 0
@@ -136,12 +139,10 @@ def record_scene(scene: Scene, out: Path, form: str = "raw", *, overwrite: bool 
 def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
     """Render `scene` into a video, and its truth into a table; return the table and first box."""
     table = out.with_suffix(".csv")
-    for path in (out, table):
-        if path.exists() and not overwrite:
-            raise InputError(f"{path} exists; give --overwrite to replace it")
     lines, boxes = ["frame,x,y,w,h,occ"], []
     size = scene.width, scene.height
     with (
+        claimed([out, table], [], overwrite=overwrite),
         video_writer(out, size, scene.frame_rate) as writer,
         counting("rendered") as progress,
     ):
@@ -152,7 +153,7 @@ def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
             cells = (f"{value:.3f}" for value in (box.x, box.y, box.width, box.height))
             lines.append(f"{number},{','.join(cells)},{rendered.truth.occlusion.value}")
             progress(number, scene.frame_count)
-    write_text(table, "\n".join(lines) + "\n")
+        write_text(table, "\n".join(lines) + "\n")
     return table, boxes[0]
 
 

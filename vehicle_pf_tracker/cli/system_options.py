@@ -16,8 +16,8 @@
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,6 +30,8 @@ from vehicle_pf_tracker.cli.parameter_sets import (
     read_sets,
     settable,
 )
+from vehicle_pf_tracker.cli.requests import option, positional, switch
+from vehicle_pf_tracker.cli.shared_options import WorkersOption, natural, positive
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Baseline, unknown_baseline
 from vehicle_pf_tracker.evaluation.grid.systems import (
@@ -44,66 +46,59 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
+SEEDS, FEW_SEEDS = 5, 1
+"""Runs of each system; few where the cases vary more than the seeds of one case do."""
 ALL, ALL_BASELINES = "all", "baselines"
-_FORMER_BASELINE, _FORMER_ALL_BASELINES = "peer:", "peers"
-_RENAMED_OPTIONS = {
-    "--peers-python": "--baselines-python",
-    "--peer-model": "--baseline-model",
-}
-"""The options by their former names, which are refused with a sentence."""
 _BASELINES_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not models)
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options that choose systems."""
-    add = parser.add_argument
-    add(
-        "--variants", default=ALL, metavar="NAME,…",
+@dataclass(frozen=True, kw_only=True)
+class EvaluationRequest(WorkersOption):
+    """Request to compare systems, in any way."""
+
+    sources: Sequence[str] = positional(
+        nargs="+", metavar="REC",
+        help="rosbag2 folder or MCAP file with truth, a folder of such, or a URL of one",
+    )  # fmt: skip
+    output: Path = option(
+        "-o", type=Path, required=True, metavar="DIR",
+        help="evaluation folder; finished runs in it are kept, the report is written anew",
+    )  # fmt: skip
+    seeds: int | None = option(
+        type=positive, metavar="N",
+        help=f"seeds of each stochastic system (default: {SEEDS}, with --stress "
+        f"{FEW_SEEDS})",
+    )  # fmt: skip
+    first_seed: int = option(type=natural, default=0, metavar="S", help="the first of the seeds")
+    variants: str = option(
+        default=ALL, metavar="NAME,…",
         help=f"what to compare: {', '.join(VARIANTS)}; {BASELINE}NAME of OpenCV's "
         f"{', '.join(MODELS)}; {ALL} (default) for all variants, {ALL_BASELINES} for "
         f"{', '.join(_BASELINES_WITHOUT_MODELS)}",
     )  # fmt: skip
-    add(
-        "--params", action="append", default=[], metavar="[VARIANT@]LABEL=FILE",
+    params: Sequence[str] = option(
+        action="append", default=[], metavar="[VARIANT@]LABEL=FILE",
         help="run a parameter file too, under this label; for all variants that it fits, or one",
     )  # fmt: skip
-    add(
-        "--set", action="append", default=[], dest="assignments",
+    assignments: Sequence[str] = option(
+        "--set", action="append", default=[],
         metavar="[[VARIANT@]LABEL:]NAME=VALUE",
         help="set a parameter: everywhere, or to make or complete the parameter set LABEL",
     )  # fmt: skip
-    add(
-        "--without-defaults", action="store_true",
-        help="run the parameter sets alone, where a variant has any",
-    )  # fmt: skip
-    add(
-        "--baselines-python", type=Path, metavar="FILE",
+    without_defaults: bool = switch(help="run the parameter sets alone, where a variant has any")
+    baselines_python: Path | None = option(
+        type=Path, metavar="FILE",
         help="interpreter of the baselines (default: .venv-baselines/bin/python, built by "
         "`make baselines`)",
     )  # fmt: skip
-    add(
-        "--baseline-model", action="append", default=[], metavar="BASELINE:NAME=FILE",
+    baseline_model: Sequence[str] = option(
+        action="append", default=[], metavar="BASELINE:NAME=FILE",
         help="model file of a baseline that needs some, as vit:net=vit.onnx; repeatable",
     )  # fmt: skip
-    for old, new in _RENAMED_OPTIONS.items():
-        add(old, action=_RenamedOption, const=new, help=argparse.SUPPRESS)
 
 
-class _RenamedOption(argparse.Action):
-    """Refuses an option under its name before 0.2, and says the new one."""
-
-    def __call__(
-        self,
-        parser: argparse.ArgumentParser,
-        namespace: argparse.Namespace,
-        values: object,
-        option_string: str | None = None,
-    ) -> None:
-        parser.error(f"{option_string} is now called {self.const}")
-
-
-def chosen(args: argparse.Namespace) -> tuple[list[System], list[str]]:
-    """Return the systems that the options of `add_arguments` choose, and notes about them.
+def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
+    """Return the systems that a request asks for, and notes about them.
 
     Raises
     ------
@@ -112,21 +107,23 @@ def chosen(args: argparse.Namespace) -> tuple[list[System], list[str]]:
     UsageError
         If an option is malformed.
     """
-    words = _words(args.variants)
+    words = _words(request.variants)
     variants = [find_variant(word) for word in words if not word.startswith(BASELINE)]
-    everywhere, sets = read_sets(args.params, args.assignments)
+    everywhere, sets = read_sets(request.params, request.assignments)
     check_sets(variants, everywhere, sets)
     fitting, notes = fitting_sets(variants, sets)
     systems: list[System] = []
     for variant in variants:
         own = fitting[variant.name]
-        defaults = [] if own and args.without_defaults else [ParameterSet("")]
+        defaults = [] if own and request.without_defaults else [ParameterSet("")]
         systems += [_variant_system(variant, each, everywhere) for each in [*defaults, *own]]
-    models = _models(args.baseline_model)
+    models = _models(request.baseline_model)
     for word in words:
         if word.startswith(BASELINE):
             systems.append(
-                _baseline_system(word.removeprefix(BASELINE), args.baselines_python, models, notes)
+                _baseline_system(
+                    word.removeprefix(BASELINE), request.baselines_python, models, notes
+                )
             )
     return systems, notes
 
@@ -134,7 +131,6 @@ def chosen(args: argparse.Namespace) -> tuple[list[System], list[str]]:
 def _words(text: str) -> list[str]:
     words: list[str] = []
     for word in text.split(","):
-        _refuse_former_name(word)
         if word == ALL:
             words += VARIANTS
         elif word == ALL_BASELINES:
@@ -144,14 +140,6 @@ def _words(text: str) -> list[str]:
     if not words:
         raise UsageError(f"--variants names none; choose of {', '.join([*VARIANTS, ALL])}")
     return list(dict.fromkeys(words))
-
-
-def _refuse_former_name(word: str) -> None:
-    if word == _FORMER_ALL_BASELINES:
-        raise UsageError(f"--variants: {word} is now called {ALL_BASELINES}")
-    if word.startswith(_FORMER_BASELINE):
-        new = BASELINE + word.removeprefix(_FORMER_BASELINE)
-        raise UsageError(f"--variants: {word} is now called {new}")
 
 
 def _variant_system(

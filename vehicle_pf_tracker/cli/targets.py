@@ -27,6 +27,7 @@ import yaml
 from vehicle_pf_tracker.cli.parameter_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.output_files import write_text
 
 _WORDS = re.compile(r"(?:(?P<name>[A-Za-z0-9_-]*)(?:@(?P<frame>[0-9]{1,9}))?:)?(?P<box>[^:@]*)")
 
@@ -92,7 +93,7 @@ def write_targets(path: Path, targets: Iterable[TargetOption]) -> None:
         {"name": one.name, "frame": one.frame or 1, "box": _numbers(one.box)} for one in targets
     ]
     text = yaml.safe_dump({"targets": entries}, sort_keys=False, default_flow_style=None)
-    path.write_text(text, encoding="utf-8")
+    write_text(path, text)
 
 
 def by_name(targets: Iterable[TargetOption], first: int) -> dict[str, dict[int, Box]]:

@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
@@ -26,13 +25,14 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError, tell_notices
-from vehicle_pf_tracker.cli.frames import numbered_frames, peeked
+from vehicle_pf_tracker.cli.frames import TrackingRequest, cut_short, numbered_frames, peeked
 from vehicle_pf_tracker.cli.picture_window import PictureWindow
 from vehicle_pf_tracker.cli.progress import counting
-from vehicle_pf_tracker.cli.shared_options import add_span
+from vehicle_pf_tracker.cli.requests import option, switch
 from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.cli.targets import TargetOption, by_name, parse_target, read_targets
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.following import Pictures
 from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
 from vehicle_pf_tracker.evaluation.run_folder import RUN, versions
@@ -40,7 +40,12 @@ from vehicle_pf_tracker.evaluation.traffic.detection_file import DetectionFile
 from vehicle_pf_tracker.evaluation.traffic.detector_choice import detector_maker
 from vehicle_pf_tracker.evaluation.traffic.following import Target, TrafficRun
 from vehicle_pf_tracker.evaluation.traffic.summary import limited
-from vehicle_pf_tracker.evaluation.traffic.track_files import TRACKS, track_files
+from vehicle_pf_tracker.evaluation.traffic.track_files import (
+    COUNTS,
+    MOT_TRACKS,
+    TRACKS,
+    track_files,
+)
 from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.parameters.road import RoadParameters
@@ -58,87 +63,84 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
 PICTURE = "summary.png"
+PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE)
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add(
-        "source", metavar="SOURCE",
-        help="recording, video file, folder of images, index of a camera, or URL of a stream",
-    )  # fmt: skip
-    add(
-        "-o", "--output", type=Path, metavar="DIR",
+@dataclass(frozen=True, kw_only=True)
+class Request(TrackingRequest):
+    """Request of `traffic`."""
+
+    output: Path | None = option(
+        "-o", type=Path, metavar="DIR",
         help="folder for tracks.csv, tracks.txt, counts.csv, run.json and summary.png "
         "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
-    add("--overwrite", action="store_true", help="replace the results that are in DIR")
-    add("--topic", help="the image topic, if a recording has several")
-    add("--fps", type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states")
-    add_span(parser)
-    add(
-        "--detections", type=Path, metavar="FILE",
+    detections: Path | None = option(
+        type=Path, metavar="FILE",
         help="detections as MOTChallenge has them, det.txt, instead of a detector",
     )  # fmt: skip
-    add(
-        "--detector", choices=(MOTION, MODEL, NONE),
+    detector: str | None = option(
+        choices=(MOTION, MODEL, NONE),
         help="find what moves before a standing camera (the default), use a network of yours, or "
         "follow only the vehicles given with --target",
     )  # fmt: skip
-    add("--model", metavar="FILE", help="the network, .onnx: YOLOX, YOLOv8 or SSD")
-    add("--lines", type=Path, metavar="FILE", help="lines and zones to count at, lines.yaml")
-    add(
-        "--video", type=Path, metavar="FILE",
+    model: str | None = option(metavar="FILE", help="the network, .onnx: YOLOX, YOLOv8 or SSD")
+    lines: Path | None = option(
+        type=Path, metavar="FILE", help="lines and zones to count at, lines.yaml"
+    )
+    video: Path | None = option(
+        type=Path, metavar="FILE",
         help="write the frames with all vehicles and counts to FILE, an mp4",
     )  # fmt: skip
-    add("--show", action="store_true", help="show them in a window meanwhile; q ends the run")
-    add(
-        "--visible-only", action="store_true",
-        help="leave vehicles that are occluded, and so predicted, out of tracks.txt",
-    )  # fmt: skip
-    parameter_options.add_arguments(parser)
-    add(
-        "--target", type=parse_target, action="append", default=[],
+    visible_only: bool = switch(
+        help="leave vehicles that are occluded, and so predicted, out of tracks.txt"
+    )
+    target: Sequence[TargetOption] = option(
+        type=parse_target, action="append", default=[],
         metavar="[NAME][@FRAME:]X,Y,W,H",
         help="a vehicle to follow from the first frame or from FRAME on, beside those that are "
         "detected: top-left corner and size in px; repeatable",
     )  # fmt: skip
-    add("--targets", type=Path, metavar="FILE", help="targets that `pick` wrote")
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Follow all vehicles, write the results, and print a summary."""
     check_library()
-    setup = _Setup.of(args)
-    source = open_source(args.source, topic=args.topic, fps=args.fps)
-    folder = _folder(args)
-    window = PictureWindow(args.source) if args.show else None
-    pictures = Pictures(args.video, show=window.show if window else None)
+    setup = _Setup.of(request)
+    source = open_source(request.source, topic=request.topic, fps=request.fps)
+    folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
+    outputs = (Products(folder, PRODUCTS), request.video)
+    inputs = (*request.inputs, request.detections, request.model, request.lines)
+    with claimed(outputs, inputs, overwrite=request.overwrite):
+        return _follow(request, setup, source, make_folder(folder))
+
+
+def _follow(request: Request, setup: _Setup, source: Source, folder: Path) -> int:
+    window = PictureWindow(request.source) if request.show else None
+    pictures = Pictures(request.video, show=window.show if window else None)
     with (
         stopping() as stop,
         counting("tracked") as progress,
-        track_files(folder, counting=bool(setup.plan), visible_only=args.visible_only) as files,
+        track_files(folder, counting=bool(setup.plan), visible_only=request.visible_only) as files,
     ):
-        first, frames = peeked(numbered_frames(source, args, stop, progress))
+        first, frames = peeked(numbered_frames(source, request, stop, progress))
         tracking = setup.tracking(first[0])
         tracking.follow(frames, files, pictures)
     notices = [*source.notices, *setup.notices(), *tracking.notices]
-    if args.video and not has_encoder():
+    if request.video and not has_encoder():
         notices.append(NO_ENCODER)
-    was_cut_short = stop.came and source.frame_count is not None  # a live source ends so
-    if was_cut_short:
-        done = tracking.summary.frames
-        notices.append(f"a signal ended the run after {done} of {source.frame_count} frames")
+    ended = cut_short(stop, source, tracking.summary.frames)
+    notices += ended
     tell_notices(limited(notices))
-    write_json(folder / RUN, _description(args, source, setup, tracking, notices))
+    write_json(folder / RUN, _description(request, source, setup, tracking, notices))
     if not tracking.paths.write(folder / PICTURE, tracking.counter):
         (folder / PICTURE).unlink(missing_ok=True)
     for sentence in tracking.summary.sentences(tracking.counter):
         print(sentence)
     print(f"results are in {folder}; {PICTURE} shows all paths")
-    if args.video:
-        print(f"the video is {args.video}")
-    return stop.status if was_cut_short else 0
+    if request.video:
+        print(f"the video is {request.video}")
+    return stop.status if ended else 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,19 +155,21 @@ class _Setup:
     targets: Sequence[TargetOption]
 
     @classmethod
-    def of(cls, args: argparse.Namespace) -> _Setup:
-        configuration = _configuration(args)
-        targets = [*args.target, *(read_targets(args.targets) if args.targets else [])]
-        if configuration.tracker.detector.kind == NONE and not (args.detections or targets):
+    def of(cls, request: Request) -> _Setup:
+        configuration = _configuration(request)
+        targets = [*request.target, *(read_targets(request.targets) if request.targets else [])]
+        if configuration.tracker.detector.kind == NONE and not (request.detections or targets):
             raise UsageError(
                 "without a detector nothing is followed; give vehicles with --target x,y,w,h, or "
                 "--detections FILE"
             )
         return cls(
             configuration,
-            read_counting_plan(lines) if (lines := args.lines or _lines(configuration)) else None,
+            read_counting_plan(lines)
+            if (lines := request.lines or _lines(configuration))
+            else None,
             _plane(configuration.session.road),
-            DetectionFile(args.detections) if args.detections else None,
+            DetectionFile(request.detections) if request.detections else None,
             detector_maker(configuration.tracker.detector),
             targets,
         )
@@ -198,21 +202,21 @@ class _Setup:
         return found
 
 
-def _configuration(args: argparse.Namespace) -> Configuration:
+def _configuration(request: Request) -> Configuration:
     """Return the parameters; the options of the detector go before files and ``--set``."""
-    configuration = parameter_options.chosen(TRAFFIC, args)
+    configuration = parameter_options.chosen(TRAFFIC, request)
     if configuration.session.target.box is not None:
         raise InputError("target.x to target.height are for one vehicle; give --target x,y,w,h")
-    if args.detections and (args.detector or args.model):
+    if request.detections and (request.detector or request.model):
         raise UsageError("give either --detections, or --detector and --model")
-    if args.model and args.detector not in {None, MODEL}:
-        raise UsageError(f"--model is not used by --detector {args.detector}; leave one out")
-    if args.detections:
+    if request.model and request.detector not in {None, MODEL}:
+        raise UsageError(f"--model is not used by --detector {request.detector}; leave one out")
+    if request.detections:
         return configuration.updated({"detector.kind": NONE})
-    if args.model:
-        return configuration.updated({"detector.kind": MODEL, "detector.model": args.model})
-    if args.detector:
-        return configuration.updated({"detector.kind": args.detector})
+    if request.model:
+        return configuration.updated({"detector.kind": MODEL, "detector.model": request.model})
+    if request.detector:
+        return configuration.updated({"detector.kind": request.detector})
     if configuration.tracker.detector.kind == TOPIC:
         raise InputError("detector.kind topic is for nodes; offline, give --detections FILE")
     return configuration
@@ -234,15 +238,8 @@ def _plane(road: RoadParameters) -> RoadPlane | None:
     return road.plane(road.lens, road.pose)
 
 
-def _folder(args: argparse.Namespace) -> Path:
-    path: Path = args.output or Path("results", f"{Path(args.source).stem or 'run'}_traffic")
-    if (path / TRACKS).exists() and not args.overwrite:
-        raise InputError(f"{path} has results already; name another folder, or give --overwrite")
-    return make_folder(path)
-
-
 def _description(
-    args: argparse.Namespace,
+    request: Request,
     source: Source,
     setup: _Setup,
     tracking: TrafficRun,
@@ -251,13 +248,13 @@ def _description(
     """Make the content of `run.json`."""
     configuration = setup.configuration
     return {
-        "command": list(args.command),
+        "command": list(request.command),
         "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
-        "recording": args.source,
+        "recording": request.source,
         "image_topic": source.image_topic,
         "variant": TRAFFIC.name,
         "seed": tracking.session.tracker.seed,
-        "detector": str(args.detections or configuration.tracker.detector.kind),
+        "detector": str(request.detections or configuration.tracker.detector.kind),
         "parameters": {
             **to_mapping(configuration.tracker),
             **to_mapping(configuration.session),

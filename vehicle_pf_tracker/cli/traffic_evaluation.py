@@ -16,23 +16,22 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli.console import UsageError, print_table
+from vehicle_pf_tracker.cli.console import UsageError, print_rows
 from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.requests import option, switch
+from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.evaluation.traffic.comparison_report import Line
     from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
     from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
-SEEDS = 1
-"""Seeds of a run: differences between scenes are larger than those between seeds."""
 _GRID_ONLY = (
     "params", "without_defaults", "baseline_model", "scheduler", "timing", "shifted_starts",
     "start_frames", "restarts", "max_rmse", "stress", "topic", "video", "recordings",
@@ -42,26 +41,28 @@ _GRID_ONLY = (
 PAGE = "traffic.html"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the comparison on many vehicles."""
-    add = parser.add_argument_group("many vehicles, instead of the grid").add_argument
-    add(
-        "--traffic", action="store_true",
+@dataclass(frozen=True, kw_only=True)
+class TrafficRequest(EvaluationRequest):
+    """Request of the comparison on many vehicles."""
+
+    GROUP = "many vehicles, instead of the grid"
+
+    traffic: bool = switch(
         help="compare `traffic` with SORT, ByteTrack, OC-SORT and C-BIoU; REC are folders as "
         "MOTChallenge has them; see docs/traffic.md",
     )  # fmt: skip
-    add(
-        "--detections", metavar="NAME,…",
+    detections: str | None = option(
+        metavar="NAME,…",
         help="only these files of det/, by name without .txt, and `motion` (default: all)",
     )  # fmt: skip
-    add(
-        "--perturbations", metavar="NAME,…",
+    perturbations: str | None = option(
+        metavar="NAME,…",
         help="only these of dropped, gap20, gap40, squared and halved; `none` for none "
         "(default: all)",
     )  # fmt: skip
 
 
-def check(args: argparse.Namespace) -> None:
+def check(request: TrafficRequest) -> None:
     """Refuse options that go with the grid only, or with this comparison only.
 
     Raises
@@ -69,15 +70,15 @@ def check(args: argparse.Namespace) -> None:
     UsageError
         If there is one.
     """
-    for name in _GRID_ONLY if args.traffic else ("detections", "perturbations"):
-        if getattr(args, name):
+    for name in _GRID_ONLY if request.traffic else ("detections", "perturbations"):
+        if getattr(request, name):
             option = "--" + name.replace("_", "-")
             raise UsageError(
-                f"{option} does not go {'with' if args.traffic else 'without'} --traffic"
+                f"{option} does not go {'with' if request.traffic else 'without'} --traffic"
             )
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: TrafficRequest) -> int:
     """Run the comparison, write its report, and print its tables."""
     from vehicle_pf_tracker.evaluation.output_files import write_text
     from vehicle_pf_tracker.evaluation.report.traffic import traffic_page
@@ -85,49 +86,52 @@ def run(args: argparse.Namespace) -> int:
     from vehicle_pf_tracker.evaluation.traffic.comparison import cases_of, compare
     from vehicle_pf_tracker.evaluation.traffic.comparison_report import (
         MARKDOWN,
+        by_case,
+        main_table,
         write_traffic_report,
     )
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 
-    sequences = [read_sequence(Path(source)) for source in args.sources]
-    cases = cases_of(sequences, _sources(args, sequences), _perturbations(args))
-    parameters = _parameters(args)
-    seeds = range(args.first_seed, args.first_seed + (args.seeds or SEEDS))
+    sequences = [read_sequence(Path(source)) for source in request.sources]
+    cases = cases_of(sequences, _sources(request, sequences), _perturbations(request))
+    parameters = _parameters(request)
+    seeds = range(request.first_seed, request.first_seed + (request.seeds or FEW_SEEDS))
     with (
-        TrafficWorker(args.baselines_python) as worker,
+        TrafficWorker(request.baselines_python) as worker,
         counting("compared") as progress,
     ):
         results = list(compare(cases, worker, parameters, seeds, on_progress=progress))
         options = {
-            "command": list(args.command),
+            "command": list(request.command),
             "seeds": list(seeds),
-            "set": args.assignments,
+            "set": request.assignments,
             **worker.versions,
         }
-    lines = write_traffic_report(results, args.output, options)
-    write_text(args.output / PAGE, traffic_page(lines, " ".join(args.command)))
-    _show(lines)
-    print(f"the report is {args.output / PAGE}, and {MARKDOWN} beside it")
+    lines = write_traffic_report(results, request.output, options)
+    write_text(request.output / PAGE, traffic_page(lines, " ".join(request.command)))
+    for title, group in by_case(lines):
+        print_rows(*main_table(group), title)
+    print(f"the report is {request.output / PAGE}, and {MARKDOWN} beside it")
     return 0
 
 
-def _sources(args: argparse.Namespace, sequences: Sequence[TrafficSequence]) -> list[str] | None:
+def _sources(request: TrafficRequest, sequences: Sequence[TrafficSequence]) -> list[str] | None:
     from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION
 
-    if args.detections is None:
+    if request.detections is None:
         return None
     known = {MOTION, *(name for sequence in sequences for name in sequence.detections)}
-    return _names(args.detections, known, "detections")
+    return _names(request.detections, known, "detections")
 
 
-def _perturbations(args: argparse.Namespace) -> list[str]:
+def _perturbations(request: TrafficRequest) -> list[str]:
     from vehicle_pf_tracker.evaluation.traffic.perturbation import PERTURBATIONS, UNCHANGED
 
-    if args.perturbations is None:
+    if request.perturbations is None:
         return list(PERTURBATIONS)
-    if args.perturbations == "none":
+    if request.perturbations == "none":
         return [UNCHANGED]
-    return [UNCHANGED, *_names(args.perturbations, set(PERTURBATIONS), "perturbations")]
+    return [UNCHANGED, *_names(request.perturbations, set(PERTURBATIONS), "perturbations")]
 
 
 def _names(text: str, known: set[str], what: str) -> list[str]:
@@ -141,27 +145,11 @@ def _names(text: str, known: set[str], what: str) -> list[str]:
     return names
 
 
-def _parameters(args: argparse.Namespace) -> TrafficParameters:
+def _parameters(request: TrafficRequest) -> TrafficParameters:
     from vehicle_pf_tracker.parameters.configuration import Configuration
     from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
     table = specs(TRAFFIC.parameters)
-    configuration = Configuration.of(TRAFFIC).updated(parse_assignments(table, args.assignments))
+    configuration = Configuration.of(TRAFFIC).updated(parse_assignments(table, request.assignments))
     parameters: TrafficParameters = configuration.tracker
     return parameters
-
-
-def _show(lines: Sequence[Line]) -> None:
-    from rich.table import Table
-    from rich.text import Text
-
-    from vehicle_pf_tracker.evaluation.traffic.comparison_report import by_case, main_table
-
-    for title, group in by_case(lines):
-        headings, rows = main_table(group)
-        table = Table(title=title)
-        for heading in headings:
-            table.add_column(Text(heading), justify="right")
-        for row in rows:
-            table.add_row(*map(Text, row))
-        print_table(table)

@@ -16,24 +16,26 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli import parameter_options, system_options
 from vehicle_pf_tracker.cli.console import print_table, tell_notices
 from vehicle_pf_tracker.cli.parameter_sets import settable
-from vehicle_pf_tracker.cli.shared_options import add_max_diff, add_workers, natural, positive
+from vehicle_pf_tracker.cli.requests import option, positional
+from vehicle_pf_tracker.cli.shared_options import MaxDiffOption, WorkersOption, natural, positive
 from vehicle_pf_tracker.cli.work_progress import stages, telling
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
-from vehicle_pf_tracker.evaluation.output_files import alone_in, make_folder, write_json, write_text
+from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.evaluation.report import write_report
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.tuning import comparison
@@ -54,74 +56,90 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
 TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100
-BEST = "best"
+BEST, EVALUATION = "best", "evaluation"
 
 Recordings = Sequence[tuple[Source, dict[int, Truth]]]
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this verb."""
-    add = parser.add_argument
-    add("sources", nargs="+", metavar="REC", help="recordings with truth to tune on, or a folder")
-    add("--variant", required=True, metavar="NAME", help=f"one of: {', '.join(VARIANTS)}")
-    add(
-        "-o", "--output", type=Path, required=True, metavar="DIR",
-        help="folder for best.yaml and the other results; finished runs in it are kept",
+@dataclass(frozen=True, kw_only=True)
+class Request(MaxDiffOption, WorkersOption):
+    """Request of `tune`."""
+
+    sources: Sequence[str] = positional(
+        nargs="+", metavar="REC", help="recordings with truth to tune on, or a folder"
+    )
+    variant: str = option(required=True, metavar="NAME", help=f"one of: {', '.join(VARIANTS)}")
+    output: Path = option(
+        "-o", type=Path, required=True, metavar="DIR",
+        help="folder for best.yaml and the other results; finished runs in it are kept, the rest "
+        "is written anew",
     )  # fmt: skip
-    add(
-        "--held-out", nargs="+", default=[], metavar="REC",
+    held_out: Sequence[str] = option(
+        nargs="+", default=[], metavar="REC",
         help="held-out recordings, unseen by the search; they show whether its gain is real",
     )  # fmt: skip
-    add(
-        "--search", action="append", default=[], metavar="NAME[=LOW:HIGH],…",
+    search: Sequence[str] = option(
+        action="append", default=[], metavar="NAME[=LOW:HIGH],…",
         help="parameters to search (default: those marked as tuned, "
         f"{', '.join(default_search(find_variant('apf')))} for apf)",
     )  # fmt: skip
-    add(
-        "--trials", type=positive, default=TRIALS, metavar="N",
+    trials: int = option(
+        type=positive, default=TRIALS, metavar="N",
         help="parameter sets to try (default: %(default)s)",
     )  # fmt: skip
-    add(
-        "--seeds", type=positive, default=SEEDS, metavar="N",
+    seeds: int = option(
+        type=positive, default=SEEDS, metavar="N",
         help=f"runs of each on each recording (default: %(default)s); the search takes seeds from "
         f"{SEARCH_SEED} on, the comparison others",
     )  # fmt: skip
-    add(
-        "--objective", default="success_auc", choices=OBJECTIVES, metavar="METRIC",
+    objective: str = option(
+        default="success_auc", choices=OBJECTIVES, metavar="METRIC",
         help=f"what to improve, of {', '.join(OBJECTIVES)} (default: %(default)s): its mean over "
         "the runs of a recording and then over the recordings",
     )  # fmt: skip
-    add("--sampler-seed", type=natural, default=0, metavar="S", help="seed of the search itself")
-    add("--params", type=Path, metavar="FILE", help="parameter file to begin with")
-    add(
-        "--set", action="append", default=[], metavar="NAME=VALUE", dest="assignments",
+    sampler_seed: int = option(
+        type=natural, default=0, metavar="S", help="seed of the search itself"
+    )
+    params: Path | None = option(type=Path, metavar="FILE", help="parameter file to begin with")
+    assignments: Sequence[str] = option(
+        "--set", action="append", default=[], metavar="NAME=VALUE",
         help="begin with this value, over the file; repeatable",
     )  # fmt: skip
-    add_workers(parser)
-    add("--topic", help="the image topic, where recordings have several")
-    add_max_diff(parser)
+    topic: str | None = option(help="the image topic, where recordings have several")
 
 
-def run(args: argparse.Namespace) -> int:
+def run(request: Request) -> int:
     """Search, compare, write all results, and print the comparison."""
-    variant = find_variant(args.variant)
-    configuration = _configuration(variant, args)
+    variant = find_variant(request.variant)
+    configuration = _configuration(variant, request)
     base = system_options.make_system(variant, "", configuration, {})
-    what, recordings = _search(variant, base, args)
-    output = make_folder(args.output)
+    what, recordings = _search(variant, base, request)
+    outputs = (Products(request.output, (f"{BEST}.yaml",)), Products(request.output / EVALUATION))
+    inputs = (*(source.path for source, _ in recordings), request.params)
     try:
-        with alone_in(output):
-            best = _find_best(what, output, args)
-            lines = _compare(what, best, recordings, output / "evaluation", args)
+        with claimed(outputs, inputs, overwrite=True):
+            return _tune(request, variant, configuration, what, recordings)
     except KeyboardInterrupt:
         tell_notices(["interrupted; run the same command to resume"])
         raise
+
+
+def _tune(
+    request: Request,
+    variant: Variant,
+    configuration: Configuration,
+    what: SearchTask,
+    recordings: Recordings,
+) -> int:
+    output = make_folder(request.output)
+    best = _find_best(what, output, request)
+    lines = _compare(what, best, recordings, output / EVALUATION, request)
     told = comparison.verdict(lines, what.objective)
     file = _write_best(configuration.updated(best.values), variant, what, output)
     head = f"# {variant.name}, tuned for {what.objective.description}\n\n"
     write_text(output / "tuning.md", f"{head}{comparison.to_markdown(lines)}\n{told}\n")
     document = {
-        "command": args.command,
+        "command": request.command,
         "variant": variant.name,
         "objective": what.objective.metric,
         "searched": [str(dimension) for dimension in what.space],
@@ -136,25 +154,25 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _configuration(variant: Variant, args: argparse.Namespace) -> Configuration:
+def _configuration(variant: Variant, request: Request) -> Configuration:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
     configuration = Configuration.of(variant)
-    if args.params is not None:
-        configuration = parameter_options.with_file(configuration, variant, args.params)
-    values = parse_assignments(settable(variant), args.assignments)
+    if request.params is not None:
+        configuration = parameter_options.with_file(configuration, variant, request.params)
+    values = parse_assignments(settable(variant), request.assignments)
     return configuration.updated(values)
 
 
 def _search(
-    variant: Variant, base: VariantSystem, args: argparse.Namespace
+    variant: Variant, base: VariantSystem, request: Request
 ) -> tuple[SearchTask, Recordings]:
-    words = [word for text in args.search for word in text.split(",") if word]
+    words = [word for text in request.search for word in text.split(",") if word]
     space = search_space(variant, dict(base.parameters), words)
-    tuned = find_recordings(args.sources)
-    held_out = find_recordings(args.held_out)
+    tuned = find_recordings(request.sources)
+    held_out = find_recordings(request.held_out)
     with stages("tune") as on_stage:
-        recordings = describe([*tuned, *held_out], args.topic, args.max_diff, on_stage)
+        recordings = describe([*tuned, *held_out], request.topic, request.max_diff, on_stage)
     sources = [source for source, _ in recordings]
     seen = {source.digest for source in sources[: len(tuned)]}
     for source in sources[len(tuned) :]:
@@ -162,29 +180,31 @@ def _search(
             raise InputError(
                 f"{source.path} is both held out and tuned on; it can only be one of the two"
             )
-    seeds = range(SEARCH_SEED, SEARCH_SEED + args.seeds)
-    objective = OBJECTIVES[args.objective]
+    seeds = range(SEARCH_SEED, SEARCH_SEED + request.seeds)
+    objective = OBJECTIVES[request.objective]
     what = SearchTask(
-        base, space, sources[: len(tuned)], seeds, objective, args.max_diff, args.sampler_seed
+        base, space, sources[: len(tuned)], seeds, objective, request.max_diff, request.sampler_seed
     )
     return what, recordings
 
 
-def _find_best(what: SearchTask, output: Path, args: argparse.Namespace) -> Trial:
+def _find_best(what: SearchTask, output: Path, request: Request) -> Trial:
     store = ResultStore(output / "runs.jsonl")
     with telling("tune") as on_progress:
-        trials = search(what, args.trials, store, on_this_machine(args.workers), on_progress)
+        trials = search(what, request.trials, store, on_this_machine(request.workers), on_progress)
     write_text(output / "trials.csv", to_csv(trials, what.objective))
     return best_of(trials, what.objective)
 
 
 def _compare(
-    what: SearchTask, best: Trial, recordings: Recordings, folder: Path, args: argparse.Namespace
+    what: SearchTask, best: Trial, recordings: Recordings, folder: Path, request: Request
 ) -> list[comparison.ComparedMetric]:
     systems = [what.base, what.base.changed(BEST, best.values)]
-    plan = Plan(dict(recordings), systems, range(args.seeds), args.command, args.max_diff)
+    plan = Plan(
+        dict(recordings), systems, range(request.seeds), list(request.command), request.max_diff
+    )
     with telling("compare") as on_progress:
-        complete(plan, folder, on_this_machine(args.workers), on_progress)
+        complete(plan, folder, on_this_machine(request.workers), on_progress)
     write_report(folder)
     held_out = [source.name for source, _ in recordings if source not in what.sources]
     metrics = dict.fromkeys([what.objective.metric, "rmse_px"])

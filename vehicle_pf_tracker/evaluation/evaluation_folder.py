@@ -147,7 +147,7 @@ def _row(path: Path, number: int, line: Mapping[str, str]) -> tuple[int, Truth]:
 
 
 FORMAT = 2
-"""Format of the folder; 1 called a baseline a peer, and had no digests of the cells."""
+"""Format of the folder; folders of another format are refused."""
 PLAN, FAILED = "evaluation.json", "failed.json"
 TIMINGS = "timings.json"
 TRUTH = "truth.csv"

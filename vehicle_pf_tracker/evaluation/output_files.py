@@ -12,11 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Result files that appear whole or not at all, in a folder that one command at a time may use."""
+"""Result files that appear whole or not at all."""
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 from collections.abc import Iterator
@@ -28,18 +27,10 @@ import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.outputs import output_errors
 
 PICTURES = (".png", ".jpg", ".jpeg")
 """Endings of pictures that are written."""
-
-
-@contextmanager
-def output_errors(path: Path) -> Iterator[None]:
-    """Report errors of the operating system as an `InputError` about `path`."""
-    try:
-        yield
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror or error}") from error
 
 
 def make_folder(path: Path) -> Path:
@@ -126,27 +117,3 @@ def _flush(path: Path) -> None:
 def _partial(path: Path) -> Path:
     # The suffix stays, since those who draw pictures choose the format by it.
     return path.with_name(f".{path.stem}.{os.getpid()}.partial{path.suffix}")
-
-
-_NAME = ".lock"
-
-
-@contextmanager
-def alone_in(folder: Path) -> Iterator[None]:
-    """Keep other commands out of `folder`; a process that dies lets them in again.
-
-    Raises
-    ------
-    InputError
-        If another one is at work there, or the folder cannot be written.
-    """
-    with output_errors(folder):
-        file = (folder / _NAME).open("w")
-    with file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise InputError(
-                f"another command is at work in {folder}; wait for it, or name another folder"
-            ) from None
-        yield

@@ -23,7 +23,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors
+from vehicle_pf_tracker.core.outputs import output_errors
+from vehicle_pf_tracker.evaluation.output_files import make_folder
 
 Result: TypeAlias = dict[str, Any]
 """Plain values that JSON knows."""

@@ -31,9 +31,10 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker import __version__
+from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.evaluation.estimates import EstimateRow, write_estimates
 from vehicle_pf_tracker.evaluation.metrics import Metrics
-from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, write_json
+from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.trackers.session import Session
 

@@ -28,6 +28,7 @@ from mcap.writer import CompressionType, Writer
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.output_folder import OutputFolder
+from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, check_free
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.bag_folder import (
@@ -55,15 +56,10 @@ def _check_replaceable(target: Path, overwrite: bool) -> None:
         return
     if not target.is_dir():
         raise InputError(f"the output {target} is a file; name a folder")
-    names = [path.name for path in target.iterdir()]
-    if not names:
-        return
     if not overwrite:
-        raise InputError(
-            f"the output folder {target} is not empty; give --overwrite to replace the recording "
-            "in it, or name another"
-        )
-    if any(name != "metadata.yaml" and not name.endswith(".mcap") for name in names):
+        check_free(target)
+    names = [path.name for path in target.iterdir()]
+    if any(name != BAG_INFORMATION and not name.endswith(".mcap") for name in names):
         raise InputError(f"the output folder {target} holds more than a recording; choose another")
 
 

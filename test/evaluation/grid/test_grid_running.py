@@ -267,13 +267,3 @@ def test_a_recording_is_decoded_once_for_all_its_cells(plan, out, monkeypatch):
     )
     complete(plan, out, here, silent)
     assert opened == ["bridge", "free"]
-
-
-def test_two_commands_in_one_folder_are_kept_apart(plan, out):
-    def second(cells):
-        with pytest.raises(InputError, match="another command is at work in"):
-            complete(plan, out, here, silent)
-        yield from here(cells)
-
-    assert complete(plan, out, second, silent) == 6
-    assert complete(plan, out, here, silent) == 0

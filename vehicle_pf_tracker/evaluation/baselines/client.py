@@ -34,7 +34,6 @@ from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateR
 
 VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 """Environment variable that names the interpreter."""
-_FORMER_VARIABLE = "VEHICLE_PF_TRACKER_PEERS"
 
 DEFAULT = Path(".venv-baselines/bin/python")
 """Interpreter that `make baselines` builds, below the working directory."""
@@ -53,8 +52,6 @@ def baseline_python(chosen: Path | None = None) -> Path:
     InputError
         If there is no such file.
     """
-    if _FORMER_VARIABLE in os.environ:
-        raise InputError(f"the environment variable {_FORMER_VARIABLE} is now called {VARIABLE}")
     python = chosen or Path(os.environ.get(VARIABLE) or DEFAULT)
     if not python.is_file():
         raise InputError(

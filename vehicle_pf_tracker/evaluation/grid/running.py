@@ -23,16 +23,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, GridCell
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.tracking import CellResult, run_cell
 from vehicle_pf_tracker.evaluation.identity import scoring_digest
 from vehicle_pf_tracker.evaluation.output_files import (
-    alone_in,
     flush_folder,
     make_folder,
-    output_errors,
     write_json,
 )
 from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress, Turn, run_in_processes
@@ -151,24 +150,22 @@ def complete(
     Raises
     ------
     InputError
-        If the folder cannot be written, another command is at work there, or a process is ended
-        from outside.
+        If the folder cannot be written, or a process is ended from outside.
     """
-    with alone_in(make_folder(folder)):
-        store = CellStore(folder)
-        plan.write(folder)
-        cells = plan.cells()
-        store.drop_others(cells)
-        missing = [cell for cell in cells if not store.has(cell)]
-        damaged = [cell.label for cell in missing if store.is_damaged(cell)]
-        if damaged:
-            notify(_damage_notice(damaged))
-        done = 0
-        for turn in runner(missing):
-            if turn.ended is not None:
-                store.add(*turn.ended, plan.command)
-                done += 1
-            on_progress(Progress(done, len(missing), tuple(cell.label for cell in turn.running)))
+    store = CellStore(folder)
+    plan.write(folder)
+    cells = plan.cells()
+    store.drop_others(cells)
+    missing = [cell for cell in cells if not store.has(cell)]
+    damaged = [cell.label for cell in missing if store.is_damaged(cell)]
+    if damaged:
+        notify(_damage_notice(damaged))
+    done = 0
+    for turn in runner(missing):
+        if turn.ended is not None:
+            store.add(*turn.ended, plan.command)
+            done += 1
+        on_progress(Progress(done, len(missing), tuple(cell.label for cell in turn.running)))
     return len(missing)
 
 

@@ -23,7 +23,8 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, TextIO
 
-from vehicle_pf_tracker.evaluation.output_files import output_errors, replacing
+from vehicle_pf_tracker.core.outputs import output_errors
+from vehicle_pf_tracker.evaluation.output_files import replacing
 from vehicle_pf_tracker.trackers.traffic.counting import Crossing
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 

@@ -1,0 +1,237 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Outputs never take away an input, replace nothing unasked, and belong to one command."""
+
+import os
+import subprocess
+import sys
+
+import cv2
+import numpy as np
+import pytest
+from small_recordings import COUNT, TARGET, frame_of, record
+
+from vehicle_pf_tracker.cli import pick
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.cli.targets import parse_target
+
+HOLD = """
+import sys
+from pathlib import Path
+from vehicle_pf_tracker.core.outputs import Products, claimed
+path = Path(sys.argv[2])
+with claimed([Products(path) if sys.argv[1] == "folder" else path], [], overwrite=True):
+    print("ready", flush=True)
+    sys.stdin.read()
+"""
+CORNERS = ["0,0=0,0", "90,0=9,0", "90,60=9,6", "0,60=0,6"]
+PAIRS = [word for pair in CORNERS for word in ("--pair", pair)]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """A working folder with a recording, a video, and a folder of images."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(pick, "ask", lambda *_: [parse_target(f"van@1:{TARGET}")])
+    record(tmp_path / "bag")
+    writer = cv2.VideoWriter("clip.mp4", cv2.VideoWriter.fourcc(*"mp4v"), 25.0, (96, 64))
+    (tmp_path / "frames").mkdir()
+    for index in range(COUNT):
+        bgr = np.ascontiguousarray(frame_of(index)[:, :, ::-1])
+        writer.write(bgr)
+        cv2.imwrite(f"frames/{index + 1:06d}.png", bgr)
+    writer.release()
+    return tmp_path
+
+
+def content(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def other_names(path):
+    """Make a symbolic and a hard link to a file; return them, and the file's own names."""
+    path.with_name(f"soft{path.suffix}").symlink_to(path)
+    os.link(path, path.with_name(f"hard{path.suffix}"))
+    folder, name = path.parent, path.name
+    return [name, str(path), f"../{folder.name}/{name}", f"soft{path.suffix}", f"hard{path.suffix}"]
+
+
+def fails(words, sentence, capsys):
+    assert main([str(word) for word in words]) == 1
+    assert sentence in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run", "clip.mp4", "--variant", "pf", "--target", TARGET, "-o", "out", "--video"],
+        ["traffic", "clip.mp4", "-o", "out", "--video"],
+        ["pick", "clip.mp4", "-o"],
+        ["import", "clip.mp4"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_a_source_is_no_output_by_any_name(here, capsys, words):
+    before = (here / "clip.mp4").read_bytes()
+    for name in other_names(here / "clip.mp4"):
+        fails([*words, name, "--overwrite"], "would change the input clip.mp4", capsys)
+        assert (here / "clip.mp4").read_bytes() == before
+
+
+def test_a_link_as_a_source_protects_what_it_leads_to(here, capsys):
+    *_, soft, hard = other_names(here / "clip.mp4")
+    for name in (soft, hard):
+        fails(["pick", name, "-o", "clip.mp4", "--overwrite"], "would change the input", capsys)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run", "bag", "-o", "bag"],
+        ["run", "bag/bag_0.mcap", "-o", "bag"],
+        ["run", "bag", "-o", "out", "--recording", "bag"],
+        ["run", "bag/bag_0.mcap", "-o", "out", "--recording", "bag"],
+        ["run", "bag", "-o", "out", "--video", "bag/seen.mp4"],
+        ["traffic", "bag", "-o", "linked"],
+        ["pick", "frames", "-o", "frames/000001.png"],
+        ["pick", "frames", "--grid", "frames/grid.png"],
+        ["pick", "frames", "--grid", "hard.png"],
+        ["road", "calibrate", "bag", *PAIRS, "--grid", "bag/grid.png"],
+        ["evaluate", "bag", "--variants", "pf", "-o", "bag"],
+        ["tune", "bag", "--variant", "pf", "-o", "bag"],
+    ],
+    ids=" ".join,
+)
+def test_the_folder_of_a_source_is_no_output(here, capsys, words):
+    (here / "linked").symlink_to("bag")
+    os.link("frames/000002.png", "hard.png")
+    before = content(here)
+    again = [] if words[0] in {"evaluate", "tune"} else ["--overwrite"]
+    fails([*words, *again], "would change the input", capsys)
+    assert content(here) == before
+
+
+def test_files_of_options_are_inputs_too(here, capsys):
+    (here / "pairs.yaml").write_text("pairs: [{pixel: [0, 0], road: [0, 0]}]")
+    words = ["road", "calibrate", "bag", "--pairs", "pairs.yaml", "-o", "pairs.yaml"]
+    fails([*words, "--overwrite"], "would change the input pairs.yaml", capsys)
+    (here / "tuned").mkdir()
+    (here / "tuned" / "best.yaml").write_text("pf_tracker: {ros__parameters: {sigma: 3.0}}")
+    words = ["tune", "bag", "--variant", "pf", "--params", "tuned/best.yaml", "-o", "tuned"]
+    fails(words, "would change the input tuned/best.yaml", capsys)
+
+
+ONCE_MORE = {
+    "run": ["run", "bag", "--variant", "pf", "-o", "out"],
+    "run --video": ["run", "bag", "--variant", "pf", "-o", "NEW", "--video", "out.mp4"],
+    "run --recording": ["run", "bag", "--variant", "pf", "-o", "NEW", "--recording", "out"],
+    "traffic": ["traffic", "bag", "-o", "out"],
+    "traffic --video": ["traffic", "bag", "-o", "NEW", "--video", "out.mp4"],
+    "pick": ["pick", "bag", "-o", "out.yaml"],
+    "pick --grid": ["pick", "bag", "--grid", "out.png"],
+    "road -o": ["road", "calibrate", "bag", *PAIRS, "-o", "out.yaml"],
+    "road --grid": ["road", "calibrate", "bag", *PAIRS, "--grid", "out.png"],
+    "import": ["import", "frames", "out"],
+    "synth": ["synth", "bar", "out", "--set", "speed=40", "--set", "width=0"],
+}
+
+
+@pytest.mark.parametrize("words", ONCE_MORE.values(), ids=ONCE_MORE)
+def test_what_exists_is_replaced_on_request_only(here, capsys, words):
+    first, second, third = ([word.replace("NEW", f"new{n}") for word in words] for n in range(3))
+    assert main(first) == 0
+    before = content(here)
+    fails(second, "give --overwrite", capsys)
+    assert content(here) == before
+    assert main([*third, "--overwrite"]) == 0
+
+
+def test_the_demo_keeps_what_exists(here, capsys):
+    (here / "demo.png").touch()
+    fails(["demo", "-o", "."], "demo.png exists; give --overwrite", capsys)
+
+
+def test_files_of_others_in_the_folder_are_in_nobody_s_way(here):
+    (here / "notes.txt").write_text("mine")
+    assert main(["run", "clip.mp4", "--variant", "pf", "--target", TARGET, "-o", "."]) == 0
+    assert (here / "notes.txt").read_text() == "mine"
+
+
+@pytest.fixture
+def hold(here):
+    """Hold an output in another process."""
+    holders = []
+
+    def start(kind, path):
+        words = [sys.executable, "-c", HOLD, kind, str(path)]
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+        holders.append(subprocess.Popen(words, **pipes))
+        assert holders[-1].stdout.readline() == "ready\n"
+        return holders[-1]
+
+    yield start
+    for holder in holders:
+        holder.kill()
+        holder.communicate()
+
+
+@pytest.mark.parametrize(
+    ("kind", "out", "words"),
+    [
+        ("folder", "out", ["run", "bag", "--variant", "pf", "-o", "out"]),
+        ("folder", "out", ["traffic", "bag", "-o", "out"]),
+        ("folder", "out", ["evaluate", "bag", "--variants", "pf", "--seeds", "1", "-o", "out"]),
+        ("folder", "out", ["tune", "bag", "--variant", "pf", "--trials", "1", "-o", "out"]),
+        ("folder", "out", ["report", "out"]),
+        ("folder", "out", ["demo", "-o", "out"]),
+        ("path", "out", ["import", "frames", "out"]),
+        ("path", "out", ["synth", "bar", "out"]),
+        ("path", "out", ["synth", "traffic-pair", "out"]),
+        ("path", "out.mp4", ["synth", "bar", "out.mp4"]),
+        ("path", "out.yaml", ["pick", "bag", "-o", "out.yaml"]),
+        ("path", "out.png", ["road", "calibrate", "bag", *PAIRS, "--grid", "out.png"]),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else value,
+)
+def test_the_second_command_at_one_output_is_refused(hold, capsys, kind, out, words):
+    hold(kind, out)
+    fails(words, "another command is at work in", capsys)
+
+
+def test_a_lock_ends_with_its_process(hold, here):
+    holder = hold("folder", "out")
+    holder.kill()
+    holder.wait()
+    assert (here / "out" / ".lock").exists()
+    assert main(ONCE_MORE["run"]) == 0
+    assert not (here / "out" / ".lock").exists()
+
+
+def test_two_runs_at_one_time(here):
+    code = "import sys; from vehicle_pf_tracker.cli.main import main; sys.exit(main())"
+    words = [sys.executable, "-c", code, "pick", "bag", "-o", "picked.yaml"]
+    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    environment.pop("WAYLAND_DISPLAY", None)
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(words, env=environment, **pipes) as first:
+        try:
+            assert first.stdout.readline().startswith("open http://127.0.0.1:")
+            second = subprocess.run(
+                words, check=False, env=environment, capture_output=True, text=True
+            )
+        finally:
+            first.kill()
+    assert second.returncode == 1
+    assert "another command is at work in picked.yaml" in second.stderr

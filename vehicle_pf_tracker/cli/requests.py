@@ -1,0 +1,97 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Requests: frozen objects that say what a user asks of a verb, made of its command line."""
+
+from __future__ import annotations
+
+import argparse
+import inspect
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any, TypeVar
+
+
+@dataclass(frozen=True, kw_only=True)
+class VerbRequest:
+    """Base of the requests: its subclasses declare each option of a verb as a field.
+
+    A subclass with a text `GROUP` has its options under that heading of the help.
+
+    Attributes
+    ----------
+    command : sequence of str
+        The whole command line.
+    """
+
+    command: Sequence[str]
+
+
+RequestT = TypeVar("RequestT", bound=VerbRequest)
+
+
+def option(*flags: str, exclusive: str = "", **settings: Any) -> Any:
+    """Declare the option that a field is read from.
+
+    Parameters
+    ----------
+    flags : str
+        Its words; to a short one alone, as to none, comes ``--`` with the field's name.
+    exclusive : str
+        Name that options share of which only one may be given.
+    settings
+        Those of `argparse.ArgumentParser.add_argument`.
+    """
+    return field(metadata={"flags": flags, "exclusive": exclusive, "settings": settings})
+
+
+def switch(*flags: str, exclusive: str = "", help: str) -> Any:  # noqa: A002 - as in argparse
+    """Declare the option without a value that makes a field true."""
+    return option(*flags, exclusive=exclusive, action="store_true", help=help)
+
+
+def positional(**settings: Any) -> Any:
+    """Declare the argument without a flag that a field is read from."""
+    return field(metadata={"settings": settings})
+
+
+def add_options(parser: argparse.ArgumentParser, kind: type[VerbRequest]) -> None:
+    """Add the options that the fields of a request are read from."""
+    declared = {one.name: one.metadata for one in fields(kind) if one.metadata}
+    places: dict[str, Any] = {}
+    for base in reversed(kind.__mro__):
+        heading = vars(base).get("GROUP")
+        place: Any = parser.add_argument_group(heading) if heading else parser
+        for name in filter(declared.__contains__, inspect.get_annotations(base)):
+            settings = declared[name]["settings"]
+            if "flags" not in declared[name]:
+                place.add_argument(name, **settings)
+                continue
+            exclusive = declared[name]["exclusive"]
+            if exclusive and exclusive not in places:
+                places[exclusive] = place.add_mutually_exclusive_group()
+            words = _words(name, declared[name]["flags"])
+            places.get(exclusive, place).add_argument(*words, dest=name, **settings)
+
+
+def _words(name: str, flags: Sequence[str]) -> Sequence[str]:
+    """Return the words of the option of a field."""
+    is_named = any(flag.startswith("--") for flag in flags)
+    return flags if is_named else (*flags, f"--{name.replace('_', '-')}")
+
+
+def request_of(kind: type[RequestT], args: argparse.Namespace) -> RequestT:
+    """Make a request of a parsed command line."""
+    values = {one.name: getattr(args, one.name) for one in fields(kind)}
+    return kind(**{name: tuple(v) if isinstance(v, list) else v for name, v in values.items()})
