@@ -25,7 +25,6 @@ from reproduction.experiment import (
     Report,
     Size,
 )
-from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.evaluation.output_files import (
     make_folder,
     write_json,

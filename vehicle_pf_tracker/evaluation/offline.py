@@ -159,12 +159,6 @@ class OfflineTracker:
                 raise
             self.notices.append(f"frame {number} was rejected: {error}")
             return EstimateRow.without(number, stamp_ns, REJECTED)
-        except Exception as error:  # as in the node: it must not cost the frames that went well
-            if self.start_frame is None:
-                raise
-            kind = type(error).__name__
-            self.notices.append(f"frame {number} was rejected: unexpected {kind}: {error}")
-            return EstimateRow.without(number, stamp_ns, REJECTED)
         self.notices += [f"frame {number}: {event}" for event in self.session.events]
         if estimate is None:
             return EstimateRow.without(number, stamp_ns, WAITING)

@@ -146,9 +146,6 @@ class TrafficRun:
                 raise
             self._note(f"frame {number} was rejected: {error}")
             return None
-        except Exception as error:  # as in the node: it must not cost the frames that went well
-            self._note(f"frame {number} was rejected: unexpected {type(error).__name__}: {error}")
-            return None
         for event in self.session.events:
             if event not in self._last_events:  # one that lasts is told once
                 self._note(f"frame {number}: {event}")
