@@ -34,7 +34,8 @@ from reproduction.experiment import (
     Holds,
     Size,
 )
-from reproduction.output import write_document, write_report
+from reproduction.output import write_report
+from reproduction.page import write_page
 from reproduction.running import complete
 from vehicle_pf_tracker.cli.console import USAGE, UsageError
 from vehicle_pf_tracker.cli.main import exit_status
@@ -106,7 +107,7 @@ def _reproduce_all(args: argparse.Namespace) -> int:
     print(f"results are in {args.output}")
     if args.docs is not None:
         command = f"{PROGRAM} {ALL} --docs {args.docs}"
-        page = write_document(args.docs, args.output, PAPERS, command)
+        page = write_page(args.docs, args.output, PAPERS, command)
         print(f"the page is {page}")
     return 0
 

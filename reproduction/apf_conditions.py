@@ -80,7 +80,7 @@ def condition_claims(conditions: Errors) -> tuple[Claim, ...]:
     """Judge every interpretation in all conditions."""
     return (
         Claim(
-            f"(not the paper's, but what it takes for granted) without occlusion APF's median RMSE "
+            f"(assumed by the paper) without occlusion APF's median RMSE "
             f"is at most {FACTOR:g} times the best rival's, in each condition",
             "unoccluded conditions",
             tuple(_finding(conditions, one) for one in _JUDGED),

@@ -66,12 +66,11 @@ RELATIVE = System.of("APF, relative", "apf", {"occlusion.rule": "relative", **_L
 AS_PRINTED = System.of("APF as printed", "apf", {"as_printed": True})
 INTERPRETATIONS = {PAPER: APF, OURS: RELATIVE, PRINTED: AS_PRINTED}
 INTERPRETATIONS_NOTE = (
-    "The paper's rule is step 4 of its algorithm with its tau of 0.8, and an alpha of 0.01, for "
-    "which the paper has no value (of 0.003, 0.01, 0.03 and 0.1 the first two gave the least "
-    "error on `video01` to `video18` with seeds 100 to 104: 23.4, 23.7, 26.5 and 27.9 px). Our "
-    "interpretation, the default of the variant `apf`, has our extension `occlusion.rule: "
-    "relative`, which holds the similarities against their own running level. As printed follows "
-    "the paper to the letter in everything."
+    "The paper's rule is step 4 of its algorithm with its tau of 0.8. The paper prints no alpha; "
+    "0.01 was chosen among 0.003, 0.01, 0.03 and 0.1 on `video01` to `video18`, seeds 100 to 104 "
+    "(23.4, 23.7, 26.5 and 27.9 px). Our interpretation is the default of `apf`: the extension "
+    "`occlusion.rule: relative` compares the similarities with their own running level. As "
+    "printed follows the paper to the letter."
 )
 _OWN: dict[str, Value] = {"likelihood.sigma_v": 0.158}
 OWN_LIKELIHOOD = tuple(
@@ -131,9 +130,9 @@ LEAST_SIGMA, LARGEST_SIGMA = 5.0, 10.0
 """The paper's interval for sigma, px/frame."""
 SIGMA_RULE = (
     f"One rule sets sigma for every tracker that has one: {SPEEDS_PER_SIGMA:g} times the vehicle's "
-    "nominal speed (the paper relates sigma to the speed), kept within the paper's interval from "
-    f"{LEAST_SIGMA:g} to {LARGEST_SIGMA:g} px/frame. All have the same likelihood (`sigma_v` "
-    f"{SIGMA_V:g}). Everything else is each variant's default. " + INTERPRETATIONS_NOTE
+    f"nominal speed, within the paper's interval from {LEAST_SIGMA:g} to {LARGEST_SIGMA:g} "
+    f"px/frame. All have the same likelihood (`sigma_v` {SIGMA_V:g}). Everything else is each "
+    "variant's default. " + INTERPRETATIONS_NOTE
 )
 _SIGMA = {"apf": "motion.sigma_w", "ms": None}
 

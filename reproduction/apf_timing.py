@@ -132,8 +132,7 @@ def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
         f"{len(size.seeds)} passes; the numbers of particles are the defaults (200; 25 with mean "
         "shift; four layers of 50). The paper gives minutes for the whole video, so only ratios "
         "compare.",
-        ("Times differ from run to run and from machine to machine: these numbers, and those of "
-         "`resampling-cost`, are the only ones on this page that do.",),
+        ("Times differ from run to run and from machine to machine.",),
     )  # fmt: skip
 
 

@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 
 from reproduction import (
@@ -27,6 +28,7 @@ from reproduction import (
     apf_fig5,
     apf_fig6,
     apf_fig7,
+    apf_systems,
     apf_table1,
     apf_table2,
     apf_timing,
@@ -35,6 +37,7 @@ from reproduction import (
     mfpf_frames,
     mfpf_histograms,
     mfpf_similarities,
+    mfpf_systems,
     mfpf_table1,
     mfpf_table2,
     mfpf_table3,
@@ -42,6 +45,7 @@ from reproduction import (
     resampling_fig4,
     resampling_fig5,
     resampling_frames,
+    resampling_systems,
 )
 from reproduction.experiment import Experiment
 from vehicle_pf_tracker.core.errors import InputError
@@ -56,16 +60,45 @@ _MFPF = (
 )  # fmt: skip
 _RESAMPLING = resampling_fig4, resampling_fig5, resampling_frames, resampling_cost
 
-PAPERS: Mapping[str, tuple[Experiment, ...]] = MappingProxyType(
-    {
-        "Scharcanski et al. 2011: APF": tuple(module.EXPERIMENT for module in _APF),
-        "Abdulla et al. 2022: MFPF": tuple(module.EXPERIMENT for module in _MFPF),
-        "Khong et al.: adaptive resampling": tuple(module.EXPERIMENT for module in _RESAMPLING),
-    }
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """A paper and its experiments.
+
+    Attributes
+    ----------
+    title : str
+        Authors, year and method.
+    interpretations : str
+        Definition of each interpretation that the paper's claims are judged under.
+    experiments : tuple of Experiment
+        In the paper's order.
+    """
+
+    title: str
+    interpretations: str
+    experiments: tuple[Experiment, ...]
+
+
+PAPERS = (
+    Paper(
+        "Scharcanski et al. 2011: APF",
+        apf_systems.SIGMA_RULE,
+        tuple(module.EXPERIMENT for module in _APF),
+    ),
+    Paper(
+        "Abdulla et al. 2022: MFPF",
+        mfpf_systems.INTERPRETATIONS_NOTE,
+        tuple(module.EXPERIMENT for module in _MFPF),
+    ),
+    Paper(
+        "Khong et al.: adaptive resampling",
+        resampling_systems.INTERPRETATIONS_NOTE,
+        tuple(module.EXPERIMENT for module in _RESAMPLING),
+    ),
 )
-"""The experiments of each paper."""
 EXPERIMENTS: Mapping[str, Experiment] = MappingProxyType(
-    {experiment.name: experiment for of_paper in PAPERS.values() for experiment in of_paper}
+    {experiment.name: experiment for paper in PAPERS for experiment in paper.experiments}
 )
 """Experiments by name."""
 ALL = "all"

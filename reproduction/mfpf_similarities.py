@@ -110,7 +110,7 @@ def _claims(results: Results, size: Size) -> tuple[Claim, ...]:
             tuple(_stays(results, size, interpretation) for interpretation in INTERPRETATIONS),
         ),
         Claim(
-            "of the three, RGB is hit the most by the trees of case 1",
+            "of the three, RGB loses the most under the trees of case 1",
             "section V-A, figure 5a",
             tuple(
                 _lowest(results, size, interpretation, "case1", "color")
@@ -118,7 +118,7 @@ def _claims(results: Results, size: Size) -> tuple[Claim, ...]:
             ),
         ),
         Claim(
-            "the edge feature is the first to come back after the full occlusions of cases 4 to 6",
+            "the edge feature is the first to recover after the full occlusions of cases 4 to 6",
             "section V-D and V-E, figures 11a and 13a",
             tuple(_first_back(results, size, interpretation) for interpretation in INTERPRETATIONS),
         ),

@@ -14,8 +14,8 @@
 
 """Table I of the second paper: the RMS error of the four filters in six cases.
 
-With it go what the paper says of textures, and what it takes for granted: that the filter follows
-the vehicle to the end.
+With it go the paper's claim on textures, and its assumption that the filter follows the vehicle to
+the end.
 """
 
 from __future__ import annotations
@@ -59,20 +59,11 @@ _PAPER = {
     "Texture": (26.35, 11.95, 16.69, 13.66, 16.04, 13.50),
     "MFPF": (15.21, 8.38, 16.16, 9.97, 15.11, 11.93),
 }
-_TRIED = (
-    "What was tried to mend MFPF (with noise from a disc and one first step), as its mean RMS over "
-    "the six cases with 3 to 10 seeds from 100 "
-    "on: its defaults 79 px; a mean speed over 5 frames 70 to 116 px, over 20 and more 29 to 72 px "
-    "(the cloud then passes through what hides the vehicle); a reference that never learns 46 to "
-    "116 px; the best particle for the mean 40 to 116 px; a threshold of 0.9 38 to 116 px. The "
-    "settings above gave 31.6 px, and RGB with the same 38.1 px (seeds 100 to 105). Resampling on "
-    "the weights of all features, also of those below their thresholds, made case 4 worse, 72 "
-    "against 61 px.",
-    "Why it falls behind a single feature: one feature is enough to keep it out of prediction "
+_REMARKS = (
+    "MFPF falls behind a single feature because one feature is enough to keep it out of prediction "
     "mode. Beside a coach or under trees colour and texture drop out, but some window there has "
-    "edges like the vehicle's, so that the edge feature alone leads the particles away; the RGB "
-    "filter predicts meanwhile. On real video it is the other way round: see mfpf in variants.md, "
-    "where both are side by side.",
+    "edges like the vehicle's. The edge feature alone then leads the particles away, while the RGB "
+    "filter predicts. On real video MFPF is ahead: see mfpf in variants.md.",
 )
 _FOLLOWS, _AT_LEAST = 0.8, 0.10
 """Share of the runs that have to be followed; the least saving that the paper speaks of."""
@@ -118,7 +109,7 @@ def report(results: Results, size: Size) -> Report:
                 textures.claim(results, size),
             ),
             mfpf.setting(size),
-            _TRIED,
+            _REMARKS,
         ),
         tables,
     )
@@ -298,7 +289,7 @@ def _further(
 ) -> tuple[Claim, ...]:
     return (
         Claim(
-            "(what the claims above come to) over all cases MFPF's mean RMS is below that of the "
+            "(the claims above taken together) over all cases MFPF's mean RMS is below that of the "
             "best single-feature filter",
             _PLACE,
             (

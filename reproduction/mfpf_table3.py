@@ -80,7 +80,7 @@ def _claims(shares: Mapping[str, Values]) -> tuple[Claim, ...]:
             tuple(_first(interpretation, found) for interpretation, found in shares.items()),
         ),
         Claim(
-            "(what that comes to) over all cases MFPF's share is above the best single-feature "
+            "(taken together) over all cases MFPF's share is above the best single-feature "
             "filter's",
             _PLACE,
             tuple(_over_all(interpretation, found) for interpretation, found in shares.items()),

@@ -100,22 +100,24 @@ VIEWS: Mapping[str, View] = MappingProxyType(
     }
 )
 """The same, and three of them on the harder scene."""
+INTERPRETATIONS_NOTE = (
+    "The paper's rule is its tables I and II, with the plain mean of the particles as the "
+    "position, and a criterion that can be reached (0.7 of 200 particles). Our interpretation, "
+    "the variants' defaults, takes the weighted mean. As printed, the criterion is all particles, "
+    "which no filter can reach. Both filters have the same sigma, random walk and seeds, and at "
+    "most 20 passes a frame, as in the paper. The paper does not define low weights: they are "
+    "those below the mean, or below half of it where that is named. The scheme is multinomial "
+    "unless another is named."
+)
 SETTING = (
-    "The scene `overlap` has the timing of the paper's figure 4: a car passes a parked lorry, "
-    "clear in frames 1 to 10 and almost fully hidden in three or four frames from frame 16 on, "
-    "while a remnant of its roof stays visible; 15 frames per second. `phases`, called hidden "
-    "wholly, is "
-    "harder: a parked van hides half of the car, then a parked coach all of it for 20 frames. Each "
-    "seed renders a new scene and seeds the filters. The paper's rule is its tables I and II, with "
-    "the plain mean of the particles as the position, and a criterion that can be reached "
-    "(0.7 of 200 particles); our interpretation, the variants' defaults, takes the weighted mean; "
-    "as printed, the criterion is all particles, which no filter can reach. Both filters have the "
-    "same sigma, random walk and seeds, and at most 20 passes a frame, as in the paper. "
-    "The paper does not say which "
-    "weights are low: those below the mean one, but where half of it is named. The scheme is "
-    'multinomial but where another is named. "Before" is until something hides the vehicle for '
-    f'the first time, "full" is while less than {REMNANT_BELOW:g} of it is seen (a tenth where it '
-    'is hidden wholly), "after" follows the last such frame, "partial" is what remains.'
+    "The scene `overlap` has the timing of the paper's figure 4: a car passes a parked lorry at 15 "
+    "frames per second. It is clear in frames 1 to 10 and almost fully hidden in three or four "
+    "frames from frame 16, while a remnant of its roof stays visible. `phases`, called hidden "
+    "wholly, is harder: a parked van hides half of the car, then a parked coach all of it for 20 "
+    'frames. Each seed renders a new scene and seeds the filters. "Before" lasts until something '
+    f'hides the vehicle for the first time; "full" is while less than {REMNANT_BELOW:g} of it is '
+    'visible (a tenth where it is hidden wholly). "After" follows the last such frame, and '
+    f'"partial" is what remains. {INTERPRETATIONS_NOTE}'
 )
 
 

@@ -14,11 +14,6 @@
 
 """Write the page of all variants on real sequences from the folder of an evaluation.
 
-for s in ../shared/sequences/*/*/; do
-    vehicle-pf-tracker import $s results/sequences/$(basename $s)
-done
-vehicle-pf-tracker evaluate results/sequences --variants all,baselines --seeds 5 \
-    -o results/evaluation
 python -m reproduction.sequences results/evaluation -o docs/sequences.md
 """
 
@@ -37,20 +32,16 @@ from vehicle_pf_tracker.evaluation.scores import score_frames
 
 INTRODUCTION = """# The variants on real sequences
 
-Nineteen sequences of traffic video with truth: default parameters, started on the first true box,
-without re-starts; made by
+Nineteen recordings with truth, default parameters, the first true box, no restarts; means over the seeds (least–largest).
+`fusion` was developed on all of them, `apf` and `mfpf` were tuned on nine: [fusion.md](fusion.md) has held-out results.
 
-```sh
-{commands}
-```
-
-`csrt`, `kcf` and `mil` are OpenCV's deterministic trackers, run once; where one gives a frame up,
-its last box is scored. Each cell is the mean over the seeds, with the least and the largest value
-where they differ. The values of `apf`'s occlusion rule and of `mfpf` were tuned on nine of these
-sequences, and `fusion` was developed on all of them, so these numbers are not held-out
-results: for `fusion` on cameras left out see [fusion.md](fusion.md).
-"""
-ON_TARGET = "Share of visible frames with an error below half the true box's diagonal:"
+    for s in SEQUENCES/*/*/; do vehicle-pf-tracker import $s results/sequences/$(basename $s); done
+    vehicle-pf-tracker evaluate results/sequences --variants all,baselines --seeds 5 -o results/evaluation
+"""  # noqa: E501
+ON_TARGET = (
+    "Share of visible frames with an error below half the true box's diagonal (where a baseline "
+    "gives a frame up, its last box is scored):"
+)
 RMSE = "RMSE of the centre in visible frames, px:"
 RECOVERED = "Total occlusions recovered from, of those judged, over all seeds:"
 
@@ -70,9 +61,8 @@ def main() -> None:
 def page(evaluation: EvaluationFolder) -> str:
     """Write the page as Markdown."""
     table, missing = _measured(evaluation)
-    commands = "\n".join((__doc__ or "").split("\n\n", 1)[1].rstrip().splitlines())
     parts = [
-        INTRODUCTION.format(commands=commands),
+        INTRODUCTION,
         f"{ON_TARGET}\n\n{_markdown(table, _on_target, 3)}",
         f"{RMSE}\n\n{_markdown(table, _rmse, 1)}",
         f"{RECOVERED}\n\n{_recoveries(table)}",

@@ -20,8 +20,9 @@ python -m benchmarks.bench.performance_page results/bench/bench.json docs
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import TypeAlias
 
 from benchmarks.bench.case import Case
 from benchmarks.bench.figures import kernels_figure, steps_figure
@@ -32,57 +33,57 @@ from vehicle_pf_tracker.evaluation.plots import save
 
 PAGE = "performance.md"
 IMAGES = "images/performance"
+TARGETS_TABLE = "targets.md"
+"""Table of the speed targets, written beside the results."""
 _HEAD = """# Performance
 
-Made from `results/bench/bench.json` by `make bench`; nothing here is written by hand. Every number
-is from one run, in which ours and what it is compared with took turns, and is CPU time of the one
-thread that works (of the whole process for nodes). Times are medians; a ratio is the baseline's
-median over ours, so that above 1 ours is the cheaper one, and behind ± stands half its
-interquartile range. Absolute times are those of the machine below; the ratios are what to trust.
+CPU time of one thread (of the whole process for nodes), from one run in which our code and the
+baseline took turns. Times are medians. A ratio is the baseline's median over ours, ± half its
+interquartile range; above 1 ours is cheaper. Ratios carry over to other machines, times do not.
+`make bench` writes this page; `bench.json` has all cases, `targets.md` the speed targets.
 """
-_KERNELS = """## Windows measured at once
+_STEPS = f"""## One frame's step
 
-The naive baseline takes one crop, one `cv2.calcHist` of 8x8x8 bins (or P2's three features in
-OpenCV and numpy) and one coefficient for each particle. The particles are spread around the vehicle
-by 8 px, and every call sees another frame and another cloud. A turn lasts 5 ms at least, so that
-both work from warm caches; between the images of a node they are colder (see there). `kernel` is
-the route with numba, `kernel-opencv` the one without; `1080p-over-vga` compares the two image sizes
-with each other, and `map512` the similarities of all pixels of an image by the two routes.
+One vehicle of 40x30 px drives through 640x480 images. Each tracker follows it through {BLOCK}
+frames at full speed, then the next one takes its turn. All run with their defaults, OpenCV's
+trackers in a process of their own with one thread. [fusion.md](fusion.md) has the cost of `fusion`
+on real video.
+
+![Times faster than CSRT, by variant]({IMAGES}/steps.svg)
 """
-_STEPS = f"""## A frame's whole step
+_COSTS = """## Cost of more particles, larger windows and images, more trackers
 
-Against OpenCV's trackers on one vehicle of 40x30 px that drives through 640x480 images. Each in its
-turn follows it through {BLOCK} frames at full speed, then the next one does. The baselines run in a
-process of their own with one thread; the transfer of the frame does not count. Defaults throughout.
-What `fusion` costs on real sequences, whole ones and in 4K, is in [fusion.md](fusion.md), Cost.
+Ratio to the same variant by default (200 particles, a window of 41x31 px, 640x480 images, one
+tracker), and the time of one tracker's step.
 """
-_COSTS = """## What more costs
+_KERNELS = f"""## Windows measured at once
 
-The same variant with more particles, another window, a larger image, or more trackers in the
-process (time of one of them), against itself as it is by default: 200 particles, 41x31 px,
-640x480, one.
+The baseline measures each particle on its own: one crop, one `cv2.calcHist` of 8x8x8 bins (or the
+three features of `mfpf`) and one coefficient. `kernel` runs with numba, `kernel-opencv` without;
+`1080p-over-vga` compares image sizes, and `map512` measures a window at every pixel, with numba and
+without.
+
+![Times faster than the baseline, by particles]({IMAGES}/kernels.svg)
 """
 _NODES = """## The node
 
-The floor is a node that takes the image and publishes a point, and does nothing else, with rclpy's
-own executor, the same subscription, and the allocator settings of the launch files. Images of
-640x480 come at 30 Hz from another process, which listens to `position`. `without_step` is the CPU
-of the whole process less that of the tracker's steps; for `all_heard` somebody listens to `mode`,
-`box` and `velocity` too, which are not made otherwise. With a pause between two images the caches
-are cold, so that the step takes longer here than in the table above. Start-up is the CPU of the
-process until it says that it is ready: `warm` is compared with the floor's, `numba` with a start
-with the OpenCV kernels, and `cold` (nothing compiled before) with `warm`.
+The baseline is a node that takes the image and publishes a point, with rclpy's own executor.
+Images of 640x480 come at 30 Hz from another process. `without_step` leaves out the tracker's steps,
+`all_heard` has subscribers to every output. Caches are cold between two images, so a step takes
+longer than above. Start-up lasts until the node is ready. Its baselines are the node above
+(`warm`), a start with the OpenCV kernels (`numba`), and a warm start (`cold`: nothing compiled).
 """
 
 
 def main(source: Path, folder: Path) -> None:
-    """Write the page and its figures below `folder`."""
+    """Write the page and its figures below `folder`, and the targets beside `source`."""
     results = Results.load(source)
     images = folder / IMAGES
     images.mkdir(parents=True, exist_ok=True)
     save(kernels_figure(results), images / "kernels.svg")
     save(steps_figure(results), images / "steps.svg")
     (folder / PAGE).write_text(page(results), encoding="utf-8")
+    (source.parent / TARGETS_TABLE).write_text(targets_table(results, TARGETS), encoding="utf-8")
 
 
 def page(results: Results) -> str:
@@ -90,22 +91,20 @@ def page(results: Results) -> str:
     parts = [
         _HEAD,
         _environment(results),
-        "## Targets and results\n\n" + _targets(results, TARGETS),
-        _KERNELS,
-        f"![Times faster than naive, by particles]({IMAGES}/kernels.svg)\n",
-        _cases(results, "kernel"),
+        _targets(results, TARGETS),
         _STEPS,
-        f"![Times faster than CSRT, by variant]({IMAGES}/steps.svg)\n",
         _steps(results),
         _COSTS,
-        _cases(results, "cost/"),
+        _pivot(_costs(results), "change"),
+        _KERNELS,
+        _pivot(_kernels(results), "case"),
+        _pixel_maps(results),
         _NODES,
         _cases(results, "node/", "startup/"),
-        _numba_share(results),
         _deliveries(results),
         _memory(results),
     ]
-    return "\n".join(parts)
+    return "\n".join(part for part in parts if part)
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -115,19 +114,76 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _environment(results: Results) -> str:
-    rows = [(name.replace("_", " "), str(value)) for name, value in results.environment.items()]
+    machine = dict(results.environment)
+    made = machine.pop("made", "unknown date")
+    facts = ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in machine.items())
     commands = "".join(f"    {command}\n" for command in results.commands)
-    return f"{table(('environment', ''), rows)}\nMade by\n\n{commands}"
+    return f"Measured {made}: {facts}.\n\n{commands}"
 
 
-def _targets(results: Results, targets: Iterable[Target]) -> str:
+def _targets(results: Results, targets: Sequence[Target]) -> str:
+    """Count the targets that are met, and name the others."""
+    met = [target.is_met(results) for target in targets]
+    lines = [f"{sum(one is True for one in met)} of {len(met)} speed targets are met."]
+    for words, verdict in (("Missed", False), ("Not measured", None)):
+        named = [f"`{t.case}`" for t, one in zip(targets, met, strict=True) if one is verdict]
+        lines += [f"{words}: {', '.join(named)}."] if named else []
+    return "\n".join(lines) + "\n"
+
+
+def targets_table(results: Results, targets: Iterable[Target]) -> str:
+    """Write a table of the targets, with what was measured."""
     verdicts = {True: "met", False: "**missed**", None: "not measured"}
     rows = []
     for target in targets:
         value = target.value(results)
-        told = "" if value is None else f"{value:.4g}{target.unit}"
-        rows.append((f"`{target.case}`", target.words, told, verdicts[target.is_met(results)]))
+        measured = "" if value is None else f"{value:.4g}{target.unit}"
+        verdict = verdicts[target.is_met(results)]
+        rows.append((f"`{target.case}`", target.words, measured, verdict))
     return table(("case", "target", "measured", "verdict"), rows)
+
+
+_Cells: TypeAlias = Mapping[str, Mapping[str, Case]]
+"""Cases by the row and by the column of a table."""
+
+
+def _kernels(results: Results) -> _Cells:
+    """Cases by route and count of particles; the smaller image stands for both."""
+    cells: dict[str, dict[str, Case]] = {}
+    for case in results.cases:
+        row, _, count = case.name.rpartition("/n")
+        if row.startswith("kernel") and not row.endswith("/1080p"):
+            cells.setdefault(f"`{row}`", {})[f"{count} particles"] = case
+    return cells
+
+
+def _costs(results: Results) -> _Cells:
+    """Cases by what is changed and by variant."""
+    cells: dict[str, dict[str, Case]] = {}
+    for case in results.cases:
+        if case.name.startswith("cost/"):
+            _, changed, variant, value = case.name.split("/")
+            value = value.removeprefix("n") if changed == "particles" else value
+            cells.setdefault(f"{changed}: {value}", {})[f"`{variant}`"] = case
+    return cells
+
+
+def _pivot(cells: _Cells, corner: str) -> str:
+    columns = list(dict.fromkeys(name for row in cells.values() for name in row))
+    rows = [
+        (name, *(_ratio_and_time(row[column]) if column in row else "" for column in columns))
+        for name, row in cells.items()
+    ]
+    return table((corner, *columns), rows)
+
+
+def _ratio_and_time(case: Case) -> str:
+    return f"{_ratio(case)}; {_digits(case.ours_ms)} ms"
+
+
+def _pixel_maps(results: Results) -> str:
+    found = [case for case in results.cases if case.name.startswith("kernel/map512/")]
+    return "".join(f"`{case.name}`: {_ratio_and_time(case)}.\n" for case in found)
 
 
 def _cases(results: Results, *prefixes: str) -> str:
@@ -136,8 +192,16 @@ def _cases(results: Results, *prefixes: str) -> str:
 
 
 def _row(case: Case) -> tuple[str, ...]:
-    ratio = f"{case.ratio:.3g} ± {case.spread / 2:.2g}"
-    return f"`{case.name}`", f"{case.ours_ms:.4g}", f"{case.baseline_ms:.4g}", ratio
+    return f"`{case.name}`", _digits(case.ours_ms), _digits(case.baseline_ms), _ratio(case)
+
+
+def _digits(milliseconds: float) -> str:
+    """Write four digits, and no power of ten."""
+    return f"{float(f'{milliseconds:.4g}'):.10g}"
+
+
+def _ratio(case: Case) -> str:
+    return f"{case.ratio:.3g} ± {case.spread / 2:.2g}"
 
 
 def _steps(results: Results) -> str:
@@ -147,7 +211,7 @@ def _steps(results: Results) -> str:
     for variant in dict.fromkeys(name.split("/")[1] for name in found):
         cases = [found.get(f"step/{variant}/{baseline}") for baseline in baselines]
         own = next(case.ours_ms for case in cases if case is not None)
-        ratios = [_row(case)[3] if case else "" for case in cases]
+        ratios = [_ratio(case) if case else "" for case in cases]
         share = f"{100 * results.on_target.get(variant, 0):.0f} %"
         rows.append((f"`{variant}`", f"{own:.4g}", *ratios, share))
     times = {case.name.split("/")[2]: case.baseline_ms for case in found.values()}
@@ -158,28 +222,19 @@ def _steps(results: Results) -> str:
     return table(head, rows)
 
 
-def _numba_share(results: Results) -> str:
-    case = results.case("startup/apf/numba")
-    if case is None:
-        return ""
-    share = case.ours_ms - case.baseline_ms
-    return f"Of a warm start's {case.ours_ms:.0f} ms, numba and its kernels take {share:.0f} ms.\n"
-
-
 def _deliveries(results: Results) -> str:
-    rows = [
-        (f"`{one.name}`", f"{one.rate_hz:g}", str(one.sent), str(one.lost), f"{one.cpu_ms:.3g}")
+    lines = [
+        f"`{one.name}`, a camera for each node: {one.sent} images at {one.rate_hz:g} Hz each, "
+        f"{one.lost} lost, {one.cpu_ms:.3g} ms of CPU per image."
         for one in results.deliveries
     ]
-    words = "Nodes at once, each with a camera of its own, reliable with a depth of 10:\n\n"
-    return words + table(("nodes", "Hz each", "images", "lost", "CPU per image, ms"), rows)
+    return "\n".join(lines) + "\n"
 
 
 def _memory(results: Results) -> str:
     rows = [(f"`{m.name}`", f"{m.ours_mb:.1f}", f"{m.baseline_mb:.1f}") for m in results.memory]
     words = (
-        "Resident memory, shared libraries included: a process with many trackers against the "
-        "same with one,\nand the node against the floor:\n\n"
+        "Resident memory, against one tracker in the process, and against the baseline node:\n\n"
     )
     return words + table(("memory", "ours, MB", "baseline, MB"), rows)
 

@@ -22,7 +22,7 @@ from benchmarks.bench.results import Results
 
 def results():
     return Results(
-        environment={"python": "3.11", "load_average": 0.1},
+        environment={"made": "2026-11-21T14:45:22+00:00", "python": "3.11", "load_average": 0.1},
         commands=["python -m benchmarks.bench"],
         cases=[
             Case("kernel/joint512/41x31/vga/n200", 0.05, 2.5, 50.0, 4.0),
@@ -33,6 +33,9 @@ def results():
             Case("node/apf/without_step", 1.2, 1.0, 0.833, 0.02),
             Case("startup/apf/warm", 900.0, 200.0, 0.222, 0.02),
             Case("startup/apf/numba", 900.0, 420.0, 0.467, 0.02),
+            Case("startup/apf/cold", 17820.0, 900.0, 0.05, 0.02),
+            Case("cost/particles/apf/n50", 0.1, 0.2, 2.0, 0.2),
+            Case("cost/particles/mfpf/n50", 0.3, 1.2, 4.0, 0.2),
         ],
         memory=[MemoryCase("memory/node/apf", 240.0, 76.0)],
         deliveries=[Delivery("fleet/apf/8x640x480", 8, 15.0, 3600, 2, 1.9)],

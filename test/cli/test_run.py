@@ -12,13 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
+import itertools
 import json
 
 import pytest
 from small_recordings import COUNT, TARGET, box_of, record, record_two_cameras
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation.estimates import WAITING, read_estimates
+from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, read_estimates
+from vehicle_pf_tracker.trackers.session import Session
 
 
 @pytest.fixture
@@ -153,3 +155,20 @@ def test_a_road_that_is_none_is_refused(tmp_path, capsys):
     words = ["run", str(recording), "--variant", "pf", "--set", "road.pairs=0,0=0,0"]
     assert main([*words, "-o", str(tmp_path / "out")]) == 1
     assert "at least 4 pairs" in capsys.readouterr().err
+
+
+def test_an_unexpected_error_costs_its_frame_alone(run, bag, monkeypatch):
+    feed = Session.feed
+
+    def fail_once(session, frame, stamp_ns):
+        estimate = feed(session, frame, stamp_ns)
+        if next(calls) == 4:
+            raise ZeroDivisionError("by zero")
+        return estimate
+
+    calls = itertools.count(1)
+    monkeypatch.setattr(Session, "feed", fail_once)
+    rows, _, info = run(bag)
+    assert [row.frame for row in rows if row.mode == REJECTED] == [4]
+    assert len(rows) == COUNT
+    assert "frame 4 was rejected: unexpected ZeroDivisionError: by zero" in info["notices"]

@@ -345,6 +345,24 @@ def test_an_interrupt_keeps_what_was_written(run, monkeypatch, capsys):
     assert "a signal ended the run after 9 of 20 frames" in capsys.readouterr().err
 
 
+def test_an_unexpected_error_costs_its_frame_alone(run, monkeypatch):
+    class Failing(Follower):
+        steps = 0
+
+        def step(self, frame, detections=None, elapsed=1.0):
+            self.steps += 1
+            if self.steps == 9:
+                raise ZeroDivisionError("by zero")
+            return super().step(frame, detections, elapsed)
+
+    monkeypatch.setattr(traffic, "TrafficTracker", Failing)
+    out = run()
+    frames = {int(row["frame"]) for row in table(out / "tracks.csv")}
+    assert frames == {*range(1, 21)} - {9}
+    notices = json.loads((out / "run.json").read_text())["notices"]
+    assert "frame 9 was rejected: unexpected ZeroDivisionError: by zero" in notices
+
+
 def block(language):
     """The one block of code of this language on the page."""
     page = Path(__file__).parents[2] / "docs" / "traffic.md"

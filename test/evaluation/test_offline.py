@@ -17,6 +17,7 @@ import dataclasses
 import numpy as np
 import pytest
 from drive import box_of, drive, frame_of, stamp_of, truth_of
+from failing import ERROR, failing
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -24,6 +25,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING
 from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
+from vehicle_pf_tracker.trackers.failures import TrackerError
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.session import Session
 
@@ -48,6 +50,29 @@ def test_one_row_per_frame_and_the_vehicle_is_followed():
     assert [(row.frame, row.stamp_ns) for row in rows] == [(i + 1, stamp_of(i)) for i in range(20)]
     for index, row in enumerate(rows):
         assert np.hypot(*np.subtract(row.position, box_of(index).centre)) < 5
+
+
+def test_a_tracker_that_fails_twice_starts_anew_and_the_run_goes_on(monkeypatch):
+    monkeypatch.setattr(PF.tracker, "step", failing(PF.tracker.step, {4, 5}))
+    made = tracker(TARGET)
+    rows = list(made.rows(drive()))
+    assert modes(rows) == ["TRACKING"] * 5 + [REJECTED] + ["TRACKING"] * 14
+    assert np.hypot(*np.subtract(rows[-1].position, box_of(19).centre)) < 5
+    assert made.notices == [
+        f"frame 6 was rejected: {ERROR}",
+        f"frame 7: the tracker failed twice in a row and has started anew: {ERROR}",
+    ]
+
+
+def test_a_broken_tracker_ends_the_run(monkeypatch):
+    made = tracker(TARGET)
+    rows = made.rows(drive())
+    next(rows)
+    monkeypatch.setattr(PF.tracker, "step", lambda *_: 1 / 0)
+    monkeypatch.setattr(PF.tracker, "start", lambda *_: 1 / 0)
+    assert next(rows).mode == REJECTED
+    with pytest.raises(TrackerError, match="division by zero"):
+        next(rows)
 
 
 def test_the_numbers_are_those_of_the_session():

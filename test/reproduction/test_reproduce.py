@@ -49,10 +49,28 @@ def test_one_experiment_writes_its_folder_and_the_page(tmp_path, capsys):
     assert f"(images/reproduction/{picture.name})" in page
     sizes = [(out / "apf-fig4" / f"figure.{kind}").stat().st_size for kind in ("svg", "png")]
     assert picture.stat().st_size == min(sizes)
-    word = json.loads((out / "apf-fig4" / "verdict.json").read_text())["holds"]
+    verdict = json.loads((out / "apf-fig4" / "verdict.json").read_text())
+    word = verdict["holds"]
     assert f"and 30 px | **{word}** |" in page
     assert "| 100 |" in page  # the seed
     assert f"apf-fig4: {word}  (" in capsys.readouterr().out
+
+
+def test_the_page_gives_each_claim_a_row_with_the_numbers_of_all_three_interpretations(tmp_path):
+    out = tmp_path / "out"
+    reproduce(out, "apf-fig4", "--docs", str(tmp_path))
+    page = (tmp_path / "reproduction.md").read_text()
+    section = page.partition("\n### apf-fig4")[2]
+    assert "| claim | the paper's rule | our interpretation | as printed |" in section
+    for claim in json.loads((out / "apf-fig4" / "verdict.json").read_text())["claims"]:
+        cells = [f"**{f['holds']}**: {f['numbers']}" for f in claim["findings"]]
+        assert f"| {claim['claim']} ({claim['place']}) | {' | '.join(cells)} |" in section
+
+
+def test_the_page_gives_a_claim_without_interpretations_one_result(tmp_path):
+    reproduce(tmp_path / "out", "apf-fig2", "--docs", str(tmp_path))
+    section = (tmp_path / "reproduction.md").read_text().partition("\n### apf-fig2")[2]
+    assert "| claim | result |" in section
 
 
 def test_the_page_has_what_was_made_before_too_and_a_second_time_nothing_changes(tmp_path):

@@ -14,6 +14,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from vehicle_pf_tracker.road.motion import RoadMotion
 
@@ -61,3 +63,30 @@ def test_deviation_is_that_of_many_runs():
         deviations.append(motion.speed_deviation)
     assert np.mean(speeds) == pytest.approx(13.0, abs=0.05)
     assert np.std(speeds) == pytest.approx(np.mean(deviations), rel=0.1)
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    st.lists(
+        st.tuples(
+            st.floats(-9, 4),  # power of ten of the seconds
+            st.one_of(st.none(), st.tuples(st.floats(-1e4, 1e4), st.floats(-8, 6))),
+        ),
+        max_size=60,
+    )
+)
+def test_no_times_and_measurements_end_a_covariance(steps):
+    motion = RoadMotion.at(np.zeros(2), np.eye(2) * 0.01)
+    for power, measured in steps:
+        motion = motion.predicted(10.0**power, 2.0)
+        if measured is not None:
+            place, variance = measured
+            covariance = np.array([[2.0, 1.0], [1.0, 3.0]]) * 10.0**variance
+            motion = motion.measured(np.array([place, -place]), covariance)
+        assert np.isfinite(motion.state).all()
+        assert np.isfinite(motion.speed_deviation)
+        deviations = np.sqrt(np.diag(motion.covariance))
+        assert deviations.min() > 0
+        correlations = motion.covariance / np.outer(deviations, deviations)
+        assert np.abs(correlations - correlations.T).max() < 1e-6
+        assert np.linalg.eigvalsh(correlations).min() > -1e-6

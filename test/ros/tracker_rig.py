@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped
@@ -74,6 +76,20 @@ def values_of(answer: DiagnosticArray) -> dict[str, str]:
     return {item.key: item.value for item in answer.status[0].values}
 
 
+def diagnostics_of(bench, name: str, accept, timeout: float = 20.0) -> dict[str, str]:
+    """The values of the next report of the node `name` that `accept` takes."""
+    heard: list[DiagnosticArray] = []
+    listener = bench.node.create_subscription(DiagnosticArray, "/diagnostics", heard.append, 10)
+
+    def found():
+        tables = [values_of(one) for one in heard if one.status[0].name.startswith(f"{name}:")]
+        return next((table for table in tables if accept(table)), None)
+
+    table = bench.wait_for(found, timeout)
+    bench.node.destroy_subscription(listener)
+    return table
+
+
 class Rig:
     """The node under test, a publisher of images, and everything that it answered."""
 
@@ -119,3 +135,21 @@ class Rig:
             return next((p for p in self.positions if stamp_ns(p.header) == wanted), None)
 
         return self.bench.wait_for(found)
+
+
+def ended_by_failures(bench, node, topic: str) -> None:
+    """Show a node good images until it has ended; each is answered."""
+    node.wait_for_output("ready")
+    camera = bench.publisher(Image, "image", QUEUE)
+    answers = bench.collect(DiagnosticArray, topic, QUEUE)
+    frame = road(1)[0]
+    bench.publish_until(lambda: answers, camera, image_message(header(0), frame))
+    for index in itertools.count(1):
+        count = len(answers)
+        camera.publish(image_message(header(index), frame))
+        bench.wait_for(lambda: len(answers) > count or node.popen.poll() is not None)  # noqa: B023
+        if node.popen.poll() is not None:
+            break
+    assert node.wait() == 1
+    assert "20 callbacks failed within 10 s: ending" in node.output
+    assert {answer.status[0].message for answer in answers} == {"REJECTED"}

@@ -359,3 +359,17 @@ def test_reconfiguring_before_the_start_is_allowed(variant):
     tracker = make(variant)
     tracker.reconfigure(from_mapping(variant.parameters, {"num_particles": 33}))
     assert len(tracker.start(Street().frame(0), Street().box(0)).weights) == 33
+
+
+@every_variant
+@pytest.mark.parametrize("hidden", [(10**9, 10**9), (12, 20)])
+def test_no_elapsed_times_make_an_estimate_infinite(variant, hidden):
+    street, powers = Street(hidden=hidden), np.random.default_rng(0).uniform(-9, 4, 10)
+    tracker = make(variant, **few_particles(variant))
+    follow(tracker, street, range(8))
+    for index, power in enumerate([-9, -9, 4, 4, *powers, -9, 4, -9, 4]):
+        estimate = tracker.step(street.frame(8 + index), 10.0**power)
+        box = estimate.box
+        assert np.isfinite([*estimate.velocity, box.width, box.height, estimate.confidence]).all()
+        assert np.isfinite(estimate.weights).all()
+        assert inside(estimate)

@@ -182,7 +182,7 @@ def test_one_stamp_ahead_after_dropped_images_costs_the_track_nothing():
     of.feed(street.frame(15), 16 * PERIOD_NS)
     of.feed(street.frame(16), 20 * PERIOD_NS)
     (estimate,) = feed(of, street, [17])
-    assert of.events == ["the last image's stamp was ahead; its estimate is taken back"]
+    assert of.events == ["the last image's stamp was ahead"]
     assert error(estimate, street, 17) < 10
 
 
@@ -332,6 +332,15 @@ def test_a_target_outside_without_a_track_is_refused_once_and_then_waited_for():
         feed(at_work, street, [0])
     assert at_work.waiting
     assert feed(at_work, street, [1]) == [None]
+
+
+def test_a_target_outside_that_was_given_by_hand_leaves_the_configured_one():
+    street = Street()
+    at_work = session(street.box(0))
+    at_work.set_target(Box(5000, 0, 10, 10))
+    with pytest.raises(InputError, match="outside"):
+        feed(at_work, street, [0])
+    assert error(feed(at_work, street, [1])[0], street, 1) < 10
 
 
 def test_a_new_image_size_starts_again_and_says_so():

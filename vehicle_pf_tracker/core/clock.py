@@ -24,6 +24,9 @@ import statistics
 from dataclasses import dataclass
 from enum import Enum
 
+DEFAULT_PERIOD = 1 / 30
+"""Frame period in s that is assumed until stamps or a parameter give it: that of common cameras."""
+
 _LEARNING_INTERVALS = 10
 """Intervals whose median is the period: up to four outliers, such as dropped frames, do no harm,
 and at 10 frames/s the period is known after a second."""

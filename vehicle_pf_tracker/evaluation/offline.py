@@ -32,6 +32,7 @@ from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateR
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.trackers.continuity import StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.failures import TrackerError
 from vehicle_pf_tracker.trackers.localisation import Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.road_follower import ROAD_COLUMNS
@@ -153,10 +154,16 @@ class OfflineTracker:
             return EstimateRow.without(number, stamp_ns, REJECTED)
         try:
             self.estimate = estimate = self.session.feed(frame, stamp_ns)
-        except InputError as error:
-            if self.start_frame is None and not isinstance(error, StrayImageError):
+        except (InputError, TrackerError) as error:
+            if self._ends_run(error):
                 raise
             self.notices.append(f"frame {number} was rejected: {error}")
+            return EstimateRow.without(number, stamp_ns, REJECTED)
+        except Exception as error:  # as in the node: it must not cost the frames that went well
+            if self.start_frame is None:
+                raise
+            kind = type(error).__name__
+            self.notices.append(f"frame {number} was rejected: unexpected {kind}: {error}")
             return EstimateRow.without(number, stamp_ns, REJECTED)
         self.notices += [f"frame {number}: {event}" for event in self.session.events]
         if estimate is None:
@@ -165,6 +172,11 @@ class OfflineTracker:
             self.start_frame = number
         self._locate(estimate, stamp_ns)
         return EstimateRow.from_scalars(number, stamp_ns, estimate.scalars())
+
+    def _ends_run(self, error: InputError | TrackerError) -> bool:
+        if isinstance(error, TrackerError):
+            return error.persists
+        return self.start_frame is None and not isinstance(error, StrayImageError)
 
     def _locate(self, estimate: Estimate, stamp_ns: int) -> None:
         if self._localisation is None:

@@ -22,7 +22,7 @@ CPU time and 200 MB.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -65,7 +65,7 @@ _EXTRA = bytes(1 + (37 * at + at * at) % 254 for at in range(256))
 """Bytes that decode to anything but grey, with no marker among them."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class CodedImage:
     """A JPEG or PNG that may be decoded, of a size that its header states.
 
@@ -81,15 +81,21 @@ class CodedImage:
     size: tuple[int, int]
     _data: bytes
     _structure: JpegStructure | PngStructure
+    _frame: Frame | None = field(default=None, init=False)
 
     def decode(self) -> Frame:
-        """Decode it to an RGB frame.
+        """Decode it to an RGB frame; once, however often it is asked for.
 
         Raises
         ------
         InputError
             If it is damaged or cut off.
         """
+        if self._frame is None:
+            self._frame = self._decoded()
+        return self._frame
+
+    def _decoded(self) -> Frame:
         structure = self._structure
         if isinstance(structure, PngStructure) and not structure.inflates_to_its_size():
             raise InputError(f"{self.name} cannot be decoded: its data are damaged")

@@ -26,6 +26,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
@@ -39,9 +40,6 @@ from vehicle_pf_tracker.trackers.target import Target
 
 ParametersT = TypeVar("ParametersT", bound=CommonParameters)
 ParticleParametersT = TypeVar("ParticleParametersT", bound=ParticleParameters)
-
-DEFAULT_PERIOD = 1 / 30
-"""Frame period in s that is assumed until stamps or a parameter give it: that of common cameras."""
 
 
 @dataclass(frozen=True, slots=True)

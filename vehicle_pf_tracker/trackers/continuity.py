@@ -128,8 +128,8 @@ class Continuity:
         if self._last is None:
             return None
         if seen.size != self._last.size:
-            usual = _words(self._last.size)
-            return f"the image is of {_words(seen.size)} px among images of {usual} px"
+            usual = size_words(self._last.size)
+            return f"the image is of {size_words(seen.size)} px among images of {usual} px"
         interval = seen.stamp_ns - self._last.stamp_ns
         if timed and interval < 0:
             return f"the image's stamp goes back by {-interval * 1e-9:.3f} s"
@@ -162,5 +162,6 @@ class Continuity:
             self._intervals.append(interval_ns)
 
 
-def _words(size: Size) -> str:
+def size_words(size: Size) -> str:
+    """Describe a size in px."""
     return f"{size[0]}x{size[1]}"

@@ -18,6 +18,7 @@ import io
 
 import numpy as np
 import pytest
+from failing import failing
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -25,6 +26,7 @@ from vehicle_pf_tracker.evaluation.traffic.following import Target, TrafficRun
 from vehicle_pf_tracker.evaluation.traffic.track_files import TrackFiles
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.trackers.failures import TrackerError
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -92,6 +94,25 @@ def test_a_recording_that_begins_again_counts_its_vehicles_again(follow):
     assert run.session.restarts == 1
     assert counter.count("l", "in") == 2
     assert len(run.summary.vehicles) == 2  # no number is given again
+
+
+def test_a_name_stays_with_its_vehicle_when_the_tracker_starts_anew(follow, monkeypatch):
+    targets = {
+        2: [Target("van", Box(50, 50, 30, 20))],
+        8: [Target("van", Box(60, 60, 30, 20))],
+    }
+    monkeypatch.setattr(TrafficTracker, "step", failing(TrafficTracker.step, {3, 4}))
+    run, rows = follow([k * PERIOD_NS for k in range(10)], targets=targets)
+    by_frame = {int(row.split(",")[0]): int(row.split(",")[2]) for row in rows}
+    assert by_frame == {3: 1, 5: 2, 6: 2, 7: 2, 8: 2, 9: 3, 10: 3}
+    assert len(rows) == len(by_frame)
+    assert [words.partition(":")[0] for words in run.notices] == ["frame 4 was rejected", "frame 5"]
+
+
+def test_a_broken_tracker_ends_the_run(follow, monkeypatch):
+    monkeypatch.setattr(TrafficTracker, "step", lambda *_: 1 / 0)
+    with pytest.raises(TrackerError, match="division by zero"):
+        follow([0, PERIOD_NS])
 
 
 def test_a_name_that_comes_again_replaces_the_vehicle(follow):

@@ -32,25 +32,11 @@ from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
-from tracker_rig import Rig, header, on_target, overrides, road, values_of
+from tracker_rig import Rig, diagnostics_of, header, on_target, overrides, road, values_of
 
 from vehicle_pf_tracker.ros.messages import image_message
 
 pytestmark = pytest.mark.ros
-
-
-def diagnostics_of(bench, name: str, accept, timeout: float = 20.0) -> dict[str, str]:
-    """The values of the next report of the node `name` that `accept` takes."""
-    heard: list[DiagnosticArray] = []
-    listener = bench.node.create_subscription(DiagnosticArray, "/diagnostics", heard.append, 10)
-
-    def found():
-        tables = [values_of(one) for one in heard if one.status[0].name.startswith(f"{name}:")]
-        return next((table for table in tables if accept(table)), None)
-
-    table = bench.wait_for(found, timeout)
-    bench.node.destroy_subscription(listener)
-    return table
 
 
 def resident(process) -> int:

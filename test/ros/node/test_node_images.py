@@ -40,6 +40,7 @@ from tracker_rig import (
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.trackers.base import BaseTracker
 from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session
 
@@ -192,7 +193,7 @@ def test_an_unexpected_error_is_an_answer_too(bench, monkeypatch):
     frames = road(3)
     rig.play(frames[:1])
     with monkeypatch.context() as patch:
-        patch.setattr(Session, "feed", lambda *_: 1 / 0)
+        patch.setattr(BaseTracker, "step", lambda *_: 1 / 0)
         answer = rig.show_frame(frames[1], 1)
     assert values_of(answer)["reason"] == "unexpected ZeroDivisionError: division by zero"
     assert rig.show_frame(frames[2], 2).status[0].message == "TRACKING"

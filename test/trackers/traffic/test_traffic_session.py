@@ -152,7 +152,7 @@ def test_a_stray_that_is_compressed_is_not_decoded():
         session.feed(Coded(), PERIOD_NS)
     assert Coded.decoded == 0
     session.feed(Coded(), 2 * PERIOD_NS)
-    assert Coded.decoded == 1
+    assert Coded.decoded == 2
 
 
 def test_one_odd_image_is_rejected_and_nothing_is_forgotten():
@@ -176,8 +176,19 @@ def test_a_size_that_stays_begins_anew():
     session.feed(other, 3 * PERIOD_NS)
     assert (session.tracker.resets, session.restarts) == (1, 1)
     assert session.detector is not first
-    assert session.detector.tracks == [[]]
+    assert session.detector.tracks == [[], [3]]
     assert "20x10" in session.events[0]
+
+
+def test_a_rejected_image_that_is_confirmed_is_tracked_in_with_its_own_detections():
+    session = TrafficSession(Steps())
+    feed_all(session, [0, PERIOD_NS])
+    first, second = Detections.make([[1, 2, 3, 4]]), Detections.make([[2, 2, 3, 4]])
+    other = np.zeros((10, 20, 3), np.uint8)
+    with pytest.raises(StrayImageError):
+        session.feed(other, 2 * PERIOD_NS, first)
+    session.feed(other, 3 * PERIOD_NS, second)
+    assert session.tracker.seen == [None, None, first, second]
 
 
 @pytest.mark.parametrize(("resets", "expected"), [(True, 1), (False, 0)])

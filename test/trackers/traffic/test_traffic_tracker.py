@@ -27,6 +27,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Dete
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
 
 GROUND = np.random.default_rng(0).integers(90, 130, (240, 320, 3)).astype(np.uint8)
 PAINT = np.random.default_rng(1).integers(0, 255, (80, 80, 3)).astype(np.uint8)
@@ -115,6 +116,38 @@ def test_a_detection_that_stays_where_it_is_and_flickers_is_no_vehicle():
 def test_runs_repeat_bit_by_bit():
     first, second = (drive(TrafficTracker(), 40, seen=lambda i: i % 7 != 0) for _ in range(2))
     assert repr(first) == repr(second)
+
+
+def test_a_vehicle_given_by_hand_that_a_detector_sees_ends_like_others():
+    tracker = TrafficTracker(FLAT)
+    tracker.step(scene((20, 100, 40, 30)))
+    tracker.add(Box(20, 100, 40, 30))
+    every = drive(tracker, 75, right=lambda index: min(20 + 4 * index, 280))  # part of it has left
+    assert [len(estimates) for estimates in every[:60]] == [1] * 60
+    for _ in range(200):
+        estimates = tracker.step(GROUND, Detections.none())
+    assert estimates == ()
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -1.0])
+def test_a_vehicle_of_a_bad_state_is_dropped_counted_and_the_others_go_on(monkeypatch, value):
+    tracker = TrafficTracker(FLAT)
+    boxes = [(40, 60, 40, 30), (200, 160, 40, 30)]
+    tracker.step(scene(*boxes))
+    for box in boxes:
+        tracker.add(Box(*box))
+    predict = VehicleState.predict
+
+    def spoil(state, elapsed):
+        predict(state, elapsed)
+        if state.box.centre[0] < 100:
+            state.covariance[1] = value
+
+    monkeypatch.setattr(VehicleState, "predict", spoil)
+    kept, new = tracker.step(scene(*boxes), Detections.make(boxes))
+    assert tracker.bad_states == 1
+    assert (kept.identity, kept.mode) == (2, TrackMode.TRACKING)
+    assert (new.identity, new.mode) == (3, TrackMode.TENTATIVE)  # it is detected anew
 
 
 def test_vehicles_given_by_hand_need_no_detector():

@@ -16,8 +16,11 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
+    ACROSS,
     ALONG,
     OBSERVATION,
     Drive,
@@ -27,6 +30,7 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
 )
 
 STILL = Drive(acceleration=0.0, top_speed=0.5, focal=400.0)
+MOVING = Drive(acceleration=0.01, top_speed=0.5, focal=400.0)
 
 
 @pytest.fixture
@@ -133,3 +137,59 @@ def test_a_horizon_that_leaps_casts_doubt_on_size_and_speed():
     variance = [float(width @ one.covariance @ width) for one in (near, far)]
     assert variance[0] == pytest.approx(2.0)
     assert variance[1] == pytest.approx(2.0 + ((np.log(510 / 110) - 0.3) * 40) ** 2)
+
+
+@pytest.mark.parametrize("along", [-1.0, 1.0])
+def test_where_the_growth_is_bounded_it_depends_on_nothing(state, along):
+    state.mean[ALONG] = along  # far beyond a growth of 1.3 in a period
+    before = state.covariance.copy()
+    state.predict(1.0)
+    growth = 1.3 ** -np.sign(along)
+    assert state.mean[V] == pytest.approx(100 * growth)
+    assert state.covariance[V, V] == pytest.approx(before[V, V] * growth**2)
+
+
+def test_a_hidden_vehicle_that_drives_away_stays_as_uncertain_as_it_is():
+    state = VehicleState(np.array([80.0, 60.0, 120.0, 90.0]), np.ones(4), 50.0, MOVING)
+    state.mean[ALONG] = 0.1
+    for _ in range(1000):
+        state.predict(1.0)
+    assert state.is_sound
+
+
+STEPS = st.tuples(
+    st.floats(-9, 4),  # power of ten of the elapsed periods
+    st.lists(st.tuples(st.sampled_from(Edge), st.floats(0, 1000), st.floats(0.7, 100)), max_size=4),
+    st.floats(-1000, 1000),  # the horizon's row
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    st.lists(STEPS, max_size=60),
+    st.tuples(st.floats(-1, 1), st.floats(-1, 1)),
+    st.tuples(st.floats(0, 500), st.floats(1, 500), st.floats(1, 300)),
+)
+def test_no_times_and_measurements_end_a_covariance(steps, velocity, box):
+    left, width, height = box
+    edges = np.array([left, 400 - height, left + width, 400.0])
+    state = VehicleState(edges, np.ones(4), 50.0, MOVING)
+    state.mean[ACROSS:] = velocity
+    for power, measurements, horizon in steps:
+        state.move_horizon(horizon)
+        state.predict(10.0**power)
+        assert_sound(state)
+        assert np.abs(state.mean).max() <= 1e5
+        for edge, value, deviation in measurements:
+            state.measure(edge, value, deviation)
+        assert_sound(state)
+
+
+def assert_sound(state):
+    """Symmetric, positive and bounded, to the rounding that a measurement after a gap leaves."""
+    assert state.is_sound
+    deviations = np.sqrt(np.diag(state.covariance))
+    assert deviations.max() <= 1e4 * (1 + 1e-9)
+    correlations = state.covariance / np.outer(deviations, deviations)
+    assert np.abs(correlations - correlations.T).max() < 1e-6
+    assert np.linalg.eigvalsh(correlations).min() > -1e-6

@@ -33,6 +33,7 @@ from vehicle_pf_tracker.evaluation.traffic.path_picture import PathPicture
 from vehicle_pf_tracker.evaluation.traffic.summary import TrafficSummary
 from vehicle_pf_tracker.evaluation.traffic.track_files import TrackFiles
 from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.trackers.failures import TrackerError
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -140,19 +141,30 @@ class TrafficRun:
         detections = self._detections_of(number) if self._detections_of is not None else None
         try:
             estimates = self.session.feed(found.frame, found.stamp_ns, detections)
-        except InputError as error:
+        except (InputError, TrackerError) as error:
+            if isinstance(error, TrackerError) and error.persists:
+                raise
             self._note(f"frame {number} was rejected: {error}")
+            return None
+        except Exception as error:  # as in the node: it must not cost the frames that went well
+            self._note(f"frame {number} was rejected: unexpected {type(error).__name__}: {error}")
             return None
         for event in self.session.events:
             if event not in self._last_events:  # one that lasts is told once
                 self._note(f"frame {number}: {event}")
         self._last_events = list(self.session.events)
-        if self.counter is not None and self.session.restarts != self._restarts:
-            self._restarts = self.session.restarts
-            self.counter.forget_vehicles()
+        if self.session.restarts != self._restarts:
+            self._begin_anew()
         for target in self._targets.get(number, ()):
             self._add(target, found.frame, number)
         return estimates
+
+    def _begin_anew(self) -> None:
+        """Note that the session has discarded all vehicles but those that it kept."""
+        self._restarts, kept = self.session.restarts, self.session.successors
+        self._by_name = {name: kept[old] for name, old in self._by_name.items() if old in kept}
+        if self.counter is not None:
+            self.counter.forget_vehicles()
 
     def _add(self, target: Target, frame: Frame, number: int) -> None:
         """Follow a vehicle from this frame on; a name that comes again replaces the one before."""
@@ -161,9 +173,9 @@ class TrafficRun:
         except InputError as error:
             raise InputError(f"in frame {number}, {error}") from None
         if target.name in self._by_name:
-            self.session.tracker.remove(self._by_name[target.name])
+            self.session.remove(self._by_name[target.name])
         label = "" if target.name.isdecimal() else target.name
-        self._by_name[target.name] = self.session.tracker.add(target.box, label)
+        self._by_name[target.name] = self.session.add(target.box, label)
 
     def _write(
         self,

@@ -37,6 +37,8 @@ class Health:
         Images that arrived, that could not be used, and that were sent but never arrived.
     refused_targets : int
         Targets that could not be used.
+    restarts : int
+        Times that the tracker failed twice in a row and started anew.
     last_rejection, last_refusal : str
         The reasons.
     road : mapping
@@ -48,6 +50,7 @@ class Health:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self.images = self.rejected = self.dropped = self.refused_targets = 0
+        self.restarts = 0
         self.last_rejection = self.last_refusal = ""
         self.mode = WAITING
         self.road: Mapping[str, object] = {}
@@ -122,6 +125,7 @@ class Health:
             "last rejection": self.last_rejection,
             "refused targets": self.refused_targets,
             "last refused target": self.last_refusal,
+            "restarts after errors": self.restarts,
             "time since last image (s)": round(now - self._heard, 1),
             **self.road,
         }

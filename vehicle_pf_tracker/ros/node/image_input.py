@@ -33,7 +33,6 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.node.images import read_serialized
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError
 
 ImageCallback = Callable[[Any, Mapping[str, Any]], None]
@@ -91,7 +90,7 @@ class ImageInput:
     depth : int
         Images that may wait.
     callback : callable
-        Takes the message, or a `SerializedImage` in place of an `Image`, and its info.
+        Takes the message, serialized in place of an `Image`, and its info.
 
     Raises
     ------
@@ -108,7 +107,7 @@ class ImageInput:
             node,
             self._kind,
             self.topic,
-            _reading(callback) if self._kind is Image else callback,
+            callback,
             QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT),
             raw=self._kind is Image,
         )
@@ -177,12 +176,3 @@ def _is_overlay(topic: str, topics: Container[str]) -> bool:
     """Return whether it is the overlay of a tracker node, whatever that is called."""
     node, _, name = topic.rpartition("/")
     return name == "overlay" and f"{node}/mode" in topics
-
-
-def _reading(callback: ImageCallback) -> ImageCallback:
-    """Make a callback for serialized images of one for images."""
-
-    def read(message: Any, info: Mapping[str, Any]) -> None:
-        callback(read_serialized(message), info)
-
-    return read

@@ -18,16 +18,27 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Protocol
+
+from sensor_msgs.msg import CompressedImage
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
 from vehicle_pf_tracker.ros.node.image_input import ImageInput
+from vehicle_pf_tracker.ros.node.images import SerializedImage, read_serialized
 from vehicle_pf_tracker.ros.node.managed_node import ManagedNode
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, unknown_overrides
 from vehicle_pf_tracker.ros.rclpy_internals import missing
+
+
+class _Stream(Protocol):
+    """Processing of images in a configured node."""
+
+    def take(self, message: SerializedImage | CompressedImage) -> None:
+        """Answer an image."""
+        ...
 
 
 class ImageNode(ManagedNode):
@@ -42,6 +53,9 @@ class ImageNode(ManagedNode):
     diagnostics : Diagnostics
         What is published on /diagnostics.
     """
+
+    _stream: _Stream | None
+    """Where images go; None while the node is not configured."""
 
     def begin(self, defaults: Configuration) -> None:
         """Declare the parameters, warn of what is not understood, and start.
@@ -72,10 +86,6 @@ class ImageNode(ManagedNode):
     def _reconfigure(self, configuration: Configuration) -> None:
         """Take parameters that were changed."""
 
-    @abstractmethod
-    def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
-        """Take an image."""
-
     def open_images(self) -> ImageInput:
         """Listen to images."""
         own = self.table.configuration.node
@@ -83,13 +93,14 @@ class ImageNode(ManagedNode):
         self.diagnostics.listen_to(source)
         return source
 
-    def note_arrival(self, message: Any, info: Mapping[str, Any]) -> bool:
-        """Note an image; returns False for one taken just before the node was deactivated."""
-        if self.diagnostics.source is None:
-            return False
-        age = self.get_clock().now().nanoseconds - stamp_ns(message.header)
+    def _on_image(self, message: bytes | CompressedImage, info: Mapping[str, Any]) -> None:
+        """Note an image, and pass it to the stream; not one that a deactivation has overtaken."""
+        if self.diagnostics.source is None or self._stream is None:
+            return
+        image = read_serialized(message) if isinstance(message, bytes) else message
+        age = self.get_clock().now().nanoseconds - stamp_ns(image.header)
         self.diagnostics.arrived(info, age * 1e-9)
-        return True
+        self._stream.take(image)
 
     def warn_of_overrides(self) -> None:
         """Warn of QoS overrides of topics that the node has not, once all are open."""

@@ -87,20 +87,10 @@ def read_serialized(message: bytes) -> SerializedImage:
     return SerializedImage(header, height, width, encoding, is_bigendian, step, data)
 
 
-def read_image(
-    message: Image | SerializedImage | CompressedImage, size: tuple[int, int] | None = None
-) -> Frame | CodedImage:
+def read_image(message: Image | SerializedImage | CompressedImage) -> Frame | CodedImage:
     """Return the RGB frame of `message`; for rgb8 a view of its data.
 
-    A compressed image whose header claims another size than that of the stream is not decoded: it
-    may be a stray, of any size.
-
-    Parameters
-    ----------
-    message : Image, SerializedImage or CompressedImage
-        The image.
-    size : (int, int), optional
-        Width and height of the stream's images in px; None before the first.
+    A compressed image is not decoded: it may be a stray, of any size.
 
     Raises
     ------
@@ -108,9 +98,7 @@ def read_image(
         If the encoding is unknown, or size and data do not fit each other.
     """
     if isinstance(message, CompressedImage):
-        coded = read_compressed(message.format, message.data)
-        # A camera that was turned by 90 degrees says so in the file, and is turned in decoding.
-        return coded.decode() if size in (None, coded.size, coded.size[::-1]) else coded
+        return read_compressed(message.format, message.data)
     return to_rgb(
         message.encoding,
         message.height,
@@ -119,6 +107,11 @@ def read_image(
         bool(message.is_bigendian),
         message.data,
     )
+
+
+def frame_of(image: Frame | CodedImage) -> Frame:
+    """Return the pixels of an image that was used, and so is decoded already."""
+    return image.decode() if isinstance(image, CodedImage) else image
 
 
 def _text(message: bytes, at: int, length: int) -> tuple[str, int]:

@@ -25,17 +25,17 @@ from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.health import Health
-from vehicle_pf_tracker.ros.node.images import SerializedImage, read_image
+from vehicle_pf_tracker.ros.node.images import SerializedImage, frame_of, read_image
 from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.ros.node.stream_localisation import StreamLocalisation
 from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.failures import TrackerError, unexpected
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TargetError
 
@@ -132,18 +132,19 @@ class Stream:
         if not self.get_ready() or self._session is None:
             self._wait(message.header, self._loading.reason)
             return
+        if self._asked is not None:
+            self._session.set_target(self._asked)
+            self._asked = None
         try:
-            image = read_image(message, self._session.size)
-            self._adopt_target(self._session, image)
+            image = read_image(message)
             self.estimate = self._session.feed(image, stamp_ns(message.header))
-            frame = image.decode() if isinstance(image, CodedImage) else image
+            frame = frame_of(image)
         except TargetError as error:
             self._wait(message.header, str(error))
         except InputError as error:
             self._reject(message.header, str(error))
-        except Exception as error:  # an image must not end a node that others rely on
-            self._log.error(traceback.format_exc(), throttle_duration_sec=_THROTTLE)
-            self._reject(message.header, f"unexpected {type(error).__name__}: {error}")
+        except Exception as error:  # whatever a tracker raises
+            self._fail(message.header, error)
         else:
             self.frame_id = message.header.frame_id
             self._answer(self._session, message.header, frame, self.estimate)
@@ -241,23 +242,11 @@ class Stream:
         self._health.answered(WAITING)
         self._outputs.publish_mode(header, WAITING, {"reason": reason})
 
-    def _adopt_target(self, session: Session, image: Frame | CodedImage) -> None:
-        # Checked here and not by the session, which would give up this image's estimate for it;
-        # and not in an image of another size, which may be a stray.
-        if self._asked is None or isinstance(image, CodedImage):
-            return
-        size = frame_size(image)
-        if session.size not in (None, size):
-            return
-        box, self._asked = self._asked, None
-        try:
-            session.set_target(check_target(box, *size))
-        except InputError as error:
-            self.refuse_target(str(error))
-
     def _answer(
         self, session: Session, header: Header, frame: Frame, estimate: Estimate | None
     ) -> None:
+        if session.refusal:
+            self._health.refuse_target(session.refusal)
         events = self._events(session)
         if estimate is None and self._target_problem:
             events["reason"] = self._target_problem
@@ -282,11 +271,25 @@ class Stream:
         self._health.answered(REJECTED)
         self._outputs.publish_mode(header, REJECTED, {"reason": reason})
 
+    def _fail(self, header: Header, error: Exception) -> None:
+        """Reject an image for an unexpected error, and raise it unless it concerns this image only.
+
+        One image must not end a node that others rely on; a broken tracker must.
+        """
+        self._log.error(traceback.format_exc(), throttle_duration_sec=_THROTTLE)
+        self._reject(header, unexpected(error))
+        if not isinstance(error, TrackerError) or error.persists:
+            raise error
+
     def _events(self, session: Session) -> dict[str, object]:
         words = "; ".join(session.events)
         if not words:
             return {}
-        self._log.warning(words, throttle_duration_sec=_THROTTLE)
+        if session.recovered:
+            self._health.restarts += 1
+            self._log.error(words, throttle_duration_sec=_THROTTLE)
+        else:
+            self._log.warning(words, throttle_duration_sec=_THROTTLE)
         return {"event": words}
 
     def _tell_drawn_seed(self, session: Session) -> None:

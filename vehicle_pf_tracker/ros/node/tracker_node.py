@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 from geometry_msgs.msg import PointStamped, PolygonStamped
@@ -120,10 +120,6 @@ class TrackerNode(ImageNode):
             self.destroy_service(self._reset_service)
             self.destroy_timer(self._poll)
         self._outputs = self._stream = None
-
-    def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
-        if self._stream is not None and self.note_arrival(message, info):
-            self._stream.take(message)
 
     def _on_region(self, message: RegionOfInterest) -> None:
         self._set_target(lambda stream: box_of_region(message))

@@ -21,23 +21,22 @@ import traceback
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 from rclpy.node import Node
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.health import Health
-from vehicle_pf_tracker.ros.node.images import read_image
+from vehicle_pf_tracker.ros.node.images import frame_of, read_image
 from vehicle_pf_tracker.ros.traffic.detection_messages import read_serialized_detections, read_stamp
 from vehicle_pf_tracker.ros.traffic.notices import Notices
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.track_messages import scalars
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
+from vehicle_pf_tracker.trackers.failures import TrackerError, unexpected
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.detector_parameters import TOPIC
 
@@ -174,29 +173,27 @@ class TrafficStream:
     def _process(self, message: Any, detections: Detections | None) -> None:
         started = time.perf_counter()
         try:
-            image = read_image(message, self.vehicles.session.size)
-            if detections is not None:
-                detections = self._usable(detections, image)
+            image = read_image(message)
             events = self.vehicles.feed(image, stamp_ns(message.header), detections)
-            frame = image if isinstance(image, np.ndarray) else image.decode()
+            frame = frame_of(image)
         except InputError as error:
             self._reject(message.header, str(error))
-        except Exception as error:  # an image must not end a node that others rely on
-            self._notices.say("error", traceback.format_exc())
-            self._reject(message.header, f"unexpected {type(error).__name__}: {error}")
+        except Exception as error:  # whatever a tracker raises
+            self._fail(message.header, error)
         else:
             self.frame_id = message.header.frame_id
+            self._warn_of_unusable(detections, frame)
             self._answer(message.header, frame, events, (time.perf_counter() - started) * 1e3)
 
-    def _usable(self, detections: Detections, image: Frame | CodedImage) -> Detections:
-        size = frame_size(image) if isinstance(image, np.ndarray) else image.size
-        usable = detections.usable(*size)
+    def _warn_of_unusable(self, detections: Detections | None, frame: Frame) -> None:
+        if detections is None:
+            return
+        usable = detections.usable(*frame_size(frame))
         left_out = min(len(detections), MOST_DETECTIONS) - len(usable)
         if left_out > 0:
             words = f"{left_out} of {len(detections)} detections of an image cannot be used"
             reasons = "not finite, without an area, outside the image, or there twice"
             self._notices.say("unusable", f"{words}: {reasons}")
-        return usable
 
     def _answer(self, header: Header, frame: Frame, events: list[str], step_ms: float) -> None:
         vehicles, own = self.vehicles, self._configuration.node
@@ -212,6 +209,7 @@ class TrafficStream:
         mode = WAITING if selected is None else selected.mode.value
         values = {"reason": self._reason} if selected is None else scalars(selected)
         values |= {**vehicles.summary(), "step_ms": step_ms}
+        self._health.restarts += vehicles.session.recovered
         for event in events:
             self._notices.say(" ".join(event.split()[:3]), event)  # without numbers
         if events:
@@ -224,6 +222,13 @@ class TrafficStream:
         """Reason why there is no selected vehicle in the estimates."""
         identity = self.vehicles.selection.identity
         return f"vehicle {identity} is not followed any more" if identity else "none is selected"
+
+    def _fail(self, header: Header, error: Exception) -> None:
+        """Reject an image for an unexpected error; see `Stream`."""
+        self._notices.say("error", traceback.format_exc())
+        self._reject(header, unexpected(error))
+        if not isinstance(error, TrackerError) or error.persists:
+            raise error
 
     def _reject(self, header: Header, reason: str) -> None:
         self._health.reject(reason)

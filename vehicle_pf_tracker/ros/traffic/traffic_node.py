@@ -132,8 +132,8 @@ class TrafficNode(ImageNode):
         self._outputs = self._stream = None
 
     def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
-        if self._stream is not None and self.note_arrival(message, info):
-            self._stream.take(message)
+        super()._on_image(message, info)
+        if self._stream is not None:
             self._after_step(self._stream)
 
     def _on_detections(self, message: bytes) -> None:

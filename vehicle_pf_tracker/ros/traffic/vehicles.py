@@ -127,7 +127,7 @@ class Vehicles:
         if max(self._added, len(self._waiting)) == _MOST_TARGETS:
             raise InputError(f"{_MOST_TARGETS} targets came without an image between them")
         if self._is_shown:
-            identity = self.session.tracker.add(box)
+            identity = self.session.add(box)
             self._added += 1
             return identity
         check_target(box, MAX_SIDE, MAX_SIDE)
@@ -146,7 +146,7 @@ class Vehicles:
         if not identity:
             raise InputError("no vehicle is selected")
         self.selection.clear()
-        if not self.session.tracker.remove(identity):
+        if not self.session.remove(identity):
             raise InputError(f"the vehicle {identity} is not followed any more")
         return identity
 
@@ -180,10 +180,11 @@ class Vehicles:
             self.counter.totals.update(totals)
 
     def summary(self) -> dict[str, object]:
-        """Count the vehicles by what is claimed of them."""
+        """Count the vehicles by what is claimed of them, and those dropped for a bad state."""
         modes = Tally(one.mode for one in self.estimates)
         counts = {f"vehicles {mode.value}": modes[mode] for mode in TrackMode}
-        return {"vehicles": len(self.estimates), **counts}
+        dropped = self.session.tracker.bad_states
+        return {"vehicles": len(self.estimates), **counts, "dropped for a bad state": dropped}
 
     def _counter(self) -> Counter | None:
         lines = self._configuration.tracker.lines
@@ -192,10 +193,11 @@ class Vehicles:
         return Counter(read_counting_plan(Path(lines)), plane_of(self._configuration.session.road))
 
     def _begin_anew(self) -> None:
-        """Note that the session has forgotten all vehicles."""
+        """Note that the session has discarded all vehicles but those that it kept."""
         self._restarts = self.session.restarts
-        self.selection.clear()
-        self._configured = self._configuration.session.target.box
+        self.selection.identity = self.session.successors.get(self.selection.identity, NONE)
+        if not self.session.recovered:
+            self._configured = self._configuration.session.target.box
         if self.counter is not None:
             self.counter.forget_vehicles()
 
@@ -213,7 +215,7 @@ class Vehicles:
     def _try_to_add(self, box: Box, problems: list[str]) -> int:
         """Return the number of the vehicle in `box`, or `NONE` with a problem."""
         try:
-            return self.session.tracker.add(box)
+            return self.session.add(box)
         except InputError as error:
             problems.append(f"target refused: {error}")
             return NONE

@@ -12,7 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameters of `fusion`; docs/fusion.md says what each part is for and how they were fitted."""
+"""Parameters of `fusion`.
+
+docs/fusion.md has the model, laboratory/notes/fusion.md how they were chosen.
+"""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ _LEAST_PLIANT = 0.2
 _CALM_RESPONSE, _CALM_SHARE = 0.9, 0.9
 """Response, and share of the surface, above which a frame is calm: the size is followed in one,
 flow judged and appearance learnt in the next. That saves a quarter of the time and, over 633 runs,
-costs nothing else that could be seen (docs/fusion.md)."""
+costs nothing else that could be seen (laboratory/notes/fusion_tried.md)."""
 _SETTLED = 10
 """Frames before which none is calm: the usual response and share are not known yet."""
 _DATED_EVERY = 40

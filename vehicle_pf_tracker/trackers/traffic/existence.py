@@ -177,6 +177,8 @@ class Existence:
             if self._goes_on(track, unseen, inside_image(track.state.edges, size)):
                 kept.append(track)
                 continue
+            if track.confirmed:
+                continue
             if track.matches < _MOVED_MATCHES or not self._drives(track):
                 for sample in track.samples:
                     self._evidence.learn(sample, False)

@@ -20,16 +20,16 @@ estimates.
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from types import MappingProxyType
 from typing import Protocol
 
-import numpy as np
-
-from vehicle_pf_tracker.core.clock import StampClock, StampEvent, Tick
-from vehicle_pf_tracker.core.frame import CodedFrame, Frame, check_frame, frame_size
-from vehicle_pf_tracker.trackers.base import DEFAULT_PERIOD
-from vehicle_pf_tracker.trackers.continuity import Continuation, Continuity
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import CodedFrame, Frame
+from vehicle_pf_tracker.trackers.failures import Failures
+from vehicle_pf_tracker.trackers.image_stream import ImageStream, Turn
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
@@ -62,7 +62,9 @@ class Detector(Protocol):
 class TrafficSession:
     """Control of the tracker: elapsed time, restarts, detections.
 
-    An image of another size, or out of its time, is rejected unless the next one agrees with it.
+    Odd images are rejected, or admitted after all, by `ImageStream`; then only the estimates of the
+    first one are missing. A tracker that fails twice in a row starts anew with the vehicles that
+    were given by hand.
 
     Parameters
     ----------
@@ -74,7 +76,7 @@ class TrafficSession:
     frame_rate : float
         Nominal rate in 1/s; 0 takes the median of the first ten intervals.
     reset_on_time_jump : bool
-        Forget all vehicles when stamps go back and stay back.
+        Discard all vehicles when stamps go back and stay back.
 
     Attributes
     ----------
@@ -85,7 +87,11 @@ class TrafficSession:
     events : list of str
         Irregularities of the last image.
     restarts : int
-        Times that all vehicles were forgotten, so that whoever counts knows.
+        Times that all vehicles were discarded, so that whoever counts knows.
+    recovered : bool
+        True where the tracker failed and started anew in the last image.
+    successors : mapping of int to int
+        Identities before the last restart of the vehicles that it kept, with those after it.
     """
 
     def __init__(
@@ -100,30 +106,39 @@ class TrafficSession:
         self.estimates: tuple[TrackEstimate, ...] = ()
         self.events: list[str] = []
         self.restarts = 0
+        self.recovered = False
+        self.successors: Mapping[int, int] = MappingProxyType({})
         self.detector = make_detector() if make_detector else None
         self._make_detector = make_detector
-        self._frame_rate = frame_rate
-        self._resets = reset_on_time_jump
-        self._clock = self._clock_before = StampClock(frame_rate)
-        self._continuity = Continuity()
-        self._size: tuple[int, int] | None = None
+        self._stream = ImageStream(frame_rate, reset_on_time_jump)
+        self._failures = Failures()
+        self._given: dict[int, tuple[Box, str]] = {}
+        self._detections: Detections | None = None
 
     @property
     def size(self) -> tuple[int, int] | None:
         """Width and height in px that images are expected to have; None for any size."""
-        return self._continuity.size
+        return self._stream.size
+
+    def add(self, box: Box, label: str = "") -> int:
+        """Follow the vehicle in `box` of the last image; see `TrafficTracker.add`."""
+        identity = self.tracker.add(box, label)
+        self._given[identity] = box, label
+        return identity
+
+    def remove(self, identity: int) -> bool:
+        """Discard a vehicle; False if there is none of this identity."""
+        self._given.pop(identity, None)
+        return self.tracker.remove(identity)
 
     def reset(self) -> None:
-        """Forget all vehicles, and size and time of the images before."""
-        self._clock = self._clock_before = StampClock(self._frame_rate)
-        self._continuity, self._size = Continuity(), None
+        """Discard all vehicles, and size and time of the images before."""
+        self._stream.reset()
         self._restart()
 
     def reconfigure(self, *, frame_rate: float, reset_on_time_jump: bool) -> None:
         """Take new settings between two images; no vehicle is lost by it."""
-        self._frame_rate, self._resets = frame_rate, reset_on_time_jump
-        for clock in (self._clock, self._clock_before):
-            clock.set_frame_rate(frame_rate)
+        self._stream.reconfigure(frame_rate, reset_on_time_jump)
 
     def feed(
         self, image: Frame | CodedFrame, stamp_ns: int, detections: Detections | None = None
@@ -145,28 +160,41 @@ class TrafficSession:
             If the image does not continue the stream; all tracks are kept.
         InputError
             If the frame is not usable.
+        TrackerError
+            If the tracker fails, and does not start anew for it.
         """
-        self.events = []
-        size = frame_size(check_frame(image)) if isinstance(image, np.ndarray) else image.size
-        continuation = self._continuity.judge(size, stamp_ns, timed=self._size is not None)
-        frame = image if isinstance(image, np.ndarray) else image.decode()
-        if continuation is Continuation.CORRECTS:
-            self.events.append("the last image's stamp was ahead")
-            self._clock = self._clock_before
-        self._clock_before = copy.deepcopy(self._clock)
-        is_timed = continuation is not Continuation.UNTIMED
-        tick = self._tick(stamp_ns) if is_timed else Tick(1.0, StampEvent.UNUSABLE)
-        if tick.event is not None:
-            self.events.append(tick.event.value)
-        if self._size is not None and size != self._size:
-            self.events.append(f"the images are now of {size[0]}x{size[1]} px; starting again")
-            self._restart()
-        self._size = size
-        self.tracker.frame_period = self._clock.period or DEFAULT_PERIOD
-        if detections is None and self.detector is not None:
-            detections = self._detected(self.detector, frame)
-        self.estimates = self.tracker.step(frame, detections, tick.elapsed)
+        self.events, self.recovered = [], False
+        given = self._detections, detections  # of the image before, which may be admitted only now
+        self._detections = detections
+        turns = self._stream.admit(image, stamp_ns)
+        for turn, found in zip(turns, given[-len(turns) :], strict=True):
+            self._take(turn, found)
         return self.estimates
+
+    def _take(self, turn: Turn, detections: Detections | None) -> None:
+        self.events += turn.events
+        if turn.begins_anew:
+            self._restart()
+        self.tracker.frame_period = turn.period
+        self._track(turn, detections)
+
+    def _track(self, turn: Turn, detections: Detections | None) -> None:
+        try:
+            self._step(turn, detections)
+        except Exception as error:  # whatever a tracker or a network raises
+            self.events.append(self._failures.judge(error))
+            self._recover()
+            self._track(turn, detections)
+        else:
+            self._failures.clear()
+
+    def _step(self, turn: Turn, detections: Detections | None) -> None:
+        if detections is None and self.detector is not None:
+            detections = self._detected(self.detector, turn.frame)
+        self.estimates = self.tracker.step(turn.frame, detections, turn.elapsed)
+        if self._given:
+            followed = {one.identity: (one.box, one.label) for one in self.estimates}
+            self._given = {number: followed[number] for number in self._given if number in followed}
 
     def _detected(self, detector: Detector, frame: Frame) -> Detections | None:
         """Return the detections; None where it could not look, so that no vehicle is missed."""
@@ -175,17 +203,19 @@ class TrafficSession:
             self.events.append(_DISTURBED)
         return None if detector.is_blind else found
 
-    def _tick(self, stamp_ns: int) -> Tick:
-        tick = self._clock.tick(stamp_ns)
-        if tick.event is StampEvent.JUMP_BACK and self._resets:
-            self._clock = StampClock(self._frame_rate)
-            self._clock.tick(stamp_ns)
-            self._restart()
-        return tick
-
     def _restart(self) -> None:
         self.tracker.reset()
-        self.estimates = ()
+        self.estimates, self.successors, self._given = (), MappingProxyType({}), {}
         self.restarts += 1
         if self._make_detector is not None:
             self.detector = self._make_detector()
+
+    def _recover(self) -> None:
+        """Start anew with the vehicles given by hand, where each was in the last estimates."""
+        given, successors = self._given, {}
+        self._restart()
+        for identity, (box, label) in given.items():
+            with suppress(InputError):  # of a box that has left the image
+                successors[identity] = self.add(box, label)
+        self.successors = MappingProxyType(successors)
+        self.recovered = True

@@ -145,9 +145,12 @@ class Track:
     def straightness(self) -> float:
         """Share of its detections' scatter that a straight drive at constant speed explains.
 
-        A vehicle comes close to one; what flickers in one place, a tree in the wind, to zero.
+        A vehicle comes close to one; what flickers in one place, a tree in the wind, to zero; so
+        does a vehicle whose detections are not noted, because it was given by hand.
         """
         count, time, squared, x, y, time_x, time_y, places = self._drive.tolist()
+        if not count:
+            return 0.0
         scatter = places - (x * x + y * y) / count
         duration = squared - time * time / count
         if scatter <= 0 or duration <= 0:

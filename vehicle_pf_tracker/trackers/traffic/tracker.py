@@ -85,6 +85,8 @@ class TrafficTracker:
         Road in use; it can be replaced between two frames, and counts from the next on.
     frame_period : float
         Nominal frame period in s, from which seconds become frames.
+    bad_states : int
+        Vehicles dropped so far because their state was no Gaussian any more.
     """
 
     def __init__(
@@ -96,8 +98,8 @@ class TrafficTracker:
         self.parameters = parameters or TrafficParameters()
         self.road = road
         self.frame_period = DEFAULT_PERIOD
+        self.bad_states = self._last_identity = 0
         self._restart_random()
-        self._last_identity = 0
         self._frame: Frame | None = None
         self._tracks: list[Track] = []
         self._numbers = numbers
@@ -133,6 +135,7 @@ class TrafficTracker:
         self._look(frame)
         for track in self._tracks:
             track.predict(elapsed)
+        self._drop_bad_states()
         self._tracks = nearest_first(self._tracks, self.road)
         cover(self._tracks, self._size, self.parameters.occlusions)
         normals = self._rng.standard_normal((self.parameters.num_particles, 3))
@@ -291,18 +294,16 @@ class TrafficTracker:
 
     def _begin(self, edges: Array, label: str) -> Track:
         """Begin a track in a box, with the next identity."""
-        width, _ = self._size
-        period, motion = self.frame_period, self.parameters.motion
+        parameters, period = self.parameters, self.frame_period
         drive = Drive(
-            acceleration=motion.acceleration * period**2 / _VEHICLE_WIDTH,
-            top_speed=motion.top_speed * period / _VEHICLE_WIDTH,
-            focal=_FOCAL * width,
+            acceleration=parameters.motion.acceleration * period**2 / _VEHICLE_WIDTH,
+            top_speed=parameters.motion.top_speed * period / _VEHICLE_WIDTH,
+            focal=_FOCAL * self._size[0],
         )
-        noise = self.parameters.detections.edge_noise
         # A horizon below the box would have it drive on the sky.
         horizon = min(self._row, float(edges[Edge.BOTTOM]) - 1)
         self._last_identity += 1
-        state = first_state(edges, noise, horizon, drive, self._size)
+        state = first_state(edges, parameters.detections.edge_noise, horizon, drive, self._size)
         track = Track(self._last_identity, state, label=label)
         self._tracks.append(track)
         return track
@@ -326,8 +327,15 @@ class TrafficTracker:
                     value, deviation = hold.edges[edge], hold.deviations[edge]
                     track.state.measure(edge, float(value), float(deviation))
 
+    def _drop_bad_states(self) -> None:
+        """Drop vehicles of an unsound state: association with them would fail for all."""
+        sound = [track for track in self._tracks if track.state.is_sound]
+        self.bad_states += len(self._tracks) - len(sound)
+        self._tracks = sound
+
     def _end(self) -> None:
         """End tracks that are no vehicles, or have left; the horizon is learnt from the others."""
+        self._drop_bad_states()
         kept = self._existence.survivors(self._tracks, self._size, self.frame_period)
         for track in self._tracks:
             if track.confirmed and track not in kept:

@@ -24,6 +24,7 @@ carried exactly where measurements are linear in it (boxes), and by particles wh
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -40,6 +41,19 @@ _NEAREST_HORIZON = 3.0
 _FASTEST_APPROACH = 1.3
 """Largest growth of a box in a nominal frame period. Beyond it the distance is down to the
 camera's own height, where the plane no longer describes what is seen."""
+_LONGEST_APPROACH = 35.0
+"""Nominal periods that this bound is raised to at most: by then a box has grown ten thousandfold,
+from a px to more than an image's side, and after a longer gap the power itself would overflow."""
+_LEAST = 1e-2
+"""Least distance from the horizon, and least side, that is predicted, px: a hundredth of a pixel is
+nothing in sight, and any two boxes still have a finite ratio."""
+_LARGEST = 1e5
+"""Largest place and side, px; in their units it bounds velocities too. No image has a third of it
+(`image.encodings.MAX_SIDE`), so that a vehicle there has left."""
+_VAGUEST = 1e4
+"""Largest standard deviation, px; in their units it bounds those of velocities too. Of a place in
+an image nothing is known then, and the measurement of half a px after it still leaves seven of a
+variance's 16 digits."""
 _HORIZON_MOVED = 0.05
 """Change of the horizon that is applied, of the lower edge's distance from it: speeds are known no
 better when a vehicle is new."""
@@ -69,6 +83,10 @@ OBSERVATION = np.array(
     ]
 )
 """Edges of the box as linear functions of the state (relative to the horizon)."""
+
+_HIGHEST_MEAN = np.full(6, _LARGEST)
+_LOWEST_MEAN = np.array([-_LARGEST, _LEAST, _LEAST, _LEAST, -_LARGEST, -_LARGEST])
+"""Bounds of the mean, by component."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +162,12 @@ class VehicleState:
         return np.asarray(OBSERVATION @ self.covariance @ OBSERVATION.T)
 
     @property
+    def is_sound(self) -> bool:
+        """True while the state is a Gaussian: finite, and of positive variances."""
+        total = float(self.mean.sum() + self.covariance.sum())
+        return math.isfinite(total) and float(self.covariance.diagonal().min()) > 0
+
+    @property
     def velocity(self) -> tuple[float, float]:
         """Velocity of the box's centre in px per nominal period."""
         x, v, _, h, across, along = self.mean.tolist()
@@ -153,9 +177,12 @@ class VehicleState:
     def predict(self, elapsed: float) -> None:
         """Drive on for `elapsed` nominal periods."""
         x, v, w, h, across, along = self.mean.tolist()
-        bound = _FASTEST_APPROACH**elapsed
-        growth = 1 / min(max(1 + v * along * elapsed, 1 / bound), bound)
+        bound = _FASTEST_APPROACH ** min(elapsed, _LONGEST_APPROACH)
+        divisor = 1 + v * along * elapsed
+        growth = 1 / min(max(divisor, 1 / bound), bound)
         by_v, by_along = -along * elapsed * growth**2, -v * elapsed * growth**2
+        if not 1 / bound <= divisor <= bound:  # there the growth depends on nothing
+            by_v = by_along = 0.0
         driven = x + v * across * elapsed
         self.mean = np.array([driven * growth, v * growth, w * growth, h * growth, across, along])
         step = np.eye(6)
@@ -173,6 +200,7 @@ class VehicleState:
         self.covariance[ALONG, ALONG] += (push / self._drive.focal) ** 2 * elapsed
         self.covariance[W, W] += (_SIZE_WALK * w) ** 2 * elapsed
         self.covariance[H, H] += (_SIZE_WALK * h) ** 2 * elapsed
+        self._bound()
 
     def resize(self, edges: Array) -> None:
         """Take a box (4,) for the vehicle's without doubt; it drives as before."""
@@ -202,6 +230,7 @@ class VehicleState:
         doubt = max(abs(np.log(ratio)) - _HORIZON_LEAPT, 0.0) * self.mean
         doubt[[X, V, ACROSS]] = 0.0
         self.covariance += np.diag(doubt**2)
+        self._bound()
 
     def measure(self, edge: Edge, value: float, deviation: float) -> None:
         """Take the measurement of an edge in px, of this standard deviation."""
@@ -216,3 +245,14 @@ class VehicleState:
         self.covariance = self.covariance - np.outer(gain, spread)
         self.mean[V] = max(self.mean[V], _NEAREST_HORIZON)
         self.mean[W], self.mean[H] = max(self.mean[W], 1.0), max(self.mean[H], 1.0)
+
+    def _bound(self) -> None:
+        """Keep a prediction within bounds; a vehicle that is in sight is far inside them."""
+        self.mean = np.clip(self.mean, _LOWEST_MEAN, _HIGHEST_MEAN)
+        variances = self.covariance.diagonal()
+        if variances.max() <= _VAGUEST**2:
+            return
+        # Scaled from both sides a covariance stays one, and correlations stay what they are.
+        shares = np.minimum(_VAGUEST / np.sqrt(variances), 1.0)
+        bounded = self.covariance * np.outer(shares, shares)
+        self.covariance = (bounded + bounded.T) / 2

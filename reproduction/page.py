@@ -1,0 +1,147 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Page of all experiments: verdict, figure, and the numbers of every claim."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from reproduction.catalogue import Paper
+from reproduction.experiment import OURS, PAPER, PRINTED, Experiment
+from reproduction.output import FIGURE, VERDICT
+from vehicle_pf_tracker.evaluation.output_files import make_folder, output_errors, write_text
+
+PAGE = "reproduction.md"
+_PICTURES = "images/reproduction"
+_HEAD = """# Reproduction of the papers' experiments
+
+`{command}` makes this page. It runs the trackers on synthetic scenes with
+exact truth; they stand for the papers' own videos, which are not public. `python -m reproduction
+NAME` repeats one experiment. `results/reproduce/NAME/` has the rest: `verdict.md` with the setting,
+all tables and further interpretations, `data.csv` with every cell, and the figure.
+
+A claim is judged under up to three interpretations; one that depends on none is judged once.
+
+- *The paper's rule* gives the verdict: the algorithm as it was meant. Misprints and gaps are filled
+  as [interpretations.md](interpretations.md) says. Values that the paper does not print were chosen
+  on seeds above 99, which are not reported here.
+- *Our interpretation* adds our extensions, or is the variant's default.
+- *As printed* follows the paper to the letter.
+
+{overview}
+"""
+
+
+def write_page(folder: Path, results: Path, papers: Sequence[Paper], command: str) -> Path:
+    """Join the verdicts in `results` to a page in `folder`, with the figures beside it.
+
+    Parameters
+    ----------
+    folder, results : Path
+        Folders of the page, and of the experiments' own folders.
+    papers : sequence of Paper
+        Each has a chapter, if any of its experiments has been run.
+    command : str
+        Makes everything on the page.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    pictures = make_folder(folder / _PICTURES)
+    overview, parts = [], []
+    for paper in papers:
+        judged = [(e, _verdict(results, e)) for e in paper.experiments if _was_run(results, e)]
+        overview += [_overview_row(*one) for one in judged]
+        if judged:
+            parts.append(f"## {paper.title}\n\n{paper.interpretations}\n")
+        for experiment, verdict in judged:
+            picture = _copy_smallest(results / experiment.name, pictures, experiment.name)
+            parts.append(_section(experiment, verdict, picture))
+    head = ["figure", "what", PAPER, OURS, PRINTED, "seeds"]
+    table = "\n".join([_row(head), _row(["---"] * len(head)), *overview])
+    page = folder / PAGE
+    write_text(page, "\n".join([_HEAD.format(command=command, overview=table), *parts]))
+    return page
+
+
+def _was_run(results: Path, experiment: Experiment) -> bool:
+    return (results / experiment.name / f"{VERDICT}.json").exists()
+
+
+def _verdict(results: Path, experiment: Experiment) -> Mapping[str, Any]:
+    path = results / experiment.name / f"{VERDICT}.json"
+    found: Mapping[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return found
+
+
+def _overview_row(experiment: Experiment, verdict: Mapping[str, Any]) -> str:
+    others = [verdict["under"][name] or "–" for name in (OURS, PRINTED)]
+    link = f"[`{experiment.name}`](#{experiment.name})"
+    seeds = _seeds(verdict["seeds"])
+    return _row([link, experiment.title, f"**{verdict['holds']}**", *others, seeds])
+
+
+def _seeds(seeds: Sequence[int]) -> str:
+    return f"{seeds[0]} to {seeds[-1]}" if len(seeds) > 1 else f"{seeds[0]}"
+
+
+def _section(experiment: Experiment, verdict: Mapping[str, Any], picture: str) -> str:
+    parts = [
+        f"### {experiment.name}",
+        f"{experiment.title}. **Verdict: {verdict['holds']}.**",
+        f"![{experiment.title}]({_PICTURES}/{picture})",
+        _claims(verdict["claims"]),
+        *verdict["remarks"],
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _claims(claims: Sequence[Mapping[str, Any]]) -> str:
+    """Give each claim a row: the deciding finding, then those of the other interpretations."""
+    found = {finding["interpretation"] for claim in claims for finding in claim["findings"][1:]}
+    others = [name for name in (OURS, PRINTED) if name in found]
+    head = ["claim", PAPER if others else "result", *others]
+    rows = [_row(head), _row(["---"] * len(head))]
+    for claim in claims:
+        first, *rest = claim["findings"]
+        by_name = {finding["interpretation"]: _result(finding) for finding in rest}
+        results = [_result(first), *(by_name.get(name, "–") for name in others)]
+        rows.append(_row([f"{claim['claim']} ({claim['place']})", *results]))
+    return "\n".join(rows)
+
+
+def _result(finding: Mapping[str, Any]) -> str:
+    return f"**{finding['holds']}**: {finding['numbers']}"
+
+
+def _row(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _copy_smallest(source: Path, target: Path, name: str) -> str:
+    """Copy the figure in the format that takes less room, and return the copy's name."""
+    figures = [source / f"{FIGURE}.{kind}" for kind in ("svg", "png")]
+    smallest = min(figures, key=lambda path: path.stat().st_size)
+    with output_errors(target):
+        for kind in ("svg", "png"):
+            (target / f"{name}.{kind}").unlink(missing_ok=True)
+        shutil.copyfile(smallest, target / f"{name}{smallest.suffix}")
+    return f"{name}{smallest.suffix}"

@@ -1,0 +1,32 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Functions that fail on chosen calls."""
+
+import itertools
+
+ERROR = "unexpected ZeroDivisionError: of a test"
+"""What is said of such a failure."""
+
+
+def failing(good, at, reason=ZeroDivisionError):
+    """Return `good`, but that it raises in the calls of these numbers, from 0."""
+    calls = itertools.count()
+
+    def call(*arguments):
+        if next(calls) in at:
+            raise reason("of a test")
+        return good(*arguments)
+
+    return call
