@@ -42,7 +42,7 @@ def test_the_node_starts_on_the_target(bench, set_target, shift):
     assert rig.show_frame(road(1)[0], 0).status[0].message == "WAITING"
     x, y, width, height = TARGET
     process = set_target("apf_tracker", f"{x + shift},{y},{width},{height}")
-    bench.wait_for(lambda: process.popen.poll() is not None, 60.0)
+    bench.wait_for(lambda: process.popen.poll() is not None)
     assert process.wait() == 0, process.output
     box = f"{x + shift:g},{y},{width},{height}"
     said = f"/apf_tracker has got the target {box}: it starts with the next image\n"
@@ -55,7 +55,7 @@ def test_the_node_starts_on_the_target(bench, set_target, shift):
 def test_without_such_a_node_it_says_which_there_are(bench, set_target):
     Rig(bench)
     process = set_target("apf_trackr", "1,2,30,40", "--timeout", "4")
-    bench.wait_for(lambda: process.popen.poll() is not None, 60.0)
+    bench.wait_for(lambda: process.popen.poll() is not None)
     assert process.wait() == 1
     assert process.output == (
         "vehicle-pf-tracker: error: there is no node /apf_trackr that takes targets after 4 s: "

@@ -102,7 +102,7 @@ def test_lockstep_and_offline_runs_give_identical_vehicles(
         *COMMAND, str(recording), *words, "--lockstep", "--node", "traffic_tracker",
         "--timeout", "20", "-o", str(tmp_path / "replayed"),
     )  # fmt: skip
-    bench.wait_for(lambda: len(heard) == FRAMES, timeout=60.0)
+    bench.wait_for(lambda: len(heard) == FRAMES)
     assert replay.wait() == 0, replay.output
     assert f"/traffic_tracker: {FRAMES} answered, 0 not" in replay.output
     words = ["--detector", "none", "--target", f"@1:{target}"] if by_hand else []

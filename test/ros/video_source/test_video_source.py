@@ -243,7 +243,7 @@ def test_a_stream_that_breaks_is_opened_again(bench, start):
     stream = Stream()
     process = start(f"http://127.0.0.1:{stream.port}/cam.mjpg")
     images = bench.collect(Image, "image", qos_profile_sensor_data)
-    bench.wait_for(lambda: len(images) > 3, 60.0)
+    bench.wait_for(lambda: len(images) > 3)
     stamps = [stamp_ns(image.header) for image in images]
     assert all(a < b for a, b in itertools.pairwise(stamps))
     assert abs(stamps[-1] - time.time_ns()) < 60e9
@@ -253,7 +253,7 @@ def test_a_stream_that_breaks_is_opened_again(bench, start):
     again = Stream(stream.port)
     process.wait_for_output("images again after", 60.0)
     before = len(images)
-    bench.wait_for(lambda: len(images) > before + 3, 60.0)
+    bench.wait_for(lambda: len(images) > before + 3)
     process.send(signal.SIGINT)
     assert process.wait(10.0) == 0
     again.end()
@@ -273,11 +273,11 @@ def test_a_signal_is_obeyed_while_a_stream_is_silent(bench, start, most):
     own = bench.wait_for(lambda: shared_memory(process))
     if most:
         images = bench.collect(Image, "image", qos_profile_sensor_data)
-        bench.wait_for(lambda: images, 60.0)
-        bench.wait_for(lambda: len(images) == images_after(bench, images), 60.0)
+        bench.wait_for(lambda: images)
+        bench.wait_for(lambda: len(images) == images_after(bench, images))
         own = shared_memory(process)
     process.send(signal.SIGTERM)
-    assert process.wait(15.0) == 0
+    assert process.wait() == 0
     assert "Traceback" not in process.output
     assert not [path for path in own if path.exists() and path.name.endswith("_el")]
     stream.end()

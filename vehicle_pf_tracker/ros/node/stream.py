@@ -61,6 +61,8 @@ class Stream:
 
     Attributes
     ----------
+    asked : Box or None
+        Target that the next image starts on; None where none was given.
     frame_id : str or None
         Of the last image that was used; None before the first.
     estimate : Estimate or None
@@ -85,7 +87,7 @@ class Stream:
         self._applied = configuration
         self._session: Session | None = None
         self._loading = KernelLoading(configuration.tracker.kernels)
-        self._asked: Box | None = None
+        self.asked: Box | None = None
         self._target_problem = ""
         self.localisation = StreamLocalisation(variant.name, configuration.session.road)
         self.frame_id: str | None = None
@@ -156,7 +158,7 @@ class Stream:
         InputError
             If it is no box in any image.
         """
-        self._asked = check_target(box, MAX_SIDE, MAX_SIDE)
+        self.asked = check_target(box, MAX_SIDE, MAX_SIDE)
 
     def refuse_target(self, reason: str) -> None:
         """Report that a target cannot be used; the track continues."""
@@ -175,7 +177,7 @@ class Stream:
         if not self.get_ready() or self._session is None:
             raise InputError(self._loading.reason)
         size = self._session.size
-        self._asked = self.estimate = None
+        self.asked = self.estimate = None
         self._session.reset()
         self._target_problem = self._misfit(self._configuration, size)
         if self._target_problem:
@@ -244,12 +246,12 @@ class Stream:
     def _adopt_target(self, session: Session, image: Frame | CodedImage) -> None:
         # Checked here and not by the session, which would give up this image's estimate for it;
         # and not in an image of another size, which may be a stray.
-        if self._asked is None or isinstance(image, CodedImage):
+        if self.asked is None or isinstance(image, CodedImage):
             return
         size = frame_size(image)
         if session.size not in (None, size):
             return
-        box, self._asked = self._asked, None
+        box, self.asked = self.asked, None
         try:
             session.set_target(check_target(box, *size))
         except InputError as error:

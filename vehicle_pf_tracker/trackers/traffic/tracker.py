@@ -85,6 +85,8 @@ class TrafficTracker:
         Road in use; it can be replaced between two frames, and counts from the next on.
     frame_period : float
         Nominal frame period in s, from which seconds become frames.
+    last_identity : int
+        Identity of the newest vehicle; 0 before the first.
     """
 
     def __init__(
@@ -97,7 +99,7 @@ class TrafficTracker:
         self.road = road
         self.frame_period = DEFAULT_PERIOD
         self._restart_random()
-        self._last_identity = 0
+        self.last_identity = 0
         self._frame: Frame | None = None
         self._tracks: list[Track] = []
         self._numbers = numbers
@@ -301,9 +303,9 @@ class TrafficTracker:
         noise = self.parameters.detections.edge_noise
         # A horizon below the box would have it drive on the sky.
         horizon = min(self._row, float(edges[Edge.BOTTOM]) - 1)
-        self._last_identity += 1
+        self.last_identity += 1
         state = first_state(edges, noise, horizon, drive, self._size)
-        track = Track(self._last_identity, state, label=label)
+        track = Track(self.last_identity, state, label=label)
         self._tracks.append(track)
         return track
 
