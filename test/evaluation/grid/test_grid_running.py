@@ -69,9 +69,8 @@ def test_every_cell_is_in_the_folder_as_run_writes_it(plan, out):
 
 def test_results_do_not_depend_on_the_number_of_workers(plan, tmp_path):
     complete(plan, tmp_path / "here", here, silent)
-    for workers in (1, 2, 4):
-        complete(plan, tmp_path / str(workers), on_this_machine(workers), silent)
-        assert results(tmp_path / str(workers)) == results(tmp_path / "here")
+    complete(plan, tmp_path / "two", on_this_machine(2), silent)
+    assert results(tmp_path / "two") == results(tmp_path / "here")
 
 
 class InterruptedHereError(Exception):

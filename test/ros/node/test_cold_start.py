@@ -57,6 +57,7 @@ def test_a_cold_node_answers_its_services_while_it_compiles(bench, cold):
     assert "ready: images on" not in cold.output
 
 
+@pytest.mark.slow
 def test_images_are_answered_meanwhile_and_tracked_in_afterwards(bench, cold):
     frame = road(1)[0]
     camera = bench.publisher(Image, "image")

@@ -82,8 +82,12 @@ def in_numbers(rows):
 
 
 @pytest.mark.parametrize(
-    ("compressed", "by_hand"), [(False, False), (True, False), (False, True)],
-    ids=["motion", "compressed", "by hand"],
+    ("compressed", "by_hand"),
+    [
+        pytest.param(False, False, id="motion"),
+        pytest.param(True, False, id="compressed", marks=pytest.mark.slow),
+        pytest.param(False, True, id="by hand", marks=pytest.mark.slow),
+    ],
 )  # fmt: skip
 def test_lockstep_and_offline_runs_give_identical_vehicles(
     start_node, start_process, bench, tmp_path, compressed, by_hand
