@@ -174,7 +174,7 @@ def test_one_sequence_has_each_disturbance_by_itself():
     colour = [0.5 if index < 20 else 0.1 for index in range(len(visible))]
     result = {"visible": visible, "distance": {"color": colour}}
     shadow, partial, full = (
-        mfpf_histograms._chosen(result, name) for name in ("shadow", "partial", "full")
+        mfpf_histograms.chosen_frames(result, name) for name in ("shadow", "partial", "full")
     )
     assert shadow
     assert set(shadow) <= set(range(20))

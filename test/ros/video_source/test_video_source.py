@@ -164,7 +164,10 @@ def test_an_image_that_cannot_be_read_ends_it(start, folder):
 
 @pytest.mark.parametrize(
     "number",
-    [signal.SIGINT, *(pytest.param(s, marks=pytest.mark.slow) for s in (signal.SIGTERM, signal.SIGHUP))],
+    [
+        signal.SIGINT,
+        *(pytest.param(s, marks=pytest.mark.slow) for s in (signal.SIGTERM, signal.SIGHUP)),
+    ],
 )
 def test_a_signal_ends_it_well(bench, start, folder, number):
     process = start(folder, loop=True)
