@@ -6,6 +6,8 @@ NOBLE_PYTHON =
 PYTEST_ARGS =
 BENCH_ARGS =
 FIGURES = all
+# Where `bench` and `reproduce` write their pages.
+PAGES = docs
 
 BIN := .venv/bin
 INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
@@ -20,37 +22,43 @@ COVERED := 92
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: demo test test-offline test-footage test-ros test-slow test-noble lint types format config colcon baselines bench reproduce clean
+.PHONY: demo test test-all test-offline test-footage test-ros test-noble kernels lint types format config colcon baselines bench reproduce clean
 
 demo: .venv/installed
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
 
+# Three parts of which two run side by side: the tests through ROS mostly wait, and the others mostly
+# compute. In processes of their own, since rclpy and Dask in one have crashed.
+PARTS := test-ros test-offline test-footage
+RUN := $(BIN)/python -m pytest -m "not slow"
+
 ifdef PYTEST_ARGS
-# A selection of the tests, which says nothing about coverage.
 test: .venv/installed
-	$(BIN)/python -m pytest -m "not slow" $(PYTEST_ARGS)
+	$(RUN) $(PYTEST_ARGS)
 else
-# With branch coverage, in three parts of which two run side by side: the tests through ROS mostly wait,
-# and the others mostly compute. In processes of their own, since rclpy and Dask in one have crashed.
-test: .venv/installed
-	$(BIN)/coverage erase
-	$(MAKE) --no-print-directory --jobs=2 --keep-going test-ros test-offline test-footage
-	$(BIN)/coverage combine --quiet
-	$(BIN)/coverage report --fail-under=$(COVERED)
+# What takes a few seconds or less, without coverage.
+test: .venv/installed kernels
+	$(MAKE) --no-print-directory --jobs=2 --keep-going $(PARTS)
 endif
 
+# Everything, with branch coverage; the slow tests try every way to install, colcon's too.
+test-all: .venv/installed .venv/colcon kernels
+	$(BIN)/coverage erase
+	$(MAKE) --no-print-directory --jobs=2 --keep-going $(PARTS) RUN="$(BIN)/coverage run -m pytest"
+	$(BIN)/coverage combine --quiet
+	$(BIN)/coverage report --fail-under=$(COVERED)
+
+# Compiled once, before the parts would each do it.
+kernels: .venv/installed
+	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.choice import load_kernels; load_kernels('auto')"
+
 test-offline: .venv/installed
-	$(BIN)/coverage run -m pytest -m "not slow" $(addprefix --ignore test/,ros $(FOOTAGE))
+	$(RUN) $(addprefix --ignore test/,ros $(FOOTAGE))
 
 # Shown when they have ended, so that the parts do not mix.
 test-ros test-footage: .venv/installed
-	@log=$$(mktemp); $(BIN)/coverage run -m pytest -m "not slow" \
-		$(addprefix test/,$(if $(filter test-ros,$@),ros,$(FOOTAGE))) > $$log 2>&1; \
+	@log=$$(mktemp); $(RUN) $(addprefix test/,$(if $(filter test-ros,$@),ros,$(FOOTAGE))) > $$log 2>&1; \
 	status=$$?; cat $$log; rm -f $$log; exit $$status
-
-# The slow tests try every way to install, colcon's too.
-test-slow: .venv/installed .venv/colcon
-	$(BIN)/python -m pytest -m slow $(PYTEST_ARGS)
 
 test-noble: .venv-noble/installed
 	.venv-noble/bin/python -m pytest -m "not slow" $(PYTEST_ARGS) $(VERSIONED)
@@ -66,11 +74,11 @@ baselines: .venv-baselines/locked
 bench: .venv/installed .venv-baselines/locked
 	$(if $(SEQUENCES),$(BIN)/python -m benchmarks.fusion_cost $(SEQUENCES) --resampled car_a silver_estate S1301 -o results/fusion_cost)
 	$(BIN)/python -m benchmarks.bench $(BENCH_ARGS)
-	$(BIN)/python -m benchmarks.bench.performance_page results/bench/bench.json docs
+	$(BIN)/python -m benchmarks.bench.performance_page results/bench/bench.json $(PAGES)
 
 # The papers' experiments; what was run before is not run again.
 reproduce: .venv/installed
-	$(BIN)/python -m reproduction $(FIGURES) --docs docs
+	$(BIN)/python -m reproduction $(FIGURES) --docs $(PAGES)
 
 lint: .venv/installed
 	$(BIN)/ruff check .

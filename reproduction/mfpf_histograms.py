@@ -218,7 +218,7 @@ def _edges_text(interpretation: str) -> str:
     return f"edges above {100 * edges.threshold:.0f} % of the strongest and {edges.floor:g} levels"
 
 
-def _chosen(result: Result, situation: str) -> list[int]:
+def chosen_frames(result: Result, situation: str) -> list[int]:
     """Give the indices of the frames of a situation."""
     visible = result["visible"]
     if situation == "full":
@@ -245,7 +245,7 @@ def _distances(
 ) -> dict[str, float]:
     choice = SceneChoice.of(_SCENE).seeded(seed)
     # Frames are chosen alike for both interpretations.
-    chosen = _chosen(results[HistogramCell(choice, PAPER)], situation)
+    chosen = chosen_frames(results[HistogramCell(choice, PAPER)], situation)
     result = results[HistogramCell(choice, interpretation)]
     return {name: fmean(result["distance"][name][index] for index in chosen) for name in FEATURES}
 
@@ -322,7 +322,7 @@ def _pictures(seed: int) -> dict[str, tuple[Frame, dict[str, Any]]]:
     result = probe.result()
     distance: Sequence[float] = result["distance"]["color"]
     worst = {
-        situation: max(_chosen(result, situation), key=distance.__getitem__)
+        situation: max(chosen_frames(result, situation), key=distance.__getitem__)
         for situation in _SITUATIONS
     }
     return {"initial": shown[0], **{situation: shown[i] for situation, i in worst.items()}}

@@ -12,12 +12,17 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A browser for tests of pages, where one is installed."""
+"""Settings of the whole suite, and a browser for tests of pages, where one is installed."""
 
 import shutil
 import subprocess
 
+import hypothesis
 import pytest
+
+# No test depends on how fast the machine is.
+hypothesis.settings.register_profile("suite", deadline=None)
+hypothesis.settings.load_profile("suite")
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 _OPTIONS = (

@@ -45,6 +45,7 @@ def short(monkeypatch):
     monkeypatch.setattr(demo_runs, "CONTESTANTS", contestants)
 
 
+@pytest.mark.slow
 def test_everything_else_is_done_and_said(tmp_path, without_ros, short, capsys):
     assert main(["demo", "-o", str(tmp_path), "--seeds", "1"]) == 0
     out, err = capsys.readouterr()

@@ -156,6 +156,7 @@ def readme_commands(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_the_readme_commands_write_what_it_says(readme_commands):
     for name in ("traffic.mp4", "traffic.csv", "out/summary.png", "out/estimates.csv"):
         assert (readme_commands / name).is_file()
@@ -176,6 +177,7 @@ def test_the_readme_evaluation_writes_its_report(readme_commands, monkeypatch):
     assert (readme_commands / "results" / "report.html").is_file()
 
 
+@pytest.mark.slow
 def test_the_readme_example_follows_the_vehicle_through_both_occlusions(
     readme_commands, monkeypatch, capsys
 ):

@@ -70,6 +70,7 @@ def test_options_that_do_not_go_together_are_refused(footage, tmp_path, capsys):
     assert "--restarts does not go with --stress" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_baselines_are_run_too(footage, tmp_path):
     words = ["--stress", "quick", "--kinds", "mirrored,plain", "--baselines-python", sys.executable]
     args = ["evaluate", str(footage), *words, "--variants", f"{BASELINE}mil", "--workers", "1"]

@@ -26,7 +26,7 @@ def test_product_of_small_matrices_by_hand():
     assert product(left, right).tolist() == [[17.0], [39.0]]
 
 
-@settings(deadline=None, max_examples=50)
+@settings(max_examples=50)
 @given(
     rows=st.integers(1, 90), inner=st.integers(0, 40), columns=st.integers(1, 90),
     serial=st.integers(1, 5000),

@@ -12,8 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
+from pathlib import Path
+
 import pytest
 
+import vehicle_pf_tracker
 from vehicle_pf_tracker.evaluation import identity
 from vehicle_pf_tracker.evaluation.identity import source_digest
 
@@ -36,7 +39,7 @@ def root(tmp_path):
 
 
 def digest(root, *modules):
-    identity._imported.cache_clear()
+    identity.imported_modules.cache_clear()
     return source_digest(modules, root, "made")
 
 
@@ -84,6 +87,7 @@ def test_one_variant_does_not_decide_another():
         f"vehicle_pf_tracker.trackers.{name}" for name in ("papers.apf", "papers.ms", "session")
     ]
     assert len({source_digest([name]) for name in names}) == 3
-    ours = frozenset({identity._PACKAGE})
-    found = identity._imported("vehicle_pf_tracker.trackers.session", identity._ROOT, ours)
+    ours = frozenset({"vehicle_pf_tracker"})
+    root = Path(vehicle_pf_tracker.__file__).parents[1]
+    found = identity.imported_modules("vehicle_pf_tracker.trackers.session", root, ours)
     assert "vehicle_pf_tracker.trackers.registry" in found

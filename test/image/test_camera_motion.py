@@ -19,7 +19,6 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.image import camera_motion
 from vehicle_pf_tracker.image.camera_motion import CameraFlow, CameraMotion, fit_camera_motion
 from vehicle_pf_tracker.image.small_grey import SmallGrey, small_grey
 
@@ -136,9 +135,9 @@ def test_tiny_and_changed_images_are_borne():
 
 def test_a_mounted_camera_is_measured_seldom_and_its_jump_at_once(monkeypatch):
     flow, tracked = CameraFlow(), []
-    track = camera_motion._track
+    track = cv2.calcOpticalFlowPyrLK
     monkeypatch.setattr(
-        camera_motion, "_track", lambda *images: tracked.append(1) or track(*images)
+        cv2, "calcOpticalFlowPyrLK", lambda *a, **k: tracked.append(1) or track(*a, **k)
     )
     noise = np.random.default_rng(2)
     for _ in range(90):

@@ -104,7 +104,7 @@ images = st.builds(
 )  # fmt: skip
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(grey=images)
 def test_the_kernels_agree(numba, grey):
     cells = numba.gradient_cells(grey)
@@ -114,7 +114,7 @@ def test_the_kernels_agree(numba, grey):
     assert np.array_equal(numba.gradient_cells(grey), cells)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(grey=images)
 def test_channels_are_bounded(grey):
     cells = gradient_cells(grey)

@@ -133,7 +133,7 @@ def direct(frame, position, window, *, threshold, in_frame, signed, floor):
     return counts / max(counts.sum(), 1)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(
     seed=st.integers(0, 2**32 - 1),
     size=st.tuples(st.integers(1, 30), st.integers(1, 40)),

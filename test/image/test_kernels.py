@@ -86,7 +86,7 @@ def clouds(draw, frame):
 
 
 @pytest.mark.parametrize("feature", FEATURES.values(), ids=list(FEATURES))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(data=st.data(), frame=scenes, window=windows)
 def test_counts_are_equal_and_similarities_agree(numba, feature, data, frame, window):
     positions = data.draw(clouds(frame))
@@ -115,7 +115,7 @@ def whole_or_part(draw, frame):
 
 
 @pytest.mark.parametrize("name", ["opencv", "numba"])
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(data=st.data(), frame=scenes, window=windows, bits=st.sampled_from([1, 3, 5]))
 def test_a_map_has_the_similarity_around_every_pixel(request, name, data, frame, window, bits):
     chosen = OPENCV if name == "opencv" else request.getfixturevalue(name)
@@ -144,7 +144,7 @@ def test_nothing_is_like_an_empty_reference(request, name):
     assert not chosen.similarity_map(JointColour(3), frame, window, reference).any()
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(data=st.data(), frame=scenes, window=windows, bits=st.sampled_from([1, 3, 5]))
 def test_mean_shift_agrees(numba, data, frame, window, bits):
     positions = data.draw(clouds(frame))

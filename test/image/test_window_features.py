@@ -32,7 +32,7 @@ def noise(seed, size, levels=256):
 
 
 @every_feature
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     seed=st.integers(0, 2**32 - 1),
     size=st.tuples(st.integers(1, 30), st.integers(1, 40)),

@@ -37,7 +37,7 @@ def test_an_image_without_pixels_counts_nothing():
     assert bin_counts(empty, np.array([0]), 2, rectangles((0, 0, 0, 4))).tolist() == [[0]]
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     seed=st.integers(0, 2**32 - 1),
     shape=st.tuples(st.integers(1, 40), st.integers(1, 40)),

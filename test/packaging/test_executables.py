@@ -25,6 +25,8 @@ import pytest
 from vehicle_pf_tracker.trackers.registry import NODES
 
 ROS_NODES = ["video_source", *(variant.executable for variant in NODES.values())]
+FEW = ["video_source", "fusion_tracker", "traffic_tracker"]
+"""One of each kind."""
 
 
 def executable(name):
@@ -51,6 +53,11 @@ def test_a_command_says_how_it_is_used(name):
 
 
 @pytest.mark.parametrize("name", ROS_NODES)
+def test_every_executable_is_installed(name):
+    assert executable(name)
+
+
+@pytest.mark.parametrize("name", FEW)
 def test_a_node_says_how_it_is_used(name):
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
     done = run(name, "--help")

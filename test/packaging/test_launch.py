@@ -93,8 +93,13 @@ def text(context, value):
     return perform_substitutions(context, normalize_to_list_of_substitutions(value))
 
 
-def command(context, node):
+def resolve(context, node):
+    """Let `node` work out its name and remappings, as it does before it starts a process."""
     node._perform_substitutions(context)
+
+
+def command(context, node):
+    resolve(context, node)
     words = [text(context, part) for part in node.cmd]
     return words[: words.index("--ros-args")] if "--ros-args" in words else words
 
@@ -103,7 +108,7 @@ def test_tracker_starts_the_node_of_the_variant(share):
     context, (node,) = started("tracker", variant="pf", image_topic="/front/image", namespace="car")
     assert text(context, node.node_package) == "vehicle_pf_tracker"
     assert text(context, node.node_executable) == "pf_tracker"
-    node._perform_substitutions(context)
+    resolve(context, node)
     assert node.node_name == "/car/pf_tracker"
     assert node.expanded_remapping_rules == [
         ("image", "/front/image"),
@@ -123,7 +128,7 @@ def test_every_argument_has_a_description():
 
 def test_traffic_starts_its_node_on_the_defaults():
     context, (node,) = started("traffic")
-    node._perform_substitutions(context)
+    resolve(context, node)
     assert node.node_name == "/traffic_tracker"
     assert node.expanded_remapping_rules == [
         ("image", "/camera/image_raw"),
@@ -139,7 +144,7 @@ def test_traffic_takes_detections_and_lines(name):
         name, variant="traffic", detections_topic="/yolo/detections", lines="/etc/lines.yaml",
         image_topic="/gate/image", namespace="gate", log_level="warn",
     )  # fmt: skip
-    node._perform_substitutions(context)
+    resolve(context, node)
     assert node.node_name == "/gate/traffic_tracker"
     assert ("detections", "/yolo/detections") in node.expanded_remapping_rules
     assert ("image", "/gate/image") in node.expanded_remapping_rules
@@ -211,7 +216,7 @@ def test_replay_passes_arguments_on(bag, argument, told):
 def test_the_node_hears_what_was_recorded(tmp_path):
     record(tmp_path / "bag", compressed=True)
     context, nodes = started("replay", recording=str(tmp_path / "bag"), topic="")
-    nodes[0]._perform_substitutions(context)
+    resolve(context, nodes[0])
     assert ("image", "/camera/image_raw") in nodes[0].expanded_remapping_rules
     assert parameters_of(context, nodes[0])["image_transport"] == "compressed"
 
@@ -226,7 +231,7 @@ def test_nothing_is_written_for_arguments(monkeypatch, tmp_path):
     written.mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(written))
     context, (node,) = started("tracker", use_sim_time="true", image_transport="compressed")
-    node._perform_substitutions(context)
+    resolve(context, node)
     assert parameters_of(context, node) == {"use_sim_time": True, "image_transport": "compressed"}
     assert not list(written.iterdir())
 
@@ -260,7 +265,7 @@ def test_cameras_start_a_node_each(tmp_path):
     )
     context, nodes = started("cameras", cameras=str(path))
     for node in nodes:
-        node._perform_substitutions(context)
+        resolve(context, node)
     assert [node.node_name for node in nodes] == ["/front/pf_tracker", "/rear/fusion_tracker"]
     assert ("image", "/r/image") in nodes[1].expanded_remapping_rules
 

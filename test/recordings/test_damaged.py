@@ -295,7 +295,7 @@ def test_a_recording_whose_every_chunk_is_damaged_is_an_input_error(record, tmp_
 
 def test_images_that_only_the_index_knows_are_an_input_error(record, tmp_path):
     whole = bytearray(next(record(compression="none").glob("*.mcap")).read_bytes())
-    (block,) = Recording(tmp_path / "bag")._files[0].blocks
+    (block,) = Recording(tmp_path / "bag").files[0].blocks
     whole[block.offset] = 0x7F  # a record of an unknown kind, which MCAP says to skip
     path = tmp_path / "damaged.mcap"
     path.write_bytes(whole)

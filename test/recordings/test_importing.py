@@ -287,6 +287,7 @@ def sequence_folders():
     return sorted(SEQUENCES.glob("*/*/sequence.json"))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not SEQUENCES.exists(), reason="../shared/sequences is not there")
 @pytest.mark.parametrize("wanted", [None, "raw"])
 def test_all_real_sequences_import(tmp_path, wanted):

@@ -261,7 +261,7 @@ def test_a_folder_without_usable_metadata_is_read_by_its_files(record, tmp_path)
     recording = Recording(folder)
     assert "no metadata.yaml" in recording.notices[0]
     # bag_10 comes after bag_9, not before bag_8.
-    assert [index.path.name for index in recording._files] == [
+    assert [index.path.name for index in recording.files] == [
         "bag_8.mcap",
         "bag_9.mcap",
         "bag_10.mcap",

@@ -214,7 +214,7 @@ def test_a_full_disk_is_an_input_error(tmp_path, monkeypatch):
         pytest.raises(InputError, match="No space left"),
         RecordingWriter(tmp_path / "out") as writer,
     ):
-        monkeypatch.setattr(writer._mcap, "add_message", full)
+        monkeypatch.setattr("mcap.writer.Writer.add_message", full)
         writer.write_image(stamp_of(0), frame_of(0))
     assert list(tmp_path.iterdir()) == []
 

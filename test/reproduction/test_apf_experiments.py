@@ -30,7 +30,6 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
 SIZE = Size(range(100, 101), quick=True)
-LARGE = ("apf-fig1", "apf-table2", "mfpf-table1", "mfpf-histograms", "resampling-cost")
 
 
 @pytest.fixture(scope="module")
@@ -49,10 +48,8 @@ def reports(tmp_path_factory):
     return report
 
 
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(n, marks=pytest.mark.slow) if n in LARGE else n for n in EXPERIMENTS],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", EXPERIMENTS)
 def test_an_experiment_gives_data_figure_and_verdict(reports, tmp_path, name):
     report = reports(name)
     write_report(tmp_path, EXPERIMENTS[name], report, SIZE)

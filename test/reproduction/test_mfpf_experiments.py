@@ -67,6 +67,7 @@ def findings(report, claim):
     return {f.interpretation: f for f in report.verdict.claims[claim].findings}
 
 
+@pytest.mark.slow
 def test_table_1_judges_by_the_best_single_feature(results):
     report = EXPERIMENTS["mfpf-table1"].report(results, SIZE)
     least = findings(report, 0)
@@ -83,6 +84,7 @@ def test_table_1_judges_by_the_best_single_feature(results):
     assert findings(report, 6)["the paper's rule"].holds is Holds.YES  # glcm is the best
 
 
+@pytest.mark.slow
 def test_table_1_counts_runs_that_end_close(results):
     report = EXPERIMENTS["mfpf-table1"].report(results, SIZE)
     ends = next(table for title, table in report.tables.items() if title.startswith("Runs"))
@@ -93,6 +95,7 @@ def test_table_1_counts_runs_that_end_close(results):
     assert findings(report, 4)["the paper's rule"].holds is Holds.YES
 
 
+@pytest.mark.slow
 def test_table_1_sets_runs_apart_that_lost_the_vehicle(results):
     report = EXPERIMENTS["mfpf-table1"].report(results, SIZE)
     (kept,) = (t for title, t in report.tables.items() if title.startswith("Runs that never"))
@@ -113,6 +116,7 @@ def test_the_papers_rule_differs_from_ours_in_what_is_printed():
         assert getattr(paper, "update_unused", None) is (True if system.variant == "mfpf" else None)
 
 
+@pytest.mark.slow
 def test_table_2_tells_prediction_from_features_in_use(results):
     report = EXPERIMENTS["mfpf-table2"].report(results, SIZE)
     predicts = findings(report, 2)["the paper's rule"]
@@ -121,6 +125,7 @@ def test_table_2_tells_prediction_from_features_in_use(results):
     assert findings(report, 0)["the paper's rule"].holds is Holds.YES
 
 
+@pytest.mark.slow
 def test_table_3_has_the_papers_numbers_below_ours(results):
     report = EXPERIMENTS["mfpf-table3"].report(results, SIZE)
     (table,) = report.tables.values()
@@ -130,6 +135,7 @@ def test_table_3_has_the_papers_numbers_below_ours(results):
     assert rows["Edge"] == ("0.0 ± 0.0", "0.0 ± 0.0")
 
 
+@pytest.mark.slow
 def test_features_come_back_together_after_the_occlusion(results):
     report = EXPERIMENTS["mfpf-similarities"].report(results, SIZE)
     back = findings(report, 2)["the paper's rule"].numbers
@@ -174,7 +180,7 @@ def test_one_sequence_has_each_disturbance_by_itself():
     colour = [0.5 if index < 20 else 0.1 for index in range(len(visible))]
     result = {"visible": visible, "distance": {"color": colour}}
     shadow, partial, full = (
-        mfpf_histograms._chosen(result, name) for name in ("shadow", "partial", "full")
+        mfpf_histograms.chosen_frames(result, name) for name in ("shadow", "partial", "full")
     )
     assert shadow
     assert set(shadow) <= set(range(20))
@@ -184,6 +190,7 @@ def test_one_sequence_has_each_disturbance_by_itself():
     assert all(visible[i] < 0.1 for i in full)
 
 
+@pytest.mark.slow
 def test_a_strip_shows_frames_in_their_order(results):
     for case, hides in (("case2", False), ("case6", True)):
         scored = mfpf_systems.run_scores(results, case, mfpf_systems.MFPF, 100)

@@ -38,6 +38,7 @@ def test_the_experiments_are_listed(capsys):
     assert [line.partition(":")[0] for line in lines][:3] == ["apf-fig1", "apf-fig2", "apf-fig3"]
 
 
+@pytest.mark.slow
 def test_one_experiment_writes_its_folder_and_the_page(tmp_path, capsys):
     out, docs = tmp_path / "out", tmp_path / "docs"
     assert reproduce(out, "apf-fig4", "--docs", str(docs)) == 0
@@ -73,6 +74,7 @@ def test_the_page_gives_a_claim_without_interpretations_one_result(tmp_path):
     assert "| claim | result |" in section
 
 
+@pytest.mark.slow
 def test_the_page_has_what_was_made_before_too_and_a_second_time_nothing_changes(tmp_path):
     out, docs = tmp_path / "out", tmp_path / "docs"
     reproduce(out, "apf-fig4")

@@ -57,6 +57,7 @@ def findings(report, claim):
     return {f.interpretation: f for f in report.verdict.claims[claim].findings}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["the paper's rule", "the paper's rule, hidden wholly"])
 def test_phases_follow_each_other_and_leave_nothing_out(results, name):
     view = resampling.VIEWS[name]
@@ -83,6 +84,7 @@ def test_the_paper_s_timing_leaves_a_remnant(seed):
     assert min(visible[26:]) == 1.0
 
 
+@pytest.mark.slow
 def test_figure_4_sees_who_is_lost(results):
     report = EXPERIMENTS["resampling-fig4"].report(results, SIZE)
     interpretations = list(findings(report, 0))
@@ -98,6 +100,7 @@ def test_figure_4_sees_who_is_lost(results):
     assert findings(report, 4)["the paper's rule"].numbers.endswith("0.13 times")
 
 
+@pytest.mark.slow
 def test_figure_5_counts_particles(results):
     report = EXPERIMENTS["resampling-fig5"].report(results, SIZE)
     assert findings(report, 0)["the paper's rule"].holds is Holds.YES
@@ -108,6 +111,7 @@ def test_figure_5_counts_particles(results):
     assert table.rows[0][1:] == ("20.0 / 4000",) * 4
 
 
+@pytest.mark.slow
 def test_frames_are_judged_in_the_middle_of_each_phase(results):
     report = EXPERIMENTS["resampling-frames"].report(results, SIZE)
     assert findings(report, 0)["the paper's rule"].holds is Holds.YES

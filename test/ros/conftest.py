@@ -41,7 +41,8 @@ except ImportError:
 
 ROOT = Path(__file__).resolve().parents[2]
 DOMAINS = range(1, 102)
-TIMEOUT = 20.0
+TIMEOUT = 120.0
+"""Bound of every wait for a state, s: generous, since only a failure waits so long."""
 NO_ROS = "rclpy is not installed (pip install '.[ros]')"
 
 

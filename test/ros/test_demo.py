@@ -41,6 +41,7 @@ sys.exit(main(["demo", "-o", sys.argv[1], "--seeds", "1"]))
 """
 
 
+@pytest.mark.slow
 def test_the_chain_ends_with_scores_pictures_and_a_recording(tmp_path, start_process):
     process = start_process("-c", SHORT_DEMO, str(tmp_path))
     assert process.wait(600) == 0, process.output

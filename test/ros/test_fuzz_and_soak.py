@@ -25,7 +25,7 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from built_messages import missing
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 ROBUSTNESS = Path(__file__).resolve().parents[1] / "robustness"
 
@@ -67,7 +67,6 @@ def test_a_few_vehicles_come_and_go(start_process):
     assert "; twice: 0" in told
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("detector", ["topic", "motion"])
 def test_a_few_vehicles_come_and_go_before_the_node(start_process, detector):
     if detector == "topic" and find_spec("vision_msgs") is None and (reason := missing()):
@@ -81,7 +80,6 @@ def test_a_few_vehicles_come_and_go_before_the_node(start_process, detector):
     assert "MB at most" in told
 
 
-@pytest.mark.slow
 def test_each_fault_of_a_detector_in_turn(start_process):
     if find_spec("vision_msgs") is None and (reason := missing()):
         pytest.skip(f"vision_msgs is not installed, and cannot be built: {reason}")

@@ -103,11 +103,22 @@ class Rig:
                 parameter_overrides=[Parameter("queue_depth", value=50), *parameters],
             )
         )
-        bench.wait_for(lambda: self.node._stream is None or self.node._stream.get_ready())
+        bench.wait_for(lambda: self.node.stream is None or self.node.stream.get_ready())
         self.name = f"/{variant}_tracker"
         self.camera = bench.publisher(kind, topic, QUEUE)
         self.modes = bench.collect(DiagnosticArray, f"{self.name}/mode", QUEUE)
         self.positions = bench.collect(PointStamped, f"{self.name}/position", QUEUE)
+
+    def callback(self, topic):
+        """What the node does with a message of a topic that it has subscribed to."""
+        return next(one.callback for one in self.node.subscriptions if one.topic_name == topic)
+
+    def listeners(self, output: str) -> int:
+        """Subscriptions that the node's publisher of `output` is matched with."""
+        topic = f"{self.name}/{output}"
+        return sum(
+            one.get_subscription_count() for one in self.node.publishers if one.topic_name == topic
+        )
 
     def show(self, message) -> DiagnosticArray:
         """Publish one image and return its one answer."""

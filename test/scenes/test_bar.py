@@ -55,7 +55,7 @@ def test_number_of_wholly_hidden_frames_by_hand(width, speed, frames):
 
 
 @given(st.integers(50, 120), st.floats(1, 12), st.integers(10, 48))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_number_of_wholly_hidden_frames_is_the_free_room_over_the_speed(width, speed, vehicle):
     frames = hidden_frames(width=width, speed=speed, vehicle_width=vehicle)
     room = (width - vehicle) / speed

@@ -140,6 +140,7 @@ def total_occlusions(scene, step=1):
     return count, seen
 
 
+@pytest.mark.slow
 def test_forty_vehicles_are_hidden_about_two_hundred_times():
     count, seen = total_occlusions(make_traffic_scene("traffic-forty"))
     assert len(seen) == 40
@@ -167,6 +168,7 @@ def test_vehicles_in_perspective_stand_where_the_road_says(name):
     assert 1.6 < np.median(widths) < 3.5  # m: a car's front, and something of its side
 
 
+@pytest.mark.slow
 def test_lorries_that_overtake_hide_cars_for_some_seconds():
     scene = make_traffic_scene("traffic-overtaking", settings={"frames": 260})
     lengths, by = {}, set()

@@ -26,6 +26,8 @@ import pytest
 
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
+pytestmark = pytest.mark.slow  # the copy compiles its kernels
+
 ROOT = Path(__file__).resolve().parents[2]
 COPIED = ["vehicle_pf_tracker", "tools", "config", "docs", "test/trackers", "launch", "resource"]
 FILES = ["setup.py", "setup.cfg", "package.xml", "pyproject.toml", "README.md"]
@@ -64,7 +66,7 @@ class ToyTracker(ColourTracker[ToyParameters]):
         spread = settings.sigma * (1 - settings.trust) * elapsed
         moved = self._resample(self._cloud) + np.asarray(self._velocity.value) * elapsed
         particles, left_image = self._diffuse(frame, moved, spread)
-        rho = self._similarity(frame, particles)
+        rho = self.similarity(frame, particles)
         cloud = Cloud(particles, *from_log(log_likelihood(rho, settings.likelihood)))
         return self._report(frame, cloud, elapsed, left_image=left_image)
 '''

@@ -38,9 +38,9 @@ def numba_fails(monkeypatch):
 
         monkeypatch.setattr(importlib, "import_module", import_module)
 
-    choice._load_numba.cache_clear()
+    choice.load_numba.cache_clear()
     yield fail_with
-    choice._load_numba.cache_clear()
+    choice.load_numba.cache_clear()
 
 
 ABSENT = ModuleNotFoundError("No module named 'numba'", name="numba")

@@ -28,9 +28,12 @@ from vehicle_pf_tracker.trackers.registry import find_variant
 
 SEQUENCES = Path(__file__).resolve().parents[3] / "shared" / "sequences"
 
-pytestmark = pytest.mark.skipif(
-    not SEQUENCES.is_dir(), reason="the real sequences are not beside the repository"
-)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        not SEQUENCES.is_dir(), reason="the real sequences are not beside the repository"
+    ),
+]
 
 
 @functools.cache

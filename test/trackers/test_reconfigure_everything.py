@@ -149,7 +149,10 @@ def is_obeyed(variant, spec) -> bool:
     return False
 
 
-@pytest.mark.parametrize("name", VARIANTS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(one, marks=pytest.mark.slow if one == "fusion" else ()) for one in VARIANTS],
+)
 def test_every_parameter_is_obeyed_by_the_next_estimates(name):
     variant = VARIANTS[name]
     table = specs(variant.parameters)

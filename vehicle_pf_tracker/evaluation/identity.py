@@ -78,7 +78,7 @@ def source_digest(modules: Iterable[str], root: Path = _ROOT, package: str = _PA
     while waiting:
         name = waiting.pop()
         seen.add(name)
-        waiting |= _imported(name, root, packages) - seen - _TABLES
+        waiting |= imported_modules(name, root, packages) - seen - _TABLES
     digest = hashlib.sha256()
     for name in sorted(seen):
         digest.update(name.encode() + b"\0" + _source(name, root) + b"\0")
@@ -91,7 +91,8 @@ def _source(name: str, root: Path) -> bytes:
 
 
 @functools.cache
-def _imported(name: str, root: Path, packages: frozenset[str]) -> frozenset[str]:
+def imported_modules(name: str, root: Path, packages: frozenset[str]) -> frozenset[str]:
+    """Find the modules of `packages` that the module `name` imports, early or late."""
     tree = ast.parse(_source(name, root))
     wanted = (target for node in ast.walk(tree) for target in _targets(node))
     return frozenset(

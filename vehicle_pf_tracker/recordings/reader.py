@@ -106,17 +106,17 @@ class Recording:
     def __init__(self, path: Path | str, topic: str | None = None) -> None:
         self.path = Path(path)
         files, found = recording_files(self.path)
-        self._files = [read_index(file) for file in files]
+        self.files = [read_index(file) for file in files]
         self._check_readable()
-        self.topics: tuple[TopicInfo, ...] = list_topics(self._files)
+        self.topics: tuple[TopicInfo, ...] = list_topics(self.files)
         chosen = choose_image_topic(self.path, self.topics, topic)
         self.image_topic, self.image_type = chosen.name, chosen.type_name
         self._frame_count = chosen.message_count
-        blocks = [block for index in self._files for block in index.blocks]
+        blocks = [block for index in self.files for block in index.blocks]
         self.start_ns = min(block.start_ns for block in blocks)
         self.end_ns = max(block.end_ns for block in blocks)
         self._notices = ReadNotices(self.path, self.image_topic, found)
-        self._notices.add_files(self._files)
+        self._notices.add_files(self.files)
 
     @property
     def frame_count(self) -> int:
@@ -235,7 +235,7 @@ class Recording:
         end = self.end_ns + 1
         if duration is not None:
             end = min(end, first + _nanoseconds("duration", duration))
-        return merged_messages(self._files, topics, first, end, self._notices.add_block)
+        return merged_messages(self.files, topics, first, end, self._notices.add_block)
 
     def _decode_or_note(self, message: Message) -> StampedFrame:
         try:
@@ -264,14 +264,14 @@ class Recording:
                 yield topic, deserialize(message.data, messages.TRUTH_TYPES[topic])
 
         try:
-            return messages.truth_from_messages(received(), self._files[-1].is_truncated)
+            return messages.truth_from_messages(received(), self.files[-1].is_truncated)
         except InputError as error:
             raise InputError(f"the truth of {self.path} is broken: {error}") from error
 
     def _check_readable(self) -> None:
-        if any(index.blocks for index in self._files):
+        if any(index.blocks for index in self.files):
             return
-        if any(index.is_truncated or index.damages for index in self._files):
+        if any(index.is_truncated or index.damages for index in self.files):
             raise InputError(
                 f"the recording {self.path} is truncated or damaged before its first message; "
                 "nothing in it can be used"

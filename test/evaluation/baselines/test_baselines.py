@@ -15,6 +15,7 @@
 """The client and its worker, on MIL, the baseline that every OpenCV has."""
 
 import ast
+import subprocess
 import sys
 from pathlib import Path
 
@@ -89,10 +90,14 @@ def test_a_target_has_to_be_set_first():
         baseline.step(frame_at(0))
 
 
-def test_a_dead_worker_is_named():
+def test_a_dead_worker_is_named(monkeypatch):
+    started, start = [], subprocess.Popen
+    monkeypatch.setattr(
+        subprocess, "Popen", lambda *a, **k: started.append(start(*a, **k)) or started[-1]
+    )
     with Baseline("mil", PYTHON) as baseline:
-        baseline._worker._process.kill()
-        baseline._worker._process.wait()
+        started[-1].kill()
+        started[-1].wait()
         with pytest.raises(InputError, match=r"the baseline mil, run by .* ended: status -9"):
             baseline.start(np.zeros((2000, 2000, 3), np.uint8), TARGET)
 

@@ -47,6 +47,7 @@ def plan(tmp_path):
     return make_plan(paths, seeds=range(8))
 
 
+@pytest.mark.slow
 def test_a_worker_killed_halfway_costs_nothing_and_gives_nothing_twice(cluster, plan, tmp_path):
     with distributed.Client(cluster.scheduler_address, set_as_default=False) as client:
         pids = list(client.run(os.getpid).values())
@@ -122,6 +123,7 @@ def scheduler(tmp_path):
         process.kill()
 
 
+@pytest.mark.slow
 def test_a_scheduler_killed_halfway_is_one_sentence_and_the_results_are_kept(
     scheduler, plan, tmp_path, capfd
 ):

@@ -58,7 +58,7 @@ def test_the_seed_moves_the_interval_by_little():
     assert np.std(lows) < 0.06 * error
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=8))
 def test_the_interval_stays_within_the_values(values):
     summary = summarise(values)

@@ -153,7 +153,7 @@ def test_mirroring_twice_changes_nothing(x, width, index, side):
     assert twice.box.width == width
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(index=st.integers(0, 2000), seed=st.integers(0, 2**32 - 1), amplitude=st.floats(0.1, 12))
 def test_shake_moves_truth_and_image_alike(index, seed, amplitude):
     # On a ramp, linear interpolation is exact: its levels tell by how much the image moved.

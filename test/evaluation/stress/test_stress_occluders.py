@@ -17,7 +17,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from stress_samples import RED, box_of, red_share, turning_course, write_sequence
 
@@ -161,7 +161,6 @@ def test_an_upright_rectangle_covers_exactly_its_area(x, y, width, height):
     assert covered.max() <= 1
 
 
-@settings(deadline=None)
 @given(st.floats(8, 40), st.floats(8, 40), st.floats(-3.2, 3.2))
 def test_a_slanted_rectangle_covers_nearly_its_area(width, height, angle):
     corners = rectangle(50 - width / 2, 50 - height / 2, width, height, angle)

@@ -138,11 +138,11 @@ Stub = namedtuple("Stub", "name sequence camera kind labels")
 Stub.label = lambda self, name: dict(self.labels).get(name, "")
 
 
-def result(case, camera, errors, seed=0, **labels):
+def result(case, camera, errors, seed=0, system="mine", **labels):
     stub = Stub(case, case, camera, labels.pop("kind", "plain"), tuple(labels.items()))
     return Result(
         stub,
-        "mine",
+        system,
         seed,
         score_estimates(truths([0] * len(errors)), rows(errors, [T] * len(errors))),
     )
@@ -171,9 +171,9 @@ def test_means_are_over_seeds_then_cases_then_cameras(tmp_path):
 def test_differences_are_paired_by_case_and_seed():
     results = [
         result("a1", "A", [0, 0]), result("a2", "A", [0, 0]), result("b1", "B", [60, 0]),
-        result("a1", "A", [0, 60])._replace(system="other"),
-        result("b1", "B", [60, 60])._replace(system="other"),
-        result("b1", "B", [0, 0], seed=1)._replace(system="other"),
+        result("a1", "A", [0, 60], system="other"),
+        result("b1", "B", [60, 60], system="other"),
+        result("b1", "B", [0, 0], seed=1, system="other"),
     ]  # fmt: skip
     gain = difference(results, "mine", "other", "on_target")
     assert (gain.count, gain.mean) == (2, 0.5)

@@ -117,4 +117,4 @@ def test_frames_of_another_size_begin_the_picture_anew(tmp_path):
 def test_memory_of_a_path_does_not_grow_with_its_length():
     picture = PathPicture()
     drive(picture, count=500)
-    assert all(len(path.places) <= 16 for path in picture._paths.values())
+    assert all(len(path.places) <= 16 for path in picture.paths.values())

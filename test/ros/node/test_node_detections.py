@@ -28,7 +28,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from std_msgs.msg import Header
-from tracker_rig import Rig, on_target, overrides, road
+from tracker_rig import Rig, on_target
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -156,16 +156,6 @@ def test_every_start_has_an_id_of_its_own(stand_in):
         outputs.publish(Header(), estimate(regime=regime), local)
     assert [message.id for message in node.sent["~/detection"]] == ["1", "1", "2"]
     assert node.sent["~/pose_with_covariance"] == []
-
-
-def test_a_node_starts_on_a_detection(bench):
-    rig = Rig(bench, overrides())
-    frames = road(3)
-    assert rig.play(frames[:1]) == ["WAITING"]
-    rig.node._on_detection(detection(32.0 + 2, 59.0))
-    assert rig.play(frames[1:], first=1) == ["TRACKING"] * 2
-    rig.node._on_detection(detection(theta=1.0))
-    assert rig.node.diagnostics._health.refused_targets == 1
 
 
 def test_without_the_package_there_are_no_such_topics(bench, monkeypatch):

@@ -84,7 +84,7 @@ def test_particles_come_while_subscribed(bench, rig, monkeypatch):
     assert cloud.header == answer.header
     assert [field.name for field in cloud.fields] == ["x", "y", "z", "weight"]
     points = np.frombuffer(cloud.data, "<f4").reshape(cloud.width, 4)
-    estimate = rig.node._stream.estimate
+    estimate = rig.node.stream.estimate
     assert points[:, :2] == pytest.approx(estimate.particles.astype(np.float32))
     assert points[:, 3].sum() == pytest.approx(1.0, rel=1e-5)
     assert not points[:, 2].any()
@@ -109,7 +109,7 @@ def test_the_overlay_is_drawn_while_subscribed(bench, rig, monkeypatch):
     picture = np.frombuffer(pictures[0].data, np.uint8).reshape(HEIGHT, WIDTH, 3)
     assert 0.01 < (picture != frames[2]).any(axis=2).mean() < 0.5
     bench.node.destroy_subscription(watcher)
-    bench.wait_for(lambda: rig.node._outputs._picture.get_subscription_count() == 0)
+    bench.wait_for(lambda: rig.listeners("overlay") == 0)
     rig.play(frames[3:], first=3)
     assert len(drawn) == 1
 
@@ -131,7 +131,7 @@ def test_drawing_leaves_the_frame_alone(bench, rig):
     rig.show_frame(frame, 0)
     frame.flags.writeable = False
     before = frame.copy()
-    Overlay().draw(frame[::2, ::2], "TRACKING", rig.node._stream.estimate)
+    Overlay().draw(frame[::2, ::2], "TRACKING", rig.node.stream.estimate)
     assert (frame == before).all()
 
 

@@ -41,8 +41,8 @@ pytestmark = pytest.mark.ros
 
 @pytest.mark.parametrize(
     "signals",
-    [[signal.SIGINT], [signal.SIGINT] * 2, [signal.SIGTERM], [signal.SIGHUP]],
-    ids=["int", "int2", "term", "hup"],
+    [[signal.SIGINT] * 2, [signal.SIGTERM], [signal.SIGHUP]],
+    ids=["int2", "term", "hup"],
 )
 def test_a_signal_ends_the_node_well(start_node, signals):
     node = start_node("apf")
@@ -76,7 +76,7 @@ def test_callbacks_that_always_fail_end_the_node(start_process):
         "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('apf'))"
     )
     node = start_process("-c", code)
-    assert node.wait(60.0) == 1
+    assert node.wait() == 1
     assert "20 callbacks failed within 10 s" in node.output
 
 

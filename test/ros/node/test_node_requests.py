@@ -63,7 +63,7 @@ def client(bench, start_node):
     made = bench.node.create_client(
         SetParameters, "/pf_tracker/set_parameters", qos_profile=QoSProfile(depth=max(BURSTS))
     )
-    bench.wait_for(made.service_is_ready, 60.0)
+    bench.wait_for(made.service_is_ready)
     made.camera = Camera(bench)
     return made
 
@@ -90,4 +90,4 @@ def test_calls_one_after_the_other_do_not_wait_for_a_gate(bench, client):
     # A request that waited for the executor's next round would wait for 0.1 s on average.
     assert statistics.median(times) < 0.05
     # Until its kernels are compiled it answers images with WAITING.
-    bench.wait_for(lambda: client.camera.answers[-1].status[0].message == "TRACKING", 60.0)
+    bench.wait_for(lambda: client.camera.answers[-1].status[0].message == "TRACKING")

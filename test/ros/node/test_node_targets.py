@@ -62,14 +62,14 @@ class Targets:
         }
 
     def give(self, message) -> None:
-        stream = self.rig.node._stream
-        before = stream._asked, stream._health.refused_targets
+        stream, health = self.rig.node.stream, self.rig.node.diagnostics.health
+        before = stream.asked, health.refused_targets
         self.topics[type(message)].publish(message)
-        self.rig.bench.wait_for(lambda: (stream._asked, stream._health.refused_targets) != before)
+        self.rig.bench.wait_for(lambda: (stream.asked, health.refused_targets) != before)
 
     @property
     def last_refusal(self) -> str:
-        return self.rig.node._stream._health.last_refusal
+        return self.rig.node.diagnostics.health.last_refusal
 
 
 @pytest.fixture
@@ -139,10 +139,10 @@ def test_a_click_takes_the_present_size(tracking):
 )
 def test_a_target_that_cannot_be_is_refused_and_the_track_kept(tracking, message, words):
     rig, targets = tracking
-    refused = rig.node._stream._health.refused_targets
+    refused = rig.node.diagnostics.health.refused_targets
     targets.give(message)
     answer = rig.show_frame(road(4)[3], 3)
-    assert rig.node._stream._health.refused_targets == refused + 1
+    assert rig.node.diagnostics.health.refused_targets == refused + 1
     assert words in targets.last_refusal
     assert values_of(answer)["regime"] != "start"
     assert answer.status[0].message == "TRACKING"

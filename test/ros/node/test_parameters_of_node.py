@@ -125,8 +125,7 @@ def test_whole_numbers_in_a_file_do_for_real_ones(bench, make, tmp_path):
     node = make(*yaml_file(tmp_path, "motion:", "  sigma_w: 4", "lost_after: 3"))
     assert (value(node, "motion.sigma_w"), value(node, "lost_after")) == (4.0, 3.0)
     assert type(value(node, "motion.sigma_w")) is float
-    bench.wait_for(node._stream.get_ready)  # kernels load beside
-    assert node._stream._session.tracker.parameters.motion.sigma_w == 4.0
+    assert node.table.configuration.tracker.motion.sigma_w == 4.0
 
 
 def test_whole_numbers_on_the_command_line_do_for_real_ones(make):
@@ -262,7 +261,7 @@ def test_a_change_reaches_the_tracker_and_keeps_the_track(rig, setter):
     answer = rig.show_frame(frames[4], 4)
     assert values_of(answer)["num_particles"] == "40"
     assert values_of(answer)["regime"] != "start"
-    assert rig.node._stream._session.tracker.parameters.motion.sigma_w == 3.0
+    assert rig.node.table.configuration.tracker.motion.sigma_w == 3.0
     assert rig.play(frames[5:], first=5) == ["TRACKING"] * 3
 
 
@@ -310,7 +309,7 @@ def test_the_target_can_be_set_by_parameters(rig, setter):
 
 def test_a_drawn_seed_is_told(bench):
     rig = Rig(bench, overrides(seed=-1))
-    first = rig.node._stream.facts["seed"]
+    first = rig.node.stream.facts["seed"]
     assert first >= 0
     assert rig.node.diagnostics.facts["seed"] == first
     assert Setter(bench).together(seed=12).successful

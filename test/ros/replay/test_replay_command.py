@@ -78,9 +78,8 @@ def track_offline(variant, recording):
     ("variant", "compressed", "transport", "words"),
     [
         ("apf", False, "raw", []),
-        ("pf", False, "raw", []),
-        ("apf", True, "raw", ["--decompress"]),
-        ("apf", True, "compressed", []),
+        pytest.param("apf", True, "raw", ["--decompress"], marks=pytest.mark.slow),
+        pytest.param("apf", True, "compressed", [], marks=pytest.mark.slow),
     ],
 )
 def test_lockstep_and_offline_runs_give_identical_numbers(

@@ -30,13 +30,15 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
 from test_traffic_lockstep import COMMAND
 from tracker_rig import FIRST_NS, PERIOD_NS, QUEUE, header, overrides, values_of
-from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, lanes
+from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, hear_notices, lanes
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros import detections
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
+from vehicle_pf_tracker.ros.traffic import stream
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
+from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -59,18 +61,29 @@ def vision(messages, monkeypatch):
     return module
 
 
+class Clock:
+    """Steady time in s that stands still unless a test moves it."""
+
+    now = 0.0
+
+    def __call__(self):
+        return self.now
+
+
 class DetectorRig(TrafficRig):
     """A node that takes detections from a topic, a detector, and the lines of the log."""
 
     def __init__(self, bench, vision, monkeypatch, **parameters):
         given = {"detector__max_wait": 20.0, **parameters}
+        self.said = hear_notices(monkeypatch)
+        self.clock = Clock()
+        self.waiting = WaitingImages(self.clock)
+        monkeypatch.setattr(stream, "WaitingImages", lambda: self.waiting)
         super().__init__(bench, overrides(detector__kind="topic", **given))
         self.vision = vision
         self.detector = bench.publisher(vision.Detection2DArray, "detections", QUEUE)
         self.frames = lanes(FIRST + MOST)[FIRST:]
         self.next = 0
-        self.said = []
-        monkeypatch.setattr(self.node._stream._notices, "_write", self.said.append)
 
     def message(self, rows, index, **results):
         """Make detections of (left, top, width, height, score)."""
@@ -137,42 +150,41 @@ def test_vehicles_are_followed_as_offline_with_the_same_detections(rig):
 def test_an_image_waits_for_its_detections_and_no_other(rig):
     rig.camera.publish(image_message(header(0), rig.frames[0]))
     rig.camera.publish(image_message(header(1), rig.frames[1]))
-    stream = rig.node._stream
-    rig.bench.wait_for(lambda: stream._waiting is not None and len(stream._waiting) == 2)
+    rig.bench.wait_for(lambda: len(rig.waiting) == 2)
     rig.detector.publish(rig.message(rig.truth(5), 5))
-    rig.bench.wait_for(lambda: stream._waiting._early)
+    rig.bench.wait_for(lambda: rig.waiting.remembered)
     assert rig.modes == []
     rig.detector.publish(rig.message(rig.truth(0), 0))
     rig.bench.wait_for(lambda: rig.modes)
     assert [one.header for one in rig.modes] == [header(0)]
     rig.detector.publish(rig.message([], 1))
     rig.bench.wait_for(lambda: len(rig.modes) == 2)
-    assert rig.node._stream._waiting.matched == 2
+    assert rig.waiting.matched == 2
 
 
 def test_a_detector_that_stops_is_told_once_and_vehicles_stay(bench, vision, monkeypatch):
     rig = DetectorRig(bench, vision, monkeypatch, detector__max_wait=0.05)
-    waiting = rig.node._stream._waiting
-    clock, waiting._clock = waiting._clock, lambda: 0.0  # while it answers, nothing is too late
     before = rig.follow()
-    waiting._clock = clock
     for index in range(rig.next, rig.next + 4):
-        rig.show(image_message(header(index), rig.frames[index]))
+        rig.camera.publish(image_message(header(index), rig.frames[index]))
+        rig.bench.wait_for(lambda: len(rig.waiting))
+        answered, rig.clock.now = len(rig.modes), rig.clock.now + 1.0
+        rig.bench.wait_for(lambda: len(rig.modes) > answered)  # noqa: B023 - called at once
     assert {one.identity for one in rig.vehicles.estimates} == before
-    assert waiting.missed == 4
+    assert rig.waiting.missed == 4
     assert len(rig.said) == 1
     assert "1 images waited in vain for detections" in rig.said[0]
 
 
 def test_detections_whose_stamps_never_match_are_told_once(rig):
     before = rig.follow()
-    waiting = rig.node._stream._waiting
+    waiting = rig.waiting
     for count in range(1, 111):
         rig.detector.publish(rig.message([], 1000 + count))
-        rig.bench.wait_for(lambda: len(waiting._early) + waiting.unmatched == count)  # noqa: B023
+        rig.bench.wait_for(lambda: waiting.remembered + waiting.unmatched == count)  # noqa: B023
     assert waiting.unmatched == 10
     rig.answered(rig.next)
-    assert len(waiting._early) <= 100
+    assert waiting.remembered <= 100
     assert [one for one in rig.said if "the stamp of no image" in one] == rig.said
     assert len(rig.said) == 1
     assert {one.identity for one in rig.vehicles.estimates} == before
@@ -238,8 +250,7 @@ def test_a_detector_may_answer_every_third_image(bench, vision, monkeypatch):
             found = Detections.make([row[:4] for row in rows], [0.9, 0.9], ["car", "car"])
         expected = tracker.feed(rig.frames[index], 10**9 + index * PERIOD_NS, found)
         assert rig.vehicles.estimates == expected
-    waiting = rig.node._stream._waiting
-    assert (waiting.matched, waiting.missed) == (5, 0)
+    assert (rig.waiting.matched, rig.waiting.missed) == (5, 0)
     assert rig.said == []
 
 
@@ -263,10 +274,10 @@ def test_a_lockstep_replay_waits_for_the_detector(rig, start_process, tmp_path):
         *COMMAND, str(tmp_path / "bag"), "--no-target", "--lockstep", "--node", "traffic_tracker",
         "--remap", "/camera/image_raw:=/image", "--timeout", "20",
     )  # fmt: skip
-    rig.bench.wait_for(lambda: replay.popen.poll() is not None, timeout=60.0)
+    rig.bench.wait_for(lambda: replay.popen.poll() is not None)
     assert f"/traffic_tracker: {COUNT} answered, 0 not" in replay.output
     assert [*answers[1:], rig.vehicles.estimates] == expected
-    assert rig.node._stream._waiting.matched == COUNT
+    assert rig.waiting.matched == COUNT
 
 
 def test_a_detector_may_publish_best_effort(bench, vision):

@@ -82,8 +82,12 @@ def in_numbers(rows):
 
 
 @pytest.mark.parametrize(
-    ("compressed", "by_hand"), [(False, False), (True, False), (False, True)],
-    ids=["motion", "compressed", "by hand"],
+    ("compressed", "by_hand"),
+    [
+        pytest.param(False, False, id="motion"),
+        pytest.param(True, False, id="compressed", marks=pytest.mark.slow),
+        pytest.param(False, True, id="by hand", marks=pytest.mark.slow),
+    ],
 )  # fmt: skip
 def test_lockstep_and_offline_runs_give_identical_vehicles(
     start_node, start_process, bench, tmp_path, compressed, by_hand
@@ -102,7 +106,7 @@ def test_lockstep_and_offline_runs_give_identical_vehicles(
         *COMMAND, str(recording), *words, "--lockstep", "--node", "traffic_tracker",
         "--timeout", "20", "-o", str(tmp_path / "replayed"),
     )  # fmt: skip
-    bench.wait_for(lambda: len(heard) == FRAMES, timeout=60.0)
+    bench.wait_for(lambda: len(heard) == FRAMES)
     assert replay.wait() == 0, replay.output
     assert f"/traffic_tracker: {FRAMES} answered, 0 not" in replay.output
     words = ["--detector", "none", "--target", f"@1:{target}"] if by_hand else []

@@ -148,7 +148,7 @@ def test_detections_that_never_match_are_counted_and_do_not_pile_up(images):
     for stamp in range(1000, 2000):
         images.add_detections(stamp, SEEN)
     assert images.unmatched == 900
-    assert len(images._early) == 100
+    assert images.remembered == 100
 
 
 def test_what_was_passed_on_is_not_remembered_for_ever(images, clock):
@@ -156,6 +156,6 @@ def test_what_was_passed_on_is_not_remembered_for_ever(images, clock):
         show(images, stamp)
         clock.now += 1
         assert passed(images) == [(stamp, None)]
-    assert len(images._passed) == 100
+    assert images.remembered == 100
     images.clear()
-    assert len(images) == len(images._passed) == 0
+    assert len(images) == images.remembered == 0

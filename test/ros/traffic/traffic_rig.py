@@ -23,6 +23,8 @@ from sensor_msgs.msg import Image, PointCloud2
 from tracker_rig import QUEUE, header
 
 from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.ros.traffic import stream
+from vehicle_pf_tracker.ros.traffic.notices import Notices
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
 
 WIDTH, HEIGHT = 160, 120
@@ -54,6 +56,13 @@ def lanes(count: int) -> list[np.ndarray]:
     return frames
 
 
+def hear_notices(monkeypatch) -> list[str]:
+    """Sentences that nodes made from now on log: each kind once, however long the test takes."""
+    said: list[str] = []
+    monkeypatch.setattr(stream, "Notices", lambda _: Notices(said.append, lambda: 0.0))
+    return said
+
+
 class TrafficRig:
     """The node, a publisher of images, and its answers."""
 
@@ -73,7 +82,7 @@ class TrafficRig:
 
     @property
     def vehicles(self):
-        return self.node._stream.vehicles
+        return self.node.stream.vehicles
 
     def show(self, message, answers: int = 1) -> DiagnosticArray:
         """Publish one image, and return the last of the answers that came."""

@@ -20,7 +20,6 @@ import pytest
 
 from vehicle_pf_tracker.image.canonical_patch import cut_patch
 from vehicle_pf_tracker.image.shared_motion import shared_turn
-from vehicle_pf_tracker.trackers.fusion import surface_points
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 
 SIZE = np.array([40.0, 40.0])
@@ -57,7 +56,7 @@ def patch_of(picture, centre, size=SIZE):
 
 def share_living(points):
     """Of the set of which fewest live."""
-    return min((each.alive.mean() for each in points._sets), default=1.0)
+    return min((each.alive.mean() for each in points.sets), default=1.0)
 
 
 class Drive:
@@ -123,7 +122,8 @@ def test_an_occluder_ends_the_points_that_it_covers(left, low, high):
 
 @pytest.mark.parametrize("degrees", [20, -40])
 def test_the_turn_of_places_is_found_among_strays(degrees):
-    places = surface_points._grid(6, 0.4)
+    ends = np.linspace(-0.4, 0.4, 6)
+    places = np.stack(np.meshgrid(ends, ends), axis=-1).reshape(-1, 2)
     angle = np.radians(degrees)
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     moved = places @ turn
@@ -193,10 +193,10 @@ def test_no_set_is_placed_on_an_occluder():
     drive = Drive()
     for _ in range(12):
         drive.step()
-    before = {id(points) for points in drive.points._sets}
+    before = {id(points) for points in drive.points.sets}
     for _ in range(5):
         drive.step(cover(-40, 80), whole=False)
-    assert {id(points) for points in drive.points._sets} <= before
+    assert {id(points) for points in drive.points.sets} <= before
 
 
 def test_restarting_discards_all_points():
@@ -204,10 +204,10 @@ def test_restarting_discards_all_points():
     for _ in range(12):
         drive.step()
     drive.points.restart()
-    assert not drive.points._sets
+    assert not drive.points.sets
     assert drive.points.stretch.tolist() == [0.0, 0.0]
     drive.step()
-    assert len(drive.points._sets) == 1
+    assert len(drive.points.sets) == 1
 
 
 def first_motion(before, after, size=SIZE):

@@ -108,11 +108,11 @@ def test_interpretation_6_the_reference_is_frozen_while_occluded():
     before = []
     for tracker in (kept, learned):
         follow(tracker, street, range(11))
-        before.append(tracker._reference.histogram)
+        before.append(tracker.reference.histogram)
         for time in range(11, 25):
             tracker.step(street.frame(time))
-    assert np.array_equal(kept._reference.histogram, before[0])
-    assert not np.allclose(learned._reference.histogram, before[1], atol=0.05)
+    assert np.array_equal(kept.reference.histogram, before[0])
+    assert not np.allclose(learned.reference.histogram, before[1], atol=0.05)
 
 
 def test_interpretation_7_the_blended_histogram_notices_an_occlusion_late():
@@ -158,8 +158,7 @@ def test_as_printed_weights_are_almost_flat():
 def spread_after(elapsed, hidden):
     street = Street(speed=3.0, hidden=(10, 99) if hidden else (99, 99))
     tracker = make(num_particles=4000)
-    follow(tracker, street, range(12))
-    parents = tracker._cloud.positions
+    parents = follow(tracker, street, range(12))[-1].particles
     particles = tracker.step(street.frame(12), elapsed).particles
     return particles, parents
 
@@ -223,45 +222,59 @@ def test_the_relative_rule_sees_an_occlusion_and_its_end():
 def test_with_the_relative_rule_the_reference_follows_good_frames_only():
     street = Street(speed=0.0, hidden=(15, 30))
     tracker = make(**REAL_VIDEO, **{"reference.steady_alpha": 0.5})
-    follow(tracker, street, range(15))
-    followed = tracker._reference.histogram
-    assert not np.array_equal(followed, tracker._first)
+    tracker.start(street.frame(0), street.box(0))
+    first = tracker.reference.histogram
+    for time in range(1, 15):
+        tracker.step(street.frame(time))
+    followed = tracker.reference.histogram
+    assert not np.array_equal(followed, first)
     for time in range(15, 30):
         tracker.step(street.frame(time))
-        assert np.array_equal(tracker._reference.histogram, followed)
+        assert np.array_equal(tracker.reference.histogram, followed)
 
 
-def in_regime(regime, **values):
-    """A tracker of a vehicle that moves at 3 px a frame, before a step in the given regime."""
-    tracker = make(**PRINTED_RULE, num_particles=4000, **values)
-    follow(tracker, Street(speed=3.0), range(12))
-    tracker._pi = tracker._pi_up = 1.0 if regime == "regular" else 0.0
-    return tracker
-
-
-@pytest.mark.parametrize("similarities", [(0.5, 1.0), (1.0, 0.5)])
-def test_one_low_similarity_is_enough_for_the_occlusion_regime(similarities):
-    tracker = in_regime("regular")
-    tracker._pi, tracker._pi_up = similarities
-    assert tracker.step(Street(speed=3.0).frame(12)).regime == "occlusion"
+def test_one_low_similarity_is_enough_for_the_occlusion_regime():
+    """The reference learns a repainted vehicle fast, and then its first colours return."""
+    values = {"reference.alpha": 0.5, "reference.frozen_while_occluded": False}
+    tracker, there, back = make(**PRINTED_RULE, **values), Repainted(speed=0.0), Street(speed=0.0)
+    estimates = follow(tracker, there, range(5))
+    estimates += [tracker.step(back.frame(time)) for time in range(5, 11)]
+    tau, single = ApfParameters().occlusion.tau, set()
+    for before, now in itertools.pairwise(estimates[1:]):
+        low = {name for name in ("pi", "pi_up") if before.similarities[name] < tau}
+        assert now.regime == ("occlusion" if low else "regular")
+        single |= low if len(low) == 1 else set()
+    assert single == {"pi", "pi_up"}
 
 
 @pytest.mark.parametrize("sigma_n", [2.0, 10.0])
 def test_the_drift_spreads_across_the_motion_by_its_own_sigma(sigma_n):
-    tracker = in_regime("occlusion", **{"motion.sigma_n": sigma_n})
-    before = tracker._cloud.positions[:, 1].var()
-    after = tracker.step(Street(speed=3.0).frame(12)).particles[:, 1].var()
-    assert after - before == pytest.approx(sigma_n**2, rel=0.15)
+    tracker = make(**PRINTED_RULE, num_particles=4000, **{"motion.sigma_n": sigma_n})
+    street = Street(speed=3.0, hidden=(11, 99))
+    before = follow(tracker, street, range(12))[-1].particles[:, 1].var()
+    estimate = tracker.step(street.frame(12))
+    assert estimate.regime == "occlusion"
+    assert estimate.particles[:, 1].var() - before == pytest.approx(sigma_n**2, rel=0.15)
+
+
+class Reversing(Street):
+    """Drives to the right at 3 px a frame, and in the two frames before it is hidden back."""
+
+    def box(self, time):
+        return super().box(time if time < 14 else 13 - 2 * (time - 13))
 
 
 def test_the_drift_leaves_out_the_newest_displacements():
-    tracker = in_regime("occlusion")
-    tracker._velocity = MeanVelocity(4, delay=2)
-    for x in (10.0, 10.0, 10.0, 10.0, -20.0, -20.0):
-        tracker._velocity.add((0.0, 0.0), (x, 0.0), 1.0)
-    before = tracker._cloud.positions[:, 0].mean()
-    after = tracker.step(Street(speed=3.0).frame(12)).particles[:, 0].mean()
-    assert after - before == pytest.approx(10.0, abs=0.5)
+    def drift(delay):
+        values = {"velocity.window": 8, "velocity.delay": delay}
+        tracker, street = make(num_particles=4000, **values), Reversing(speed=3.0, hidden=(16, 99))
+        follow(tracker, street, range(17))
+        estimates = [tracker.step(street.frame(time)) for time in range(17, 19)]
+        assert estimates[0].regime == "occlusion"
+        before, after = (one.particles[:, 0].mean() for one in estimates)
+        return after - before
+
+    assert drift(2) > drift(0) + 1
 
 
 @pytest.mark.parametrize(("rule", "delay"), [("relative", 12), ("fixed", 0)])

@@ -20,7 +20,6 @@ from street import Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.papers.hpfms import HpfmsParameters, HpfmsTracker
-from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 
 
 def make(**values):
@@ -54,8 +53,11 @@ def test_the_spread_follows_the_speed():
     slow, fast = make(**values), make(**values)
     follow(slow, Street(speed=2.0), range(12))
     follow(fast, Street(speed=8.0), range(12))
-    assert slow._spread() == pytest.approx(5.0)
-    assert fast._spread() == pytest.approx(8.0, rel=0.1)
+    assert slow.spread() == pytest.approx(5.0)
+    assert fast.spread() == pytest.approx(8.0, rel=0.1)
+    half = make(**{"sigma": 1.0, "transition.widest": 1.0, "transition.speed_share": 0.5})
+    follow(half, Street(speed=8.0), range(12))
+    assert half.spread() == pytest.approx(4.0, rel=0.1)
 
 
 def test_the_spread_grows_with_doubt_up_to_its_bound():
@@ -63,12 +65,12 @@ def test_the_spread_grows_with_doubt_up_to_its_bound():
     tracker = make(**values)
     street = Street(speed=0.0, hidden=(15, 99))
     tracker.start(street.frame(0), street.box(0))
-    assert tracker._spread() == pytest.approx(10.0)  # nothing is known of the speed yet
+    assert tracker.spread() == pytest.approx(10.0)  # nothing is known of the speed yet
     for time in range(1, 15):
         tracker.step(street.frame(time))
-    assert tracker._spread() == pytest.approx(5.0, rel=0.1)
+    assert tracker.spread() == pytest.approx(5.0, rel=0.1)
     tracker.step(street.frame(15))
-    assert tracker._spread() == pytest.approx(10.0)
+    assert tracker.spread() == pytest.approx(10.0)
 
 
 def test_without_mean_shift_the_moves_have_the_spread():
@@ -87,13 +89,4 @@ def test_starting_again_knows_nothing_of_the_speed():
     street = Street(speed=3.0)
     follow(tracker, street, range(12))
     tracker.start(street.frame(0), street.box(0))
-    assert tracker._spread() == pytest.approx(16.0)
-
-
-@pytest.mark.parametrize(("share", "expected"), [(0.0, 8.0), (0.5, 20.0), (1.0, 40.0)])
-def test_the_spread_is_a_share_of_the_speed_or_sigma(share, expected):
-    tracker = make(**{"sigma": 8.0, "transition.speed_share": share, "transition.widest": 1.0})
-    follow(tracker, Street(), range(2))
-    tracker._velocity = MeanVelocity(1)
-    tracker._velocity.add((0.0, 0.0), (24.0, 32.0), 1.0)
-    assert tracker._spread() == pytest.approx(expected)
+    assert tracker.spread() == pytest.approx(16.0)

@@ -47,6 +47,6 @@ def test_over_all_moves_the_newest_wait_as_well():
 
 def test_months_of_moves_keep_nothing_but_the_window():
     velocity = moved(MeanVelocity(4, delay=2), *range(10_000))
-    assert len(velocity._moves) == 6
+    assert len(velocity.moves) == 6
     assert velocity.value[0] == pytest.approx(9997.5)
-    assert len(moved(MeanVelocity(0), *range(1000))._moves) == 0
+    assert len(moved(MeanVelocity(0), *range(1000)).moves) == 0

@@ -24,6 +24,8 @@ from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
+from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
+from vehicle_pf_tracker.trackers.papers import mfpf
 from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.papers.mfpf import MfpfTracker
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
@@ -91,14 +93,14 @@ def test_predicts_with_the_last_increments_and_leaves_the_references_alone():
     tracker = make()
     estimates = follow(tracker, street, range(21))
     assert estimates[20].regime == "prediction"
-    kept, velocity = [one.histogram for one in tracker._references], estimates[20].velocity
+    kept, velocity = [one.histogram for one in tracker.references], estimates[20].velocity
     for time in range(21, 30):
         estimate = tracker.step(street.frame(time))
         assert estimate.regime == "prediction"
         assert estimate.velocity == velocity
         assert error(estimate, street, time) < 12
     assert all(
-        np.array_equal(a, b.histogram) for a, b in zip(kept, tracker._references, strict=True)
+        np.array_equal(a, b.histogram) for a, b in zip(kept, tracker.references, strict=True)
     )
     estimates = [tracker.step(street.frame(time)) for time in range(30, 45)]
     assert estimates[-1].regime == "estimation"
@@ -123,16 +125,18 @@ def test_interpretation_12_velocity_over_a_window_is_steadier_than_the_last_disp
 
 def test_interpretation_15_the_reference_is_the_first_histogram_and_the_last_one():
     street = Street()
-    tracker = make(reference_weight=1.0)
-    follow(tracker, street, range(5))
-    assert len(tracker._first) == 3
-    for first, reference in zip(tracker._first, tracker._references, strict=True):
-        assert np.array_equal(first, reference.histogram)
-    tracker = make(reference_weight=0.25)
-    estimate = follow(tracker, street, range(5))[-1]
-    last = tracker._describe(street.frame(4), estimate.position)
-    for first, reference, found in zip(tracker._first, tracker._references, last, strict=True):
-        assert reference.histogram == pytest.approx(0.25 * first + 0.75 * found)
+    for weight in (1.0, 0.25):
+        tracker = make(reference_weight=weight)
+        tracker.start(street.frame(0), street.box(0))
+        first = [reference.histogram for reference in tracker.references]
+        for time in range(1, 5):
+            estimate = tracker.step(street.frame(time))
+        at = np.array([estimate.position])
+        for kind, began, reference in zip(
+            tracker.features.values(), first, tracker.references, strict=True
+        ):
+            last = tracker.kernels.histograms(kind, street.frame(4), at, tracker.window)[0]
+            assert reference.histogram == pytest.approx(weight * began + (1 - weight) * last)
 
 
 def test_interpretation_16_resamples_below_a_share_of_the_particles():
@@ -178,7 +182,7 @@ def test_interpretation_19_the_mean_over_all_particles_is_lower():
 def test_each_texture_of_the_paper_can_be_chosen(word, kind):
     street, tracker = Street(), make(texture=word)
     estimates = follow(tracker, street, range(20))
-    assert isinstance(tracker._features["texture"], kind)
+    assert isinstance(tracker.features["texture"], kind)
     assert error(estimates[-1], street, 19) < 10
 
 
@@ -187,7 +191,7 @@ def test_a_feature_changed_while_hidden_is_rebuilt_from_the_first_frame():
     follow(tracker, street, range(15))
     changed = from_mapping(MfpfParameters, {"texture": "lbp", "edges.threshold": 0.5})
     tracker.reconfigure(changed)
-    assert tracker._features["edge"] == GradientDirections(0.5, floor=40.0)
+    assert tracker.features["edge"] == GradientDirections(0.5, floor=40.0)
     estimates = [tracker.step(street.frame(time)) for time in range(15, 35)]
     assert estimates[0].regime == "prediction"
     assert error(estimates[-1], street, 34) < 8
@@ -232,29 +236,44 @@ def test_weights_are_the_earlier_ones_times_the_likelihoods_of_the_features_in_u
     tracker = make(num_particles=50, resample_below=0.0)
     street = Street()
     estimates = follow(tracker, street, range(3))
-    references = list(tracker._references)
-    tracker.step(street.frame(3))
-    particles, before = tracker._cloud.positions, estimates[-1].weights
+    references = list(tracker.references)
+    estimate = tracker.step(street.frame(3))
+    particles, before = estimate.particles, estimates[-1].weights
     expected = np.log(before)
-    for feature, reference in zip(tracker._features.values(), references, strict=True):
+    for feature, reference in zip(tracker.features.values(), references, strict=True):
         rho = feature.similarity(street.frame(3), particles, tracker.window, reference)
         expected = expected - (1 - rho) / (2 * 0.1**2)
     weights = np.exp(expected - expected.max())
-    assert tracker._cloud.weights == pytest.approx(weights / weights.sum(), rel=1e-3, abs=1e-9)
+    assert estimate.weights == pytest.approx(weights / weights.sum(), rel=1e-3, abs=1e-9)
 
 
-def test_the_evidence_is_the_median_of_the_features():
+def test_the_evidence_is_the_median_of_the_features(monkeypatch):
+    judged, judge = [], EvidenceJudge.judge
+    monkeypatch.setattr(
+        EvidenceJudge,
+        "judge",
+        lambda self, evidence, *a, **k: judged.append(evidence) or judge(self, evidence, *a, **k),
+    )
+    distances = iter([0.1, 0.8, 0.5] * 2)
     tracker, street = make(), Street()
     follow(tracker, street, range(3))
-    tracker._similarities = lambda histograms: np.array([0.9, 0.2, 0.5])
-    assert tracker._advance(street.frame(3), 1.0).evidence == 0.5
+    monkeypatch.setattr(mfpf, "bhattacharyya_coefficient", lambda *_: next(distances))
+    monkeypatch.setattr(mfpf, "hellinger_distance", lambda rho: rho)
+    tracker.step(street.frame(3))
+    assert judged[-1] == 0.5
 
 
 def test_the_search_grows_by_time_not_by_frames():
-    values = {"confidence.threshold": 1.0, "dispersion.growth": 10.0}
-    street, tracker = Street(speed=0.0, hidden=(5, 99)), make(**values)
-    follow(tracker, street, range(6))
-    radii = [tracker._search_radius(1.0)]
-    tracker.step(street.frame(6), 3.0)
-    radii.append(tracker._search_radius(1.0))
-    assert radii[1] - radii[0] == pytest.approx(min(30.0, 60.0 - radii[0]))
+    values = {"num_particles": 2000, "confidence.threshold": 1.0, "dispersion.growth": 5.0}
+    street = Street(speed=0.0, hidden=(5, 99))
+
+    def reach(steps):
+        tracker = make(**values)
+        follow(tracker, street, range(6))
+        before = spread(tracker.step(street.frame(6)))
+        for elapsed in steps:
+            tracker.step(street.frame(7), elapsed)
+        return spread(tracker.step(street.frame(8))) - before
+
+    assert reach([3.0]) == pytest.approx(reach([1.0] * 3), abs=0.7)
+    assert reach([3.0]) == pytest.approx(20.0, abs=1.0)

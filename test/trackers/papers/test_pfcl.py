@@ -46,8 +46,8 @@ def test_lines_tell_apart_what_colours_do_not():
     tracker = make(num_particles=2)
     tracker.start(first, Box(30, 30, 24, 24))
     centres = np.array([[42.0, 42.0], [112.0, 42.0]])
-    colour = tracker._similarity(first, centres)
-    lines = tracker._line_similarity(first, centres)
+    colour = tracker.similarity(first, centres)
+    lines = tracker.line_similarity(first, centres)
     assert colour[0] == pytest.approx(colour[1], abs=0.02)
     assert lines[0] > 0.95
     assert lines[1] < 0.8  # the outline is the same
@@ -57,7 +57,7 @@ def test_a_window_without_lines_is_unlike_a_target_with_lines():
     first = two_boxes(striped(across=True), np.full((24, 24, 3), 128, np.uint8))
     tracker = make(num_particles=2)
     tracker.start(first, Box(30, 30, 24, 24))
-    assert tracker._line_similarity(first, np.array([[112.0, 42.0]])) == pytest.approx([0.0])
+    assert tracker.line_similarity(first, np.array([[112.0, 42.0]])) == pytest.approx([0.0])
 
 
 def test_a_target_without_lines_is_tracked_by_colour_as_pf_does():
@@ -82,19 +82,19 @@ def test_the_window_relearns_the_lines_of_the_first_frame():
     street = Street(speed=0.0, hidden=(5, 99))
     tracker = make()
     follow(tracker, street, range(8))
-    learned = tracker._line_reference
+    learned = tracker.line_reference
     smaller = {"window.width": SIZE[0] - 8.0, "lines.bins": 4}
     tracker.reconfigure(from_mapping(PfclParameters, smaller))
     assert learned.any()
-    assert tracker._line_reference.any()
-    assert len(tracker._line_reference) == 4
+    assert tracker.line_reference.any()
+    assert len(tracker.line_reference) == 4
 
 
 def test_weights_are_the_product_of_both_likelihoods():
     tracker = make(num_particles=50)
     estimate = follow(tracker, Street(), range(2))[-1]
     frame = Street().frame(1)
-    colour = tracker._similarity(frame, estimate.particles)
-    lines = tracker._line_similarity(frame, estimate.particles)
+    colour = tracker.similarity(frame, estimate.particles)
+    lines = tracker.line_similarity(frame, estimate.particles)
     expected = np.exp(-(1 - colour) / (2 * 0.158**2) - (1 - lines) / (2 * 0.35**2))
     assert estimate.weights == pytest.approx(expected / expected.sum())

@@ -43,8 +43,8 @@ both = pytest.mark.parametrize("make", [conventional, adaptive])
 
 def count_weighings(tracker):
     """Make the tracker write down how many windows each call compares."""
-    sizes, compare = [], tracker._similarity
-    tracker._similarity = lambda frame, positions: (
+    sizes, compare = [], tracker.similarity
+    tracker.similarity = lambda frame, positions: (
         sizes.append(len(positions)) or compare(frame, positions)
     )
     return sizes
@@ -57,7 +57,7 @@ def test_the_counts_are_the_likelihoods_that_were_evaluated(make):
     for time in range(1, 10):
         sizes = count_weighings(tracker)
         estimate = tracker.step(street.frame(time))
-        del tracker._similarity
+        del tracker.similarity
         # The first weighing takes all particles, the last the estimate alone.
         assert (sizes[0], sizes[-1]) == (200, 1)
         assert estimate.resampling_passes == len(sizes) - 2
@@ -108,8 +108,8 @@ def one_pass(coefficients, **values):
     positions = np.column_stack(
         [20.0 + np.arange(len(coefficients)), np.full(len(coefficients), 50)]
     )
-    before = tracker._weigh(positions, np.asarray(coefficients))
-    return before, *tracker._pass(street.frame(0), before, 1.0)
+    before = tracker.weigh(positions, np.asarray(coefficients))
+    return before, *tracker.resample_once(street.frame(0), before, 1.0)
 
 
 def test_only_particles_below_the_mean_weight_are_replaced():
@@ -157,10 +157,10 @@ def test_interpretation_22_the_test_by_similarity_ignores_peaked_weights():
 def test_interpretation_22_the_test_by_similarity_sees_that_nothing_is_like_the_vehicle():
     street, tracker = Street(), adaptive(**{"occlusion.test": "similarity"})
     follow(tracker, street, range(10))
-    unlike = tracker._weigh(np.full((5, 2), 50.0), np.array([0.1, 0.2, 0.3, 0.2, 0.1]))
-    alike = tracker._weigh(np.full((5, 2), 50.0), np.array([0.1, 0.2, 0.95, 0.2, 0.1]))
-    assert tracker._pass(street.frame(9), unlike, 1.0)[2] == "occlusion"
-    assert tracker._pass(street.frame(9), alike, 1.0)[2] == "regular"
+    unlike = tracker.weigh(np.full((5, 2), 50.0), np.array([0.1, 0.2, 0.3, 0.2, 0.1]))
+    alike = tracker.weigh(np.full((5, 2), 50.0), np.array([0.1, 0.2, 0.95, 0.2, 0.1]))
+    assert tracker.resample_once(street.frame(9), unlike, 1.0)[2] == "occlusion"
+    assert tracker.resample_once(street.frame(9), alike, 1.0)[2] == "regular"
 
 
 @pytest.mark.parametrize("test", ["n_eff", "similarity"])
@@ -184,7 +184,7 @@ def test_interpretation_23_copies_are_jittered_by_a_share_of_sigma():
     tracker.start(street.frame(0), street.box(0))
     positions = np.tile([100.0, 60.0], (4000, 1))
     particles = WeighedParticles(positions, np.full(4000, 0.9), Cloud.uniform(positions))
-    after, replaced, _ = tracker._pass(street.frame(0), particles, 2.0)
+    after, replaced, _ = tracker.resample_once(street.frame(0), particles, 2.0)
     assert replaced == 4000
     # 0.3 of 10 px a frame, in two frames.
     assert np.std(after.positions - positions) == pytest.approx(6.0, rel=0.05)

@@ -184,7 +184,7 @@ def test_memory_does_not_grow_with_vehicles_that_are_gone():
     counter = line_counter()
     for identity in range(1, 3001):  # one a second
         counter.update([vehicle(identity, 100, 80)], identity * 10**9)
-    assert len(counter._vehicles) <= 601
+    assert len(counter.vehicles) <= 601
 
 
 def test_speed_in_pixels_is_that_of_the_path():

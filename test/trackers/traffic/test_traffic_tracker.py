@@ -184,7 +184,7 @@ def test_another_size_of_image_and_none_of_its_boxes_end_nothing():
         tracker.step(np.zeros((120, 160), np.uint8))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     st.lists(
         st.tuples(*[st.floats(allow_nan=True, allow_infinity=True, width=32)] * 5), max_size=12

@@ -202,7 +202,7 @@ class Footage:
         return ((image.stamp_ns, image.frame) for image in self._recording.frames())
 
 
-class _Shelf:
+class Shelf:
     """Keeps the footage that was used last, for all threads of this process."""
 
     def __init__(self) -> None:
@@ -210,6 +210,7 @@ class _Shelf:
         self._held: tuple[Source, Footage] | None = None
 
     def footage(self, source: Source) -> Footage:
+        """Return the footage of `source`; that of another one is discarded."""
         with self._lock:
             if self._held is None or self._held[0] != source:
                 self._held = None  # so that two are never in memory
@@ -217,7 +218,7 @@ class _Shelf:
             return self._held[1]
 
 
-_SHELF = _Shelf()
+SHELF = Shelf()
 
 
 def footage(source: Source) -> Footage:
@@ -228,7 +229,7 @@ def footage(source: Source) -> Footage:
     InputError
         If it cannot be read, or is not what was planned with.
     """
-    return _SHELF.footage(source)
+    return SHELF.footage(source)
 
 
 def describe(

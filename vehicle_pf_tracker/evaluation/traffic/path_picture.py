@@ -82,7 +82,7 @@ class PathPicture:
     def _begin(self, size: tuple[int, int], scale: int) -> None:
         """Begin anew for frames of (height, width) px, enlarged `scale` times."""
         self._size, self._scale = size, scale
-        self._paths: dict[int, _Path] = {}
+        self.paths: dict[int, _Path] = {}
         self._layer: Frame = np.zeros((size[0] * scale, size[1] * scale, 3), np.uint8)
         self._ground: Frame | None = None
         self._on_ground: list[TrackEstimate] = []
@@ -123,9 +123,9 @@ class PathPicture:
 
     def _extend(self, estimate: TrackEstimate) -> None:
         ((x, y),) = pixels_at(np.array([estimate.box.centre]) * self._scale)
-        path = self._paths.get(estimate.identity)
+        path = self.paths.get(estimate.identity)
         if path is None:
-            path = self._paths[estimate.identity] = _Path((x, y))
+            path = self.paths[estimate.identity] = _Path((x, y))
         red, green, blue = identity_colour(estimate.identity)
         share = _HIDDEN if estimate.mode is TrackMode.OCCLUDED else 1.0
         colour = int(share * red), int(share * green), int(share * blue)
@@ -139,9 +139,9 @@ class PathPicture:
         for one in self._on_ground:
             ((x, y),) = pixels_at(np.array([[one.box.x, one.box.y]]) * self._scale)
             places[one.identity] = [(max(x, 0), max(y - 3 * width, 14 * width))]
-        longest = sorted(self._paths, key=lambda identity: -self._paths[identity].length)
+        longest = sorted(self.paths, key=lambda identity: -self.paths[identity].length)
         for identity in longest[:_MOST_NUMBERS]:
-            places.setdefault(identity, self._paths[identity].from_middle())
+            places.setdefault(identity, self.paths[identity].from_middle())
         for identity, of_path in places.items():
             words = str(identity)
             size = 9 * width * len(words), 13 * width

@@ -49,7 +49,7 @@ def load_kernels(choice: str) -> Kernels:
     if choice == "opencv":
         return OpenCvKernels()
     try:
-        return _load_numba()
+        return load_numba()
     except ImportError as error:
         if choice == "numba":
             raise InputError(
@@ -61,13 +61,14 @@ def load_kernels(choice: str) -> Kernels:
 
 def takes_long(choice: str) -> bool:
     """Tell whether `load_kernels` would first import numba, and perhaps compile for a while."""
-    if choice == "opencv" or _load_numba.cache_info().currsize:
+    if choice == "opencv" or load_numba.cache_info().currsize:
         return False
     return importlib.util.find_spec("numba") is not None
 
 
 @functools.cache
-def _load_numba() -> Kernels:
+def load_numba() -> Kernels:
+    """Make numba's kernels, with everything compiled or loaded; once in a process."""
     # Imported late: it takes half a second, and only here is it known to be needed.
     importlib.import_module(_FIRST)
     jit = importlib.import_module(_JIT)

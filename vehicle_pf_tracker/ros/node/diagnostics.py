@@ -44,6 +44,8 @@ class Diagnostics:
 
     Attributes
     ----------
+    health : Health
+        Counters since the node was configured.
     source : ImageInput or None
         The open subscription; None while the node is not active.
     facts : dict
@@ -52,7 +54,7 @@ class Diagnostics:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._health = Health()
+        self.health = Health()
         self.source: ImageInput | None = None
         self.facts: dict[str, object] = {}
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
@@ -62,13 +64,13 @@ class Diagnostics:
 
     def begin(self) -> Health:
         """Reset the counters, and return them."""
-        self._health = Health()
-        return self._health
+        self.health = Health()
+        return self.health
 
     def listen_to(self, source: ImageInput) -> None:
         """Expect images from `source`."""
         self.source = source
-        self._health.listen()
+        self.health.listen()
 
     def cease(self) -> None:
         """Close the source and expect nothing."""
@@ -79,13 +81,13 @@ class Diagnostics:
     def arrived(self, info: Mapping[str, Any], age: float) -> None:
         """Count an image; see `Health.arrived`."""
         if self.source is not None:
-            self._health.arrived(info, age, self.source.publisher_count)
+            self.health.arrived(info, age, self.source.publisher_count)
 
     def publish(self) -> None:
         """Publish one report."""
         level, words = self._judge()
         publishers = self.source.publisher_count if self.source else 0
-        values = {**self._health.report(), "matched publishers": publishers, **self.facts}
+        values = {**self.health.report(), "matched publishers": publishers, **self.facts}
         status = DiagnosticStatus(
             level=level,
             name=f"{self._node.get_name()}: tracker",
@@ -100,8 +102,8 @@ class Diagnostics:
     def _judge(self) -> tuple[bytes, str]:
         if self.source is None:
             return DiagnosticStatus.OK, "not active"
-        if self._health.silence < SILENCE:
-            return LEVELS[self._health.mode], self._health.mode
+        if self.health.silence < SILENCE:
+            return LEVELS[self.health.mode], self.health.mode
         words = (
             f"no image for {SILENCE:g} s on {self.source.topic}: {self.source.explain_silence()}"
         )

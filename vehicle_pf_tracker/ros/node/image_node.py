@@ -54,7 +54,7 @@ class ImageNode(ManagedNode):
         What is published on /diagnostics.
     """
 
-    _stream: _Stream | None
+    stream: _Stream | None
     """Where images go; None while the node is not configured."""
 
     def begin(self, defaults: Configuration) -> None:
@@ -95,12 +95,12 @@ class ImageNode(ManagedNode):
 
     def _on_image(self, message: bytes | CompressedImage, info: Mapping[str, Any]) -> None:
         """Note an image, and pass it to the stream; not one that a deactivation has overtaken."""
-        if self.diagnostics.source is None or self._stream is None:
+        if self.diagnostics.source is None or self.stream is None:
             return
         image = read_serialized(message) if isinstance(message, bytes) else message
         age = self.get_clock().now().nanoseconds - stamp_ns(image.header)
         self.diagnostics.arrived(info, age * 1e-9)
-        self._stream.take(image)
+        self.stream.take(image)
 
     def warn_of_overrides(self) -> None:
         """Warn of QoS overrides of topics that the node has not, once all are open."""

@@ -44,11 +44,16 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
 
     An `InputError` leaves the node in the state that it was in; any other exception takes it back
     to unconfigured. Each of the two that undo may be called in any state.
+
+    Attributes
+    ----------
+    failure : str
+        Reason of the last transition that failed; empty before one did.
     """
 
     def __init__(self, name: str, **options: Any) -> None:
         super().__init__(name, **options)
-        self._failure = ""
+        self.failure = ""
         service = change_state_service(self)
         if service is not None:
             service.callback = partial(self._answer_change_state, service.callback)
@@ -94,7 +99,7 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
         """
         for trigger in (self.trigger_configure, self.trigger_activate):
             if trigger() != TransitionCallbackReturn.SUCCESS:
-                raise InputError(self._failure)
+                raise InputError(self.failure)
 
     def destroy_node(self) -> None:
         """Destroy the node and its state machine, without which it would stay in the graph."""
@@ -130,10 +135,10 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
             for step in steps:
                 step()
         except InputError as error:
-            self._failure = str(error)
+            self.failure = str(error)
             return TransitionCallbackReturn.FAILURE
         except Exception as error:
-            self._failure = f"unexpected {type(error).__name__}: {error}"
+            self.failure = f"unexpected {type(error).__name__}: {error}"
             if self.context.ok():  # otherwise a signal took the ground from under a call
                 self.get_logger().error(f"in a transition: {traceback.format_exc()}")
             return TransitionCallbackReturn.ERROR
@@ -147,11 +152,11 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
     ) -> ChangeState.Response:
         label, state_id = state_label(self), request.transition.id
         wanted = request.transition.label or str(state_id)
-        self._failure = "there is no such transition"
+        self.failure = "there is no such transition"
         try:
             response = answer(request, response)
         except RCLError:
             response.success = False
         if not response.success:
-            self.get_logger().error(f"transition {wanted} from {label} failed: {self._failure}")
+            self.get_logger().error(f"transition {wanted} from {label} failed: {self.failure}")
         return response

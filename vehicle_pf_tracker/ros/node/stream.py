@@ -61,6 +61,8 @@ class Stream:
 
     Attributes
     ----------
+    asked : Box or None
+        Target that the next image starts on; None where none was given.
     frame_id : str or None
         Of the last image that was used; None before the first.
     estimate : Estimate or None
@@ -85,7 +87,7 @@ class Stream:
         self._applied = configuration
         self._session: Session | None = None
         self._loading = KernelLoading(configuration.tracker.kernels)
-        self._asked: Box | None = None
+        self.asked: Box | None = None
         self._target_problem = ""
         self.localisation = StreamLocalisation(variant.name, configuration.session.road)
         self.frame_id: str | None = None
@@ -132,9 +134,9 @@ class Stream:
         if not self.get_ready() or self._session is None:
             self._wait(message.header, self._loading.reason)
             return
-        if self._asked is not None:
-            self._session.set_target(self._asked)
-            self._asked = None
+        if self.asked is not None:
+            self._session.set_target(self.asked)
+            self.asked = None
         try:
             image = read_image(message)
             self.estimate = self._session.feed(image, stamp_ns(message.header))
@@ -157,7 +159,7 @@ class Stream:
         InputError
             If it is no box in any image.
         """
-        self._asked = check_target(box, MAX_SIDE, MAX_SIDE)
+        self.asked = check_target(box, MAX_SIDE, MAX_SIDE)
 
     def refuse_target(self, reason: str) -> None:
         """Report that a target cannot be used; the track continues."""
@@ -176,7 +178,7 @@ class Stream:
         if not self.get_ready() or self._session is None:
             raise InputError(self._loading.reason)
         size = self._session.size
-        self._asked = self.estimate = None
+        self.asked = self.estimate = None
         self._session.reset()
         self._target_problem = self._misfit(self._configuration, size)
         if self._target_problem:

@@ -58,6 +58,11 @@ class TrackerNode(ImageNode):
     **options
         Passed on to `rclpy.node.Node`.
 
+    Attributes
+    ----------
+    stream : Stream or None
+        Processing of the images; None while the node is not configured.
+
     Raises
     ------
     InputError
@@ -67,7 +72,7 @@ class TrackerNode(ImageNode):
     def __init__(self, variant: Variant, **options: Any) -> None:
         super().__init__(f"{variant.name}_tracker", **options)
         self._variant = variant
-        self._stream: Stream | None = None
+        self.stream: Stream | None = None
         self._outputs: Outputs | None = None
         self._target_inputs: list[Subscription] = []
         self._cameras = CameraInputs(self, self._take_lens, self._take_poses)
@@ -79,8 +84,8 @@ class TrackerNode(ImageNode):
         topic = image_topic(self, configuration.node.image_transport)
         self._outputs = Outputs(self, topic)
         health = self.diagnostics.begin()
-        self._stream = Stream(self, self._variant, configuration, self._outputs, health)
-        self.diagnostics.facts = {"variant": self._variant.name, **self._stream.facts}
+        self.stream = Stream(self, self._variant, configuration, self._outputs, health)
+        self.diagnostics.facts = {"variant": self._variant.name, **self.stream.facts}
         self._is_told_ready = False
         # Steady, because simulated time may stand still while kernels are loaded.
         self._poll = self.create_timer(
@@ -90,7 +95,7 @@ class TrackerNode(ImageNode):
 
     def activate(self) -> None:
         """Open the inputs."""
-        assert self._stream is not None
+        assert self.stream is not None
         self.open_images()
         self.warn_of_overrides()
         self._cameras.open(self.table.configuration.session.road)
@@ -119,7 +124,7 @@ class TrackerNode(ImageNode):
             self._outputs.close()
             self.destroy_service(self._reset_service)
             self.destroy_timer(self._poll)
-        self._outputs = self._stream = None
+        self._outputs = self.stream = None
 
     def _on_region(self, message: RegionOfInterest) -> None:
         self._set_target(lambda stream: box_of_region(message))
@@ -141,52 +146,52 @@ class TrackerNode(ImageNode):
         return self.table.configuration.node.output_frame_suffix
 
     def _take_lens(self, found: ImageLens) -> None:
-        if self._stream is not None:
-            self._stream.localisation.take_lens(found)
+        if self.stream is not None:
+            self.stream.localisation.take_lens(found)
 
     def _take_poses(self, tree: PoseTree) -> None:
-        if self._stream is not None:
-            self._stream.localisation.take_poses(tree)
+        if self.stream is not None:
+            self.stream.localisation.take_poses(tree)
 
     def _set_target(self, read: Callable[[Stream], Box]) -> None:
-        if self._stream is None:
+        if self.stream is None:
             return
         try:
-            self._stream.set_target(read(self._stream))
+            self.stream.set_target(read(self.stream))
         except InputError as error:
-            self._stream.refuse_target(str(error))
+            self.stream.refuse_target(str(error))
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        assert self._stream is not None
+        assert self.stream is not None
         try:
-            self._stream.reset()
+            self.stream.reset()
         except InputError as error:
             response.success, response.message = False, str(error)
         else:
-            response.success, response.message = True, self._stream.target_words
+            response.success, response.message = True, self.stream.target_words
         return response
 
     def _await_kernels(self) -> None:
         """Log once that the node is ready: active, and with kernels."""
         source = self.diagnostics.source
-        if self._stream is None or not self._stream.get_ready():
+        if self.stream is None or not self.stream.get_ready():
             return
         self._poll.cancel()
-        self.diagnostics.facts.update(self._stream.facts)
+        self.diagnostics.facts.update(self.stream.facts)
         if source is not None and not self._is_told_ready:
             self._is_told_ready = True
-            kernels = self._stream.facts["kernels"]
-            words = f"ready: images on {source}, {self._stream.target_words}, {kernels} kernels"
+            kernels = self.stream.facts["kernels"]
+            words = f"ready: images on {source}, {self.stream.target_words}, {kernels} kernels"
             self.get_logger().info(words)
 
     def _check(self, configuration: Configuration) -> None:
-        if self._stream is not None:
-            self._stream.check(configuration)
+        if self.stream is not None:
+            self.stream.check(configuration)
 
     def _reconfigure(self, configuration: Configuration) -> None:
-        if self._stream is not None:
-            self._stream.reconfigure(configuration)
-            self.diagnostics.facts.update(self._stream.facts)
+        if self.stream is not None:
+            self.stream.reconfigure(configuration)
+            self.diagnostics.facts.update(self.stream.facts)
             self._poll.reset()
         if self.diagnostics.source is not None:
             self._cameras.open(configuration.session.road)

@@ -54,6 +54,11 @@ class TrafficNode(ImageNode):
     **options
         Passed on to `rclpy.node.Node`.
 
+    Attributes
+    ----------
+    stream : TrafficStream or None
+        Processing of images and detections; None while the node is not configured.
+
     Raises
     ------
     InputError
@@ -62,7 +67,7 @@ class TrafficNode(ImageNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(TRAFFIC.executable, **options)
-        self._stream: TrafficStream | None = None
+        self.stream: TrafficStream | None = None
         self._outputs: TrafficOutputs | None = None
         self._inputs: list[Subscription] = []
         self.begin(Configuration.of(TRAFFIC))
@@ -80,13 +85,13 @@ class TrafficNode(ImageNode):
         self._outputs = TrafficOutputs(self, topic)
         health = self.diagnostics.begin()
         try:
-            self._stream = TrafficStream(self, configuration, self._outputs, health)
+            self.stream = TrafficStream(self, configuration, self._outputs, health)
         except Exception:  # of whatever a network raises: `cleanup` relies on what follows
             self._outputs.close()
             self._outputs = None
             raise
         self._tell_drawn_seed()
-        self.diagnostics.facts = {"variant": TRAFFIC.name, **self._stream.facts}
+        self.diagnostics.facts = {"variant": TRAFFIC.name, **self.stream.facts}
         # Steady, because simulated time may stand still while an image waits.
         clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._look_timer = self.create_timer(_LOOK_EVERY, self._look, clock=clock)
@@ -119,8 +124,8 @@ class TrafficNode(ImageNode):
         self.diagnostics.cease()
         while self._inputs:
             self.destroy_subscription(self._inputs.pop())
-        if self._stream is not None:
-            self._stream.drop_waiting()
+        if self.stream is not None:
+            self.stream.drop_waiting()
 
     def cleanup(self) -> None:
         """Release session and outputs."""
@@ -129,22 +134,22 @@ class TrafficNode(ImageNode):
             self.destroy_timer(self._look_timer)
             for service in self._requests:
                 self.destroy_service(service)
-        self._outputs = self._stream = None
+        self._outputs = self.stream = None
 
     def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
         super()._on_image(message, info)
-        if self._stream is not None:
-            self._after_step(self._stream)
+        if self.stream is not None:
+            self._after_step(self.stream)
 
     def _on_detections(self, message: bytes) -> None:
-        if self._stream is not None:
-            self._stream.take_detections(message)
-            self._after_step(self._stream)
+        if self.stream is not None:
+            self.stream.take_detections(message)
+            self._after_step(self.stream)
 
     def _look(self) -> None:
-        if self._stream is not None:
-            self._stream.go_on()
-            self._after_step(self._stream)
+        if self.stream is not None:
+            self.stream.go_on()
+            self._after_step(self.stream)
 
     def _after_step(self, stream: TrafficStream) -> None:
         self.diagnostics.facts.update(stream.facts)
@@ -163,9 +168,9 @@ class TrafficNode(ImageNode):
 
     def _on_point(self, message: PointStamped) -> None:
         def choose(vehicles: Vehicles) -> None:
-            assert self._stream is not None
+            assert self.stream is not None
             suffix = self.table.configuration.node.output_frame_suffix
-            check_frame_id("~/clicked_point", message.header, self._stream.frame_id, suffix)
+            check_frame_id("~/clicked_point", message.header, self.stream.frame_id, suffix)
             point = message.point.x, message.point.y
             if not all(map(math.isfinite, point)):
                 raise InputError("~/clicked_point got a number that is not finite; give pixels")
@@ -177,23 +182,23 @@ class TrafficNode(ImageNode):
         self._ask("selection", lambda it: it.selection.choose(message.data, it.estimates))
 
     def _ask(self, what: str, change: Callable[[Vehicles], None]) -> None:
-        if self._stream is None:
+        if self.stream is None:
             return
         try:
-            change(self._stream.vehicles)
+            change(self.stream.vehicles)
         except InputError as error:
-            self._stream.refuse(what, str(error))
+            self.stream.refuse(what, str(error))
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        assert self._stream is not None
-        self._stream.vehicles.reset()
+        assert self.stream is not None
+        self.stream.vehicles.reset()
         response.success, response.message = True, "all vehicles are forgotten"
         return response
 
     def _on_remove(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        assert self._stream is not None
+        assert self.stream is not None
         try:
-            identity = self._stream.vehicles.remove_selected()
+            identity = self.stream.vehicles.remove_selected()
         except InputError as error:
             response.success, response.message = False, str(error)
         else:
@@ -203,7 +208,7 @@ class TrafficNode(ImageNode):
     def _check(self, configuration: Configuration) -> None:
         plane_of(configuration.session.road)
         box = configuration.session.target.box
-        size = self._stream.vehicles.session.size if self._stream is not None else None
+        size = self.stream.vehicles.session.size if self.stream is not None else None
         if box is not None and size is not None and box != self._target:
             check_target(box, *size)
 
@@ -212,14 +217,14 @@ class TrafficNode(ImageNode):
         return self.table.configuration.session.target.box
 
     def _reconfigure(self, configuration: Configuration) -> None:
-        if self._stream is not None:
-            before = self._stream.vehicles.session.tracker.seed
-            self._stream.reconfigure(configuration)
-            if self._stream.vehicles.session.tracker.seed != before:
+        if self.stream is not None:
+            before = self.stream.vehicles.session.tracker.seed
+            self.stream.reconfigure(configuration)
+            if self.stream.vehicles.session.tracker.seed != before:
                 self._tell_drawn_seed()
-            self.diagnostics.facts.update(self._stream.facts)
+            self.diagnostics.facts.update(self.stream.facts)
 
     def _tell_drawn_seed(self) -> None:
-        if self._stream is not None and self.table.configuration.tracker.seed < 0:
-            seed = self._stream.vehicles.session.tracker.seed
+        if self.stream is not None and self.table.configuration.tracker.seed < 0:
+            seed = self.stream.vehicles.session.tracker.seed
             self.get_logger().info(f"drew the seed {seed}; set it to repeat this run")

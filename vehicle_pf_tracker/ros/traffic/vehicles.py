@@ -57,6 +57,8 @@ class Vehicles:
         Counts; None without lines and zones.
     latest : dict of str to Crossing
         Last crossing of each place.
+    waiting : list of Box
+        Targets that the first image will start.
     selection : Selection
         The vehicle that is reported like that of a single tracker.
 
@@ -82,7 +84,7 @@ class Vehicles:
         self._restarts = 0
         self._is_shown = False
         self._added = 0
-        self._waiting: list[Box] = []
+        self.waiting: list[Box] = []
         self._configured: Box | None = configuration.session.target.box
 
     @property
@@ -124,14 +126,14 @@ class Vehicles:
         InputError
             If it cannot be followed there.
         """
-        if max(self._added, len(self._waiting)) == _MOST_TARGETS:
+        if max(self._added, len(self.waiting)) == _MOST_TARGETS:
             raise InputError(f"{_MOST_TARGETS} targets came without an image between them")
         if self._is_shown:
             identity = self.session.add(box)
             self._added += 1
             return identity
         check_target(box, MAX_SIDE, MAX_SIDE)
-        self._waiting.append(box)
+        self.waiting.append(box)
         return None
 
     def remove_selected(self) -> int:
@@ -155,7 +157,7 @@ class Vehicles:
         self.session.reset()
         self._begin_anew()
         self._is_shown = False
-        self._waiting.clear()
+        self.waiting.clear()
         self.latest.clear()
         if self.counter is not None:
             self.counter.reset()
@@ -204,7 +206,7 @@ class Vehicles:
     def _add_waiting(self) -> list[str]:
         """Follow the targets that waited for an image, and select the configured one."""
         problems: list[str] = []
-        boxes, self._waiting = self._waiting, []
+        boxes, self.waiting = self.waiting, []
         configured, self._configured = self._configured, None
         for box in boxes:
             self._try_to_add(box, problems)

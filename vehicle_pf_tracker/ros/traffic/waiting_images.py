@@ -76,6 +76,11 @@ class WaitingImages(Generic[ImageT]):
     def __len__(self) -> int:
         return len(self._images)
 
+    @property
+    def remembered(self) -> int:
+        """Number of stamps that are kept without an image: of early and of late detections."""
+        return len(self._early) + len(self._passed)
+
     def add_image(self, image: ImageT, stamp_ns: int, max_wait: float) -> None:
         """Take the next image, which may wait for `max_wait` s."""
         waiting = _Waiting(image, stamp_ns, self._number, self._clock() + max_wait)

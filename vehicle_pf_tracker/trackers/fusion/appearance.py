@@ -163,7 +163,7 @@ class Appearance:
         self.kernels = kernels
         self.usual_response = 0.0
         self._least_usual = 0.0
-        self._dated: tuple[_Dated, ...] = ()
+        self.dated: tuple[_Dated, ...] = ()
 
     @property
     def kernels(self) -> Kernels:
@@ -201,7 +201,7 @@ class Appearance:
             least = max(self._least_usual, _LEAST_USUAL)
             self.usual_response = max(float(response.max()), least)
         response = response / np.float32(self.usual_response)
-        for dated in self._dated if recall else ():
+        for dated in self.dated if recall else ():
             once = respond(spectrum, dated.weights) / np.float32(dated.usual_response)
             response = np.maximum(response, once)
         return View(patch, None if wide else spectrum, response)
@@ -210,10 +210,10 @@ class Appearance:
         """Keep the present filter as a dated one: the first and the latest ones, `count` in all."""
         if self._filter.weights is None or not self.usual_response:
             return
-        dated = *self._dated, _Dated(self._filter.weights, self.usual_response)
+        dated = *self.dated, _Dated(self._filter.weights, self.usual_response)
         if len(dated) > count:
             dated = (*dated[: min(count, 1)], *dated[len(dated) - max(count - 1, 0) :])
-        self._dated = dated
+        self.dated = dated
 
     def response_at(self, frame: Frame, position: Array, size: Array) -> float:
         """Response to a box of this centre and size (px), relative to the usual one."""

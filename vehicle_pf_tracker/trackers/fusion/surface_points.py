@@ -90,7 +90,7 @@ class SurfacePoints:
 
     def restart(self) -> None:
         """Discard all points."""
-        self._sets: list[_PointSet] = []
+        self.sets: list[_PointSet] = []
         self.stretch = np.zeros(2)
 
     def keep(self, patch: Patch, position: Array) -> None:
@@ -132,26 +132,26 @@ class SurfacePoints:
         """
         self.stretch = np.zeros(2)
         self._move_points(patch, position, size)
-        for points in self._sets:
+        for points in self.sets:
             points.age += 1
             present = (points.positions - position) / size
             points.alive = self.kernels.staying(points.places, present, points.alive, _STRAYED)
 
     def renew(self, position: Array, size: Array, *, whole: bool = True) -> None:
         """End old sets, and place a new one if it is time, and the vehicle is whole or has none."""
-        self._sets = [points for points in self._sets if points.age < _OLDEST]
-        youngest = min((points.age for points in self._sets), default=None)
+        self.sets = [points for points in self.sets if points.age < _OLDEST]
+        youngest = min((points.age for points in self.sets), default=None)
         if youngest is None or (youngest >= _SEEDED_EVERY and whole):
             places = _grid(_GRID, _REACH)
             alive = np.ones(len(places), bool)
-            self._sets.append(_PointSet(places, position + places * size, alive))
+            self.sets.append(_PointSet(places, position + places * size, alive))
 
     def _move_points(self, patch: Patch, position: Array, size: Array) -> None:
-        alive = np.concatenate([points.alive for points in self._sets] or [np.zeros(0, bool)])
+        alive = np.concatenate([points.alive for points in self.sets] or [np.zeros(0, bool)])
         if self._previous is None or not alive.any():
             return
         previous, started = self._previous
-        positions = np.concatenate([points.positions for points in self._sets])
+        positions = np.concatenate([points.positions for points in self.sets])
         before = positions[alive]
         start = np.asarray(previous.to_patch(before) - 0.5, np.float32)
         guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
@@ -161,7 +161,7 @@ class SurfacePoints:
         positions[alive] = after
         alive[alive] = found
         place = 0
-        for points in self._sets:
+        for points in self.sets:
             part = slice(place, place + len(points.alive))
             points.positions, points.alive = positions[part], alive[part]
             place = part.stop

@@ -107,9 +107,10 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
     def _settings(self) -> AdaptiveParameters:
         return self.parameters.effective()
 
-    def _pass(
+    def resample_once(
         self, frame: Frame, particles: WeighedParticles, elapsed: float
     ) -> tuple[WeighedParticles, int, str]:
+        """Replace particles once; see `RepeatedResampling.resample_once`."""
         settings = self._settings
         weights, count = particles.cloud.weights, len(particles.positions)
         occluded = self._is_occluded(particles)  # step 15
@@ -146,5 +147,5 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
         copies = self._scattered(frame, particles.positions[ancestors], spread)
         positions, coefficients = particles.positions.copy(), particles.coefficients.copy()
         positions[~kept] = copies
-        coefficients[~kept] = self._similarity(frame, copies)
-        return self._weigh(positions, coefficients)
+        coefficients[~kept] = self.similarity(frame, copies)
+        return self.weigh(positions, coefficients)

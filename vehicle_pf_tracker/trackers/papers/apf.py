@@ -232,7 +232,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
     def __init__(self, parameters: ApfParameters) -> None:
         super().__init__(parameters)
         self._first: Histogram = np.zeros(0)
-        self._reference = Reference(np.zeros(0))
+        self.reference = Reference(np.zeros(0))
         self._velocity = MeanVelocity(0)
         self._position = (0.0, 0.0)
         self._pi = self._pi_up = 1.0
@@ -247,7 +247,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
     def _learn(self) -> None:
         bits = self.parameters.effective().histogram_bits
         self._first = self.target.joint_histogram(self.window, bits)
-        self._reference = Reference(self._first)
+        self.reference = Reference(self._first)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         settings = self.parameters.effective()
@@ -272,13 +272,13 @@ class ApfTracker(ParticleTracker[ApfParameters]):
             moves = self._drift(settings, len(parents), elapsed)  # step 9
         particles, left_image = self._move(frame, parents, moves)
         feature = JointColour(bits)
-        rho = self.kernels.similarity(feature, frame, particles, window, self._reference)
+        rho = self.kernels.similarity(feature, frame, particles, window, self.reference)
         weights = from_log(log_likelihood(rho, settings.likelihood))  # steps 11 and 12
         cloud = Cloud(particles, *weights)
         position = cloud.mean()  # step 13
         at = np.asarray([position])
         histogram = self.kernels.histograms(feature, frame, at, window)[0]  # step 14
-        evidence = hellinger_similarity(histogram, self._reference.histogram)
+        evidence = hellinger_similarity(histogram, self.reference.histogram)
         self._compare_and_learn(settings, histogram, evidence)  # steps 15 and 16
         self._follow(settings, position, elapsed, regular=regular)
         return Outcome(
@@ -324,15 +324,15 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         """
         to_first = hellinger_similarity(histogram, self._first)
         alpha = self._follow_rate(settings, to_first)
-        blended = alpha * histogram + (1 - alpha) * self._reference.histogram
+        blended = alpha * histogram + (1 - alpha) * self.reference.histogram
         if settings.occlusion.raw_histogram:
             self._pi, self._pi_up = to_first, to_last
         else:
             self._pi = hellinger_similarity(blended, self._first)
-            self._pi_up = hellinger_similarity(blended, self._reference.histogram)
+            self._pi_up = hellinger_similarity(blended, self.reference.histogram)
         self._update_levels(settings)
         if self._is_clear(settings) or not settings.reference.frozen_while_occluded:
-            self._reference = Reference(blended)
+            self.reference = Reference(blended)
 
     def _follow_rate(self, settings: ApfParameters, to_first: float) -> float:
         """Return alpha of step 15; with the relative rule only good frames have one."""

@@ -105,7 +105,7 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
         """Propagate with a Normal density (P1 eq. 7); the result is that of `_move`."""
         return self._move(frame, parents, sample_normal(self._rng, len(parents), sigma))
 
-    def _similarity(self, frame: Frame, positions: Array) -> Array:
+    def similarity(self, frame: Frame, positions: Array) -> Array:
         """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
         feature = JointColour(self._settings.histogram_bits)
         return self.kernels.similarity(feature, frame, positions, self.window, self._reference)
@@ -115,7 +115,7 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
     ) -> Outcome:
         """Take the cloud's mean as the estimate, with the similarity there as evidence."""
         position = cloud.mean()
-        coefficient = self._similarity(frame, np.asarray([position]))
+        coefficient = self.similarity(frame, np.asarray([position]))
         similarity = float(1.0 - hellinger_distance(coefficient)[0])
         self._velocity.add(self._position, position, elapsed)
         self._position = position

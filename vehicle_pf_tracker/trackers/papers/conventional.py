@@ -47,12 +47,13 @@ class ConventionalTracker(RepeatedResampling[ConventionalParameters]):
     def _settings(self) -> ConventionalParameters:
         return self.parameters.effective()
 
-    def _pass(
+    def resample_once(
         self, frame: Frame, particles: WeighedParticles, elapsed: float
     ) -> tuple[WeighedParticles, int, str]:
+        """Replace particles once; see `RepeatedResampling.resample_once`."""
         settings = self._settings
         parents = self._resample(particles.cloud)  # step 15
         spread = settings.jitter * settings.sigma * elapsed
         copies = self._scattered(frame, parents, spread)  # step 16
-        weighed = self._weigh(copies, self._similarity(frame, copies))  # step 17
+        weighed = self.weigh(copies, self.similarity(frame, copies))  # step 17
         return weighed, len(copies), "regular"

@@ -105,16 +105,16 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self.parameters
         parents = self._resample(self._cloud)
-        particles, left_image = self._diffuse(frame, parents, self._spread() * elapsed)
+        particles, left_image = self._diffuse(frame, parents, self.spread() * elapsed)
         for _ in range(settings.iterations):
             particles = self._shift(frame, particles)
-        rho = self._similarity(frame, particles)
+        rho = self.similarity(frame, particles)
         cloud = Cloud(particles, *from_log(log_likelihood(rho, settings.likelihood)))
         outcome = self._report(frame, cloud, elapsed, left_image=left_image)
         self._evidence = outcome.evidence
         return outcome
 
-    def _spread(self) -> float:
+    def spread(self) -> float:
         """Adaptive transition model: the Normal's sigma in px per nominal frame."""
         settings, transition = self.parameters, self.parameters.transition
         speed = float(np.hypot(*self._velocity.value))
@@ -123,7 +123,8 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         widening = 1.0 / max(confidence, 1.0 / transition.widest)
         return widening * max(settings.sigma, transition.speed_share * speed)
 
-    def _similarity(self, frame: Frame, positions: Array) -> Array:
+    def similarity(self, frame: Frame, positions: Array) -> Array:
+        """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
         feature, reduction = JointColour(self.parameters.histogram_bits), self._reduction
         return self.kernels.kernel_similarity(
             feature,

@@ -39,13 +39,13 @@ class MeanVelocity:
     def __init__(self, window: int, delay: int = 0) -> None:
         self._window = window
         self._delay = delay
-        self._moves: deque[_Move] = deque()
+        self.moves: deque[_Move] = deque()
         self._older: _Move = (0.0, 0.0, 0.0)
 
     @property
     def value(self) -> Vector:
         """Velocity in px per nominal frame; (0, 0) while nothing has moved in time."""
-        return self._mean_until(len(self._moves))
+        return self._mean_until(len(self.moves))
 
     @property
     def settled(self) -> Vector:
@@ -54,27 +54,27 @@ class MeanVelocity:
         An occlusion pulls the estimates along before it is noticed, and the drift must not follow
         that.
         """
-        count = len(self._moves)
+        count = len(self.moves)
         fewest = 0 if self._older[2] > 0 else (count + 1) // 2
         return self._mean_until(max(count - self._delay, fewest))
 
     def _mean_until(self, end: int) -> Vector:
         if self._window:
-            return _mean(islice(self._moves, max(end - self._window, 0), end))
-        return _mean([self._older, *islice(self._moves, end)])
+            return _mean(islice(self.moves, max(end - self._window, 0), end))
+        return _mean([self._older, *islice(self.moves, end)])
 
     def add(self, before: Vector, after: Vector, elapsed: float) -> None:
         """Count the move from `before` to `after` in `elapsed` nominal frame periods."""
-        self._moves.append((after[0] - before[0], after[1] - before[1], elapsed))
-        while len(self._moves) > self._window + self._delay:
-            oldest = self._moves.popleft()
+        self.moves.append((after[0] - before[0], after[1] - before[1], elapsed))
+        while len(self.moves) > self._window + self._delay:
+            oldest = self.moves.popleft()
             if not self._window:
                 self._older = _sum([self._older, oldest])
 
     def resized(self, window: int, delay: int = 0) -> MeanVelocity:
         """Return the same history with another window."""
         other = MeanVelocity(window, delay)
-        other._older, other._moves = self._older, self._moves.copy()
+        other._older, other.moves = self._older, self.moves.copy()
         return other
 
 

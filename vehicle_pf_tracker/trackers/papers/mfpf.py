@@ -71,10 +71,10 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
     def __init__(self, parameters: FilterParametersT) -> None:
         super().__init__(parameters)
-        self._features: Mapping[str, WindowFeature] = {}
+        self.features: Mapping[str, WindowFeature] = {}
         self._first: list[Histograms] = []
         """Histogram of each feature in the first frame, hist(0)."""
-        self._references: list[Reference] = []
+        self.references: list[Reference] = []
         """Reference of each feature, hist_ref."""
         self._initial: Array | None = None
         """Average similarity of each feature in the first measured frame, AS(1)."""
@@ -115,13 +115,13 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
     def _learn(self) -> None:
         """Describe the selected window by every feature (step 1)."""
-        self._features = self._make_features()
+        self.features = self._make_features()
         centre = np.asarray([self.target.centre])
         self._first = [
             feature.histograms(self.target.patch, centre, self.window)[0]
-            for feature in self._features.values()
+            for feature in self.features.values()
         ]
-        self._references = [Reference(first) for first in self._first]
+        self.references = [Reference(first) for first in self._first]
         if self._initial is not None:
             # The frame after the start is no longer available; the start itself is closest to it.
             around = centre + self._noise(self._search_radius(1.0))
@@ -140,7 +140,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         predicted = self._predict(frame, elapsed)  # step 3
         weighting = self._weigh_features(averages)  # step 4, to its update
         is_hidden, passes = weighting.full_occlusion, 0
-        weights, cloud = self._weigh(particles, prior, rho, weighting)
+        weights, cloud = self.weigh(particles, prior, rho, weighting)
         position = predicted if is_hidden else self._locate(particles, weights, weighting)
         histograms = self._describe(frame, position)
         similarities = self._similarities(histograms)
@@ -211,11 +211,11 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         return rho, averages
 
     def _compare(self, frame: Frame, particles: Array) -> Array:
-        window, references = self.window, self._references
+        window, references = self.window, self.references
         return np.stack(
             [
                 self.kernels.similarity(feature, frame, particles, window, reference)
-                for feature, reference in zip(self._features.values(), references, strict=True)
+                for feature, reference in zip(self.features.values(), references, strict=True)
             ]
         )
 
@@ -234,7 +234,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         assert self._initial is not None
         return weigh_features(averages, self._initial, self._settings.confidence.threshold)
 
-    def _weigh(
+    def weigh(
         self, particles: Array, prior: Array, rho: Array, weighting: FeatureWeighting
     ) -> tuple[Array, Cloud]:
         """Weigh the particles by each feature alone, and by all in use together.
@@ -267,14 +267,14 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         at, window = np.asarray([position]), self.window
         return [
             self.kernels.histograms(feature, frame, at, window)[0]
-            for feature in self._features.values()
+            for feature in self.features.values()
         ]
 
     def _similarities(self, histograms: list[Histograms]) -> Array:
         """``1 - BD`` of histograms to the references, shape (F,)."""
         rho = [
             bhattacharyya_coefficient(found, reference.histogram)
-            for found, reference in zip(histograms, self._references, strict=True)
+            for found, reference in zip(histograms, self.references, strict=True)
         ]
         return np.asarray(1.0 - hellinger_distance(np.asarray(rho)))
 
@@ -295,7 +295,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             for number, (first, found) in enumerate(zip(self._first, histograms, strict=True)):
                 if weighting.factors[number] > 0 or self._updates_unused:
                     weight = settings.reference_weight
-                    self._references[number] = Reference(weight * first + (1 - weight) * found)
+                    self.references[number] = Reference(weight * first + (1 - weight) * found)
         self._searching = weighting.full_occlusion
         self._position = position
 
@@ -330,7 +330,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         return {
             f"{column}_{name}": float(value)
             for column, values in columns.items()
-            for name, value in zip(self._features, values, strict=True)
+            for name, value in zip(self.features, values, strict=True)
         }
 
 

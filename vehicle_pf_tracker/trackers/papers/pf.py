@@ -75,6 +75,6 @@ class PfTracker(ColourTracker[PfParameters]):
             expected = parents + speeds * elapsed
         particles, left_image = self._diffuse(frame, expected, settings.sigma * elapsed)
         self._speeds = (particles - parents) / elapsed if elapsed > 0 else speeds
-        rho = self._similarity(frame, particles)
+        rho = self.similarity(frame, particles)
         cloud = Cloud(particles, *from_log(log_likelihood(rho, settings.likelihood)))
         return self._report(frame, cloud, elapsed, left_image=left_image)

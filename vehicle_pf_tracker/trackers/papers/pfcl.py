@@ -88,30 +88,30 @@ class PfclTracker(ColourTracker[PfclParameters]):
 
     def __init__(self, parameters: PfclParameters) -> None:
         super().__init__(parameters)
-        self._line_reference: Array = np.zeros(1)
+        self.line_reference: Array = np.zeros(1)
 
     def _learn(self) -> None:
         super()._learn()
         centre = np.asarray([self.target.centre])
-        self._line_reference = self._line_histograms(self.target.patch, centre)[0]
+        self.line_reference = self._line_histograms(self.target.patch, centre)[0]
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self.parameters
         parents = self._resample(self._cloud)
         particles, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)
-        colour = log_likelihood(self._similarity(frame, particles), settings.likelihood)
+        colour = log_likelihood(self.similarity(frame, particles), settings.likelihood)
         lines = log_likelihood(
-            self._line_similarity(frame, particles), LikelihoodParameters(settings.lines.sigma_v)
+            self.line_similarity(frame, particles), LikelihoodParameters(settings.lines.sigma_v)
         )
         cloud = Cloud(particles, *from_log(colour + lines))
         return self._report(frame, cloud, elapsed, left_image=left_image)
 
-    def _line_similarity(self, frame: Frame, positions: Array) -> Array:
+    def line_similarity(self, frame: Frame, positions: Array) -> Array:
         """Bhattacharyya coefficient of each window's lines with the reference's, shape (N,)."""
-        if not self._line_reference.any():
+        if not self.line_reference.any():
             return np.ones(len(positions))  # a target without lines is similar to every window
         histograms = self._line_histograms(frame, positions)
-        return bhattacharyya_coefficient(histograms, self._line_reference)
+        return bhattacharyya_coefficient(histograms, self.line_reference)
 
     def _line_histograms(self, frame: Frame, positions: Array) -> Array:
         settings, windows = self.parameters.lines, bounds(frame, positions, self.window)

@@ -131,7 +131,7 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         """Effective parameters."""
 
     @abstractmethod
-    def _pass(
+    def resample_once(
         self, frame: Frame, particles: WeighedParticles, elapsed: float
     ) -> tuple[WeighedParticles, int, str]:
         """Replace particles once; also returns their number, and the branch taken."""
@@ -140,10 +140,10 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         settings = self._settings
         parents = self._cloud.positions
         moved, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)  # steps 3 to 7
-        particles = self._weigh(moved, self._similarity(frame, moved))  # steps 8 to 11
+        particles = self.weigh(moved, self.similarity(frame, moved))  # steps 8 to 11
         passes, replaced, regime = 0, 0, "regular"
         while passes < settings.most_passes and self._is_degenerate(particles):  # steps 12 and 13
-            particles, count, regime = self._pass(frame, particles, elapsed)
+            particles, count, regime = self.resample_once(frame, particles, elapsed)
             passes, replaced = passes + 1, replaced + count
         cloud = particles.cloud
         reported = cloud if settings.weighted_mean else Cloud.uniform(cloud.positions)
@@ -158,7 +158,8 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
             resampled_particles=replaced,
         )
 
-    def _weigh(self, positions: Array, coefficients: Array) -> WeighedParticles:
+    def weigh(self, positions: Array, coefficients: Array) -> WeighedParticles:
+        """Weigh particles by their Bhattacharyya coefficients, (N,)."""
         weights = from_log(log_likelihood(coefficients, self._settings.likelihood))
         return WeighedParticles(positions, coefficients, Cloud(positions, *weights))
 

@@ -158,7 +158,7 @@ class SapfTracker(ColourTracker[SapfParameters]):
         left_image = False
         for _ in range(annealing.layers):
             particles, left_image = self._diffuse(frame, self._resample(cloud), sigma)
-            rho = self._similarity(frame, particles)
+            rho = self.similarity(frame, particles)
             log_weights = log_likelihood(rho, settings.likelihood)
             beta = annealing_rate(log_weights, annealing.survival, annealing.largest_rate)
             cloud = Cloud(particles, *from_log(beta * log_weights))

@@ -111,7 +111,7 @@ class Counter:
         self.plan = plan
         self.totals: Tally[tuple[str, str, str]] = Tally()
         self._plane = plane
-        self._vehicles: dict[int, _Vehicle] = {}
+        self.vehicles: dict[int, _Vehicle] = {}
         self._occupancy = {zone.name: 0 for zone in plan.zones}
         self._last_ns: int | None = None
         self._before_ns: int | None = None
@@ -129,7 +129,7 @@ class Counter:
 
     def forget_vehicles(self) -> None:
         """Forget where all vehicles were, as when a recording begins again; totals stay."""
-        self._vehicles.clear()
+        self.vehicles.clear()
         self._occupancy = {zone.name: 0 for zone in self.plan.zones}
         self._last_ns = None
 
@@ -167,9 +167,9 @@ class Counter:
         mode: TrackMode = estimate.mode
         if mode is TrackMode.LOST:
             return []
-        vehicle = self._vehicles.get(estimate.identity)
+        vehicle = self.vehicles.get(estimate.identity)
         if vehicle is None:
-            vehicle = self._vehicles[estimate.identity] = self._made(stamp_ns)
+            vehicle = self.vehicles[estimate.identity] = self._made(stamp_ns)
         elif vehicle.last_ns != self._before_ns:  # back after it was lost
             vehicle.speed.clear()
             mode = TrackMode.LOST
@@ -213,11 +213,11 @@ class Counter:
     def _drop_old(self, stamp_ns: int) -> None:
         old = [
             identity
-            for identity, vehicle in self._vehicles.items()
+            for identity, vehicle in self.vehicles.items()
             if stamp_ns - vehicle.last_ns > _REMEMBERED_NS
         ]
         for identity in old:
-            del self._vehicles[identity]
+            del self.vehicles[identity]
 
 
 def reference_point(box: Box) -> Position:

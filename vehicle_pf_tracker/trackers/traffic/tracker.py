@@ -87,6 +87,8 @@ class TrafficTracker:
         Nominal frame period in s, from which seconds become frames.
     bad_states : int
         Vehicles dropped so far because their state was no Gaussian any more.
+    last_identity : int
+        Identity of the newest vehicle; 0 before the first.
     """
 
     def __init__(
@@ -98,8 +100,9 @@ class TrafficTracker:
         self.parameters = parameters or TrafficParameters()
         self.road = road
         self.frame_period = DEFAULT_PERIOD
-        self.bad_states = self._last_identity = 0
+        self.bad_states = 0
         self._restart_random()
+        self.last_identity = 0
         self._frame: Frame | None = None
         self._tracks: list[Track] = []
         self._numbers = numbers
@@ -302,9 +305,9 @@ class TrafficTracker:
         )
         # A horizon below the box would have it drive on the sky.
         horizon = min(self._row, float(edges[Edge.BOTTOM]) - 1)
-        self._last_identity += 1
+        self.last_identity += 1
         state = first_state(edges, parameters.detections.edge_noise, horizon, drive, self._size)
-        track = Track(self._last_identity, state, label=label)
+        track = Track(self.last_identity, state, label=label)
         self._tracks.append(track)
         return track
 
