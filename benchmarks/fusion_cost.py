@@ -39,14 +39,14 @@ import numpy as np
 
 from benchmarks.bench.environment import describe
 from benchmarks.bench.turns import BLOCK, Follower, Own, Theirs
+from laboratory.stress import find_sequences
+from laboratory.stress.footage import StressFootage, open_footage
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.baselines.client import Baseline
-from vehicle_pf_tracker.evaluation.output_files import write_text
-from vehicle_pf_tracker.evaluation.stress import find_sequences
-from vehicle_pf_tracker.evaluation.stress.footage import StressFootage, open_footage
 from vehicle_pf_tracker.evaluation.tables import markdown
+from vehicle_pf_tracker.offline.output_files import write_text
 
 SIZES: Mapping[str, tuple[int, int]] = {
     "VGA": (640, 480), "1080p": (1920, 1080), "4K": (3840, 2160)

@@ -36,13 +36,12 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.evaluation.traffic.client import TrafficWorker
+from vehicle_pf_tracker.evaluation.baselines.traffic_client import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
-from vehicle_pf_tracker.scenes.randomness import stream
-from vehicle_pf_tracker.scenes.roads import Carriageway, countryside
-from vehicle_pf_tracker.scenes.traffic import any_car
+from vehicle_pf_tracker.scenes.roads import Carriageway, any_car, countryside
 from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode

@@ -38,10 +38,10 @@ from reproduction.experiment import (
 from reproduction.numbers import counted, median_and_range, share
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.evaluation.estimates import interpolate_occlusions
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.plots import OUTLINE
 from vehicle_pf_tracker.evaluation.scores import Scores
+from vehicle_pf_tracker.offline.estimates import interpolate_occlusions
 
 _Judge: TypeAlias = Callable[[str, Sequence[Result], Sequence[Scores]], Finding]
 

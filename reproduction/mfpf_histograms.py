@@ -51,15 +51,15 @@ from reproduction.numbers import mean_and_spread
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.colour import RgbMarginals
 from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, hellinger_distance
-from vehicle_pf_tracker.image.window_feature import WindowFeature
+from vehicle_pf_tracker.image.window import WindowFeature
 from vehicle_pf_tracker.scenes.scene import SceneFrame
+from vehicle_pf_tracker.trackers.base import Target
 from vehicle_pf_tracker.trackers.contract import WindowParameters
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     TEXTURES,
     MfpfParameters,
     edge_feature,
 )
-from vehicle_pf_tracker.trackers.target import Target
 
 _PLACE = "section III-D, figure 1"
 _SCENE = "disturbances"

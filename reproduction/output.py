@@ -25,13 +25,9 @@ from reproduction.experiment import (
     Report,
     Size,
 )
-from vehicle_pf_tracker.evaluation.output_files import (
-    make_folder,
-    write_json,
-    write_text,
-)
 from vehicle_pf_tracker.evaluation.plots import save
-from vehicle_pf_tracker.evaluation.run_folder import versions
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.offline.run_folder import versions
 
 DATA, FIGURE, VERDICT = "data.csv", "figure", "verdict"
 

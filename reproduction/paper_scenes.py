@@ -31,6 +31,7 @@ from vehicle_pf_tracker.core.truth import TOTAL_BELOW
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes import catalogue as package_scenes
 from vehicle_pf_tracker.scenes.catalogue import SceneKind
+from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.drive import LANE, RADIUS, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.light import tree_shadows
 from vehicle_pf_tracker.scenes.manoeuvres import clear, turning
@@ -49,7 +50,6 @@ from vehicle_pf_tracker.scenes.occluded_drives import (
     van_at,
 )
 from vehicle_pf_tracker.scenes.paths import Pace
-from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
 from vehicle_pf_tracker.scenes.vehicles import coach, van

@@ -20,9 +20,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeAlias
 
 from reproduction.cells import Cell, Result
-from vehicle_pf_tracker.evaluation.identity import result_key, variant_modules
-from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress, run_in_processes
-from vehicle_pf_tracker.evaluation.result_store import ResultStore
+from vehicle_pf_tracker.evaluation.result_store import ResultStore, result_key, variant_modules
+from vehicle_pf_tracker.offline.processes import OnProgress, Progress, run_in_processes
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 

@@ -29,13 +29,11 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from vehicle_pf_tracker.cli.demo import IN_VIDEO, SCENE, SCENE_SEED
-from vehicle_pf_tracker.cli.demo_runs import CONTESTANTS, SHOWN_SEED
+from vehicle_pf_tracker.cli.demo import CONTESTANTS, IN_VIDEO, SCENE, SCENE_SEED, SHOWN_SEED
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.annotation import COLOURS, Annotator
-from vehicle_pf_tracker.evaluation.offline import OfflineTracker
-from vehicle_pf_tracker.evaluation.output_files import replacing
-from vehicle_pf_tracker.image.lettering import write_words
+from vehicle_pf_tracker.offline.drawing import COLOURS, Annotator, write_words
+from vehicle_pf_tracker.offline.driver import OfflineTracker
+from vehicle_pf_tracker.offline.output_files import replacing
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.scenes.scene import SceneFrame

@@ -29,7 +29,7 @@ from benchmarks.bench.metered_node import METER
 from benchmarks.bench.resident import resident_mb
 from benchmarks.bench.root import ROOT
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.processes import wait_or_kill
+from vehicle_pf_tracker.offline.processes import wait_or_kill
 
 ALLOCATOR = {
     "MALLOC_MMAP_THRESHOLD_": "1073741824",

@@ -19,11 +19,11 @@ import pytest
 
 from benchmarks import fusion_cost
 from benchmarks.fusion_cost import Costs, beside_csrt, by_image_size, csrt_table, size_table
+from laboratory.stress.footage import StressFootage
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.stress.footage import StressFootage
 
 BOX = Box(10, 8, 12, 10)
 

@@ -20,7 +20,7 @@ import sys
 import cv2
 import pytest
 
-from vehicle_pf_tracker.cli import demo, demo_runs
+from vehicle_pf_tracker.cli import demo
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import Recording
@@ -39,10 +39,10 @@ def without_ros(monkeypatch):
 @pytest.fixture
 def short(monkeypatch):
     """Take a small scene, and the two contestants that start at once."""
-    contestants = {name: demo_runs.CONTESTANTS[name] for name in ("apf", "pf")}
+    contestants = {name: demo.CONTESTANTS[name] for name in ("apf", "pf")}
     monkeypatch.setattr(demo, "SCENE", "bar")
     monkeypatch.setattr(demo, "CONTESTANTS", contestants)
-    monkeypatch.setattr(demo_runs, "CONTESTANTS", contestants)
+    monkeypatch.setattr(demo, "CONTESTANTS", contestants)
 
 
 @pytest.mark.slow
@@ -103,8 +103,8 @@ def test_a_ros_that_cannot_be_loaded_is_named(monkeypatch):
     def broken(_name):
         raise ImportError("librcl.so: cannot open shared object file")
 
-    monkeypatch.setattr(demo_runs, "import_module", broken)
-    assert demo_runs.absence_of_ros() == (
+    monkeypatch.setattr(demo, "import_module", broken)
+    assert demo.absence_of_ros() == (
         "ROS cannot be loaded (librcl.so: cannot open shared object file)"
     )
 
@@ -113,11 +113,11 @@ def test_a_missing_module_of_our_own_is_not_taken_for_missing_ros(monkeypatch):
     def broken(_name):
         raise ModuleNotFoundError("no", name="vehicle_pf_tracker.ros.gone")
 
-    monkeypatch.setattr(demo_runs, "import_module", broken)
+    monkeypatch.setattr(demo, "import_module", broken)
     with pytest.raises(ModuleNotFoundError):
-        demo_runs.absence_of_ros()
+        demo.absence_of_ros()
 
 
 def test_the_contestants_are_those_of_the_readme():
-    assert list(demo_runs.CONTESTANTS) == ["fusion", "apf", "pf"]
-    assert set(demo.IN_VIDEO) <= set(demo_runs.CONTESTANTS)
+    assert list(demo.CONTESTANTS) == ["fusion", "apf", "pf"]
+    assert set(demo.IN_VIDEO) <= set(demo.CONTESTANTS)

@@ -19,7 +19,7 @@ from small_recordings import frame_folder, record
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.evaluation.grid.tracking import run_cell
-from vehicle_pf_tracker.evaluation.processes import Turn
+from vehicle_pf_tracker.offline.processes import Turn
 
 
 @pytest.fixture

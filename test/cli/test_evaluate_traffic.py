@@ -19,7 +19,7 @@ import sys
 import pytest
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation.traffic import client
+from vehicle_pf_tracker.evaluation.baselines import traffic_client
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
 
@@ -49,7 +49,7 @@ def evaluate(*words):
 def test_a_comparison_is_written_and_shown(folder, tmp_path, monkeypatch, capsys):
     script = tmp_path / "worker.py"
     script.write_text(WORKER)
-    monkeypatch.setattr(client, "_WORKER", script)
+    monkeypatch.setattr(traffic_client, "_WORKER", script)
     out = tmp_path / "out"
     words = ["--baselines-python", sys.executable, "--detections", "good,motion"]
     words += ["--perturbations", "dropped", "--set", "lost_after=1.5"]

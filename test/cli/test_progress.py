@@ -14,7 +14,7 @@
 
 import io
 
-from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.console import counting
 
 
 class Terminal(io.StringIO):

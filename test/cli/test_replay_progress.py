@@ -14,7 +14,7 @@
 
 import io
 
-from vehicle_pf_tracker.cli.replay_progress import progress_view
+from vehicle_pf_tracker.cli.replay import progress_view
 from vehicle_pf_tracker.ros.replay.replay_options import Progress
 
 

@@ -19,7 +19,7 @@ import pytest
 from small_recordings import COUNT, TARGET, box_of, record, record_two_cameras
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, read_estimates
+from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, read_estimates
 from vehicle_pf_tracker.trackers.session import Session
 
 

@@ -30,9 +30,9 @@ import vehicle_pf_tracker.cli.run as run_verb
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation import video_writer
-from vehicle_pf_tracker.evaluation.estimates import read_estimates
-from vehicle_pf_tracker.evaluation.video_writer import has_encoder
+from vehicle_pf_tracker.offline import video_writer
+from vehicle_pf_tracker.offline.estimates import read_estimates
+from vehicle_pf_tracker.offline.video_writer import has_encoder
 from vehicle_pf_tracker.recordings.cdr import deserialize
 from vehicle_pf_tracker.recordings.reader import Recording
 

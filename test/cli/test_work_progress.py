@@ -16,7 +16,7 @@ import io
 import time
 
 from vehicle_pf_tracker.cli.work_progress import stages, telling
-from vehicle_pf_tracker.evaluation.processes import Progress
+from vehicle_pf_tracker.offline.processes import Progress
 
 
 def told(*progresses):

@@ -17,8 +17,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.core import products
-from vehicle_pf_tracker.core.products import product
+from vehicle_pf_tracker.core import array
+from vehicle_pf_tracker.core.array import product
 
 
 def test_product_of_small_matrices_by_hand():
@@ -35,7 +35,7 @@ def test_pieces_make_the_whole(rows, inner, columns, serial):
     rng = np.random.default_rng(rows * 91 + columns)
     left, right = rng.normal(size=(rows, inner)), rng.normal(size=(inner, columns))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(products, "_SERIAL", serial)
+        patch.setattr(array, "_SERIAL", serial)
         assert product(left, right) == pytest.approx(left @ right, abs=1e-12)
 
 

@@ -21,16 +21,10 @@ from drive import HEIGHT, WIDTH, box_of, frame_of, stamp_of
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import cell_folder, write_truth
 from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.offline import OfflineTracker
-from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
-from vehicle_pf_tracker.evaluation.run_folder import (
-    RunFolder,
-    RunInfo,
-    describe_run,
-    seal,
-    versions,
-)
 from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.offline.driver import OfflineTracker
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json
+from vehicle_pf_tracker.offline.run_folder import RunFolder, RunInfo, describe_run, seal, versions
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.registry import find_variant
@@ -97,7 +91,7 @@ def _run(folder, recording, truth, name, seed):
     results = RunFolder(folder)
     info = RunInfo([], str(recording), "/camera/image_raw", tracker.start_frame, [])
     results.write_run(rows, describe_run(info, tracker.session))
-    results.write_metrics(measure(score_frames(rows, truth)))
+    results.write_metrics(measure(score_frames(rows, truth)).to_json())
     seal(folder)
 
 

@@ -20,14 +20,14 @@ from scoring_samples import PERIOD_NS, scored
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.curves import (
+from vehicle_pf_tracker.evaluation.metrics import (
+    measure,
     normalised_precision_curve,
     precision_curve,
     success_curve,
 )
-from vehicle_pf_tracker.evaluation.estimates import EstimateRow
-from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
+from vehicle_pf_tracker.offline.estimates import EstimateRow
 
 
 def test_precision_by_hand():

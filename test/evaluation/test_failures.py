@@ -17,16 +17,16 @@ import math
 import pytest
 from scoring_samples import NONE, PARTIAL, PERIOD_NS, TOTAL, row, run_of, scored
 
-from vehicle_pf_tracker.evaluation.estimates import EstimateRow
-from vehicle_pf_tracker.evaluation.failures import (
+from vehicle_pf_tracker.evaluation.metrics import measure
+from vehicle_pf_tracker.evaluation.occlusions import (
     count_failures,
     first_failure,
     is_failure,
     restart_index,
     score_restarts,
 )
-from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import FrameScore
+from vehicle_pf_tracker.offline.estimates import EstimateRow
 
 # Boxes are 24 px wide: at 12 px a third of the union is shared, from 24 px on nothing.
 

@@ -17,8 +17,8 @@ from pathlib import Path
 import pytest
 
 import vehicle_pf_tracker
-from vehicle_pf_tracker.evaluation import identity
-from vehicle_pf_tracker.evaluation.identity import source_digest
+from vehicle_pf_tracker.evaluation import result_store
+from vehicle_pf_tracker.evaluation.result_store import source_digest
 
 FILES = {
     "start.py": "from made.middle import thing\nimport numpy\n",
@@ -39,7 +39,7 @@ def root(tmp_path):
 
 
 def digest(root, *modules):
-    identity.imported_modules.cache_clear()
+    result_store.imported_modules.cache_clear()
     return source_digest(modules, root, "made")
 
 
@@ -74,7 +74,7 @@ def test_what_is_not_imported_does_not_count(root):
 
 
 def test_a_table_and_what_it_lists_do_not_count(root, monkeypatch):
-    monkeypatch.setattr(identity, "_TABLES", frozenset({"made.table"}))
+    monkeypatch.setattr(result_store, "_TABLES", frozenset({"made.table"}))
     (root / "made" / "sub" / "late.py").write_text("import made.table\n")
     before = digest(root, "made.start")
     for name in ("other.py", "table.py"):
@@ -89,5 +89,5 @@ def test_one_variant_does_not_decide_another():
     assert len({source_digest([name]) for name in names}) == 3
     ours = frozenset({"vehicle_pf_tracker"})
     root = Path(vehicle_pf_tracker.__file__).parents[1]
-    found = identity.imported_modules("vehicle_pf_tracker.trackers.session", root, ours)
+    found = result_store.imported_modules("vehicle_pf_tracker.trackers.session", root, ours)
     assert "vehicle_pf_tracker.trackers.registry" in found

@@ -14,7 +14,7 @@
 
 import pytest
 
-from vehicle_pf_tracker.evaluation.estimates import (
+from vehicle_pf_tracker.offline.estimates import (
     REJECTED,
     WAITING,
     EstimateRow,

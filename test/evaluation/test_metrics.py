@@ -19,9 +19,9 @@ import pytest
 from scoring_samples import NONE, PARTIAL, PERIOD_NS, TOTAL, row, run_of, scored, truth
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
+from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 
 
 def metrics_of(*frames):

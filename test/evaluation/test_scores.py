@@ -20,9 +20,9 @@ from hypothesis import strategies as st
 from scoring_samples import PERIOD_NS, row, truth
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import overlap, score_frames
+from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 
 sides = st.floats(0.5, 200)
 boxes = st.builds(Box, st.floats(-300, 300), st.floats(-300, 300), sides, sides)

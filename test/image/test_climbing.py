@@ -17,7 +17,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.climbing import climbed
+from vehicle_pf_tracker.image.correlation_filter import climbed
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
 
 NEAR = np.array([[0.2, 0.1, 0.2], [0.1, 0.0, 0.1], [0.2, 0.1, 0.2]])

@@ -116,7 +116,7 @@ def test_pages_of_a_library_are_released_and_come_again_when_needed():
         pytest.skip("this is not Linux")
     code = (
         "import llvmlite.binding as llvm\n"
-        "from vehicle_pf_tracker.image.kernels.llvm_memory import release_memory\n"
+        "from vehicle_pf_tracker.image.kernels.choice import release_memory\n"
         "def resident():\n"
         "    return int(open('/proc/self/statm').read().split()[1]) * 4096 / 1e6\n"
         "text = 'define i32 @twice(i32 %x) { %y = add i32 %x, %x ret i32 %y }'\n"
@@ -131,7 +131,7 @@ def test_pages_of_a_library_are_released_and_come_again_when_needed():
 
 def test_pages_that_were_written_to_stay():
     code = (
-        "from vehicle_pf_tracker.image.kernels.llvm_memory import _unwritten_mappings\n"
+        "from vehicle_pf_tracker.image.kernels.choice import _unwritten_mappings\n"
         "import cv2\n"
         "found = set(_unwritten_mappings('cv2'))\n"
         "rows, sizes = [], {}\n"
@@ -172,7 +172,7 @@ def test_a_process_that_compiles_ends_with_the_one_that_started_it(tmp_path):
     (tmp_path / "sleeper.py").write_text(SLEEPER)
     code = (
         "import sys; sys.path.insert(0, '.')\n"
-        "from vehicle_pf_tracker.image.kernels.llvm_memory import compile_elsewhere\n"
+        "from vehicle_pf_tracker.image.kernels.choice import compile_elsewhere\n"
         "compile_elsewhere('sleeper')\n"
     )
     parent = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path)

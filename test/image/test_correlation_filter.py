@@ -20,7 +20,7 @@ import pytest
 from vehicle_pf_tracker.image import correlation_filter
 from vehicle_pf_tracker.image.correlation_filter import CorrelationFilter
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
-from vehicle_pf_tracker.image.partial_fourier import PartialFourier
+from vehicle_pf_tracker.image.spectra import PartialFourier
 
 SIDE = 32
 TARGET = np.array([8.0, 6.0])

@@ -17,7 +17,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.partial_fourier import (
+from vehicle_pf_tracker.image.spectra import (
     PartialFourier,
     complex_spectrum,
     real_spectrum,

@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.image.reduction import MOST_PIXELS, Reduction
 from vehicle_pf_tracker.image.window import Window
+from vehicle_pf_tracker.trackers.papers.hpfms import MOST_PIXELS, Reduction
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 

@@ -17,8 +17,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.image.window import Bounds, Window, bounds
-from vehicle_pf_tracker.image.window_sums import areas, bin_counts, covered_region
+from vehicle_pf_tracker.image.window import (
+    Bounds,
+    Window,
+    areas,
+    bin_counts,
+    bounds,
+    covered_region,
+)
 
 
 def rectangles(*rows):

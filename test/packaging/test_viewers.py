@@ -21,8 +21,7 @@ from pathlib import Path
 
 import pytest
 
-from vehicle_pf_tracker.recordings.cdr import message_class
-from vehicle_pf_tracker.recordings.foxglove_types import IMAGE_ANNOTATIONS
+from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 VIEWERS = Path(__file__).parents[2] / "viewers"
@@ -38,7 +37,7 @@ TYPES = {
     f"{NODE}/velocity": "geometry_msgs/msg/Vector3Stamped",
     "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
 }
-"""Types by topic, as docs/ros_interface.md and evaluation/estimates_recording.py have them."""
+"""Types by topic, as docs/ros_interface.md and offline/estimates_recording.py have them."""
 
 
 def topics_and_fields(path: str) -> tuple[str, list[str]]:

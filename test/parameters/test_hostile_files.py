@@ -24,9 +24,8 @@ import pytest
 
 from vehicle_pf_tracker.core import address_space
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
-from vehicle_pf_tracker.parameters.yaml_text import check_yaml_file
 from vehicle_pf_tracker.trackers.papers.apf import ApfParameters
 
 HEAD = "/**:\n  ros__parameters:\n"

@@ -19,8 +19,8 @@ from reproduction.cells import RunCell, SceneChoice, System
 from reproduction.running import cell_key, run_together
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.offline import OfflineTracker
 from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.offline.driver import OfflineTracker
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 

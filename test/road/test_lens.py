@@ -19,7 +19,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.lens import Lens
+from vehicle_pf_tracker.road.camera import Lens
 
 FOCAL, CENTRE = (800.0, 820.0), (319.5, 239.5)
 MODELS = {

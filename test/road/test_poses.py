@@ -18,7 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.poses import Pose, PoseTree
+from vehicle_pf_tracker.road.camera import Pose, PoseTree
 
 HALF = np.sqrt(0.5)
 

@@ -45,7 +45,7 @@ from vehicle_pf_tracker.ros.messages import (
     stamp_ns,
     velocity_message,
 )
-from vehicle_pf_tracker.ros.node.images import read_image
+from vehicle_pf_tracker.ros.node.image_input import read_image
 from vehicle_pf_tracker.ros.node.target_messages import box_of_point, box_of_polygon, box_of_region
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode

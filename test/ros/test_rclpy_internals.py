@@ -28,7 +28,7 @@ from tracker_rig import Rig, on_target, overrides, road
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros import rclpy_internals
-from vehicle_pf_tracker.ros.node.image_executor import ImageExecutor, node_executor
+from vehicle_pf_tracker.ros.node.process import ImageExecutor, node_executor
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.trackers.registry import find_variant
 
@@ -123,7 +123,7 @@ def test_an_unknown_executor_is_replaced_by_the_public_one(monkeypatch, change):
     made = []
     for kind in (ImageExecutor, SingleThreadedExecutor):
         monkeypatch.setattr(
-            f"vehicle_pf_tracker.ros.node.image_executor.{kind.__name__}",
+            f"vehicle_pf_tracker.ros.node.process.{kind.__name__}",
             lambda kind=kind: made.append(kind),
         )
     node_executor()

@@ -19,8 +19,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.scenes.compositing import PixelWindow
-from vehicle_pf_tracker.scenes.polygons import cells_inside
+from vehicle_pf_tracker.scenes.compositing import PixelWindow, cells_inside
 
 
 def filled(corners, rows=8, columns=10):

@@ -17,8 +17,8 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.scenes.randomness import check_seed, stream
-from vehicle_pf_tracker.scenes.textures import asphalt, concrete, foliage, grass, plain, value_noise
+from vehicle_pf_tracker.scenes.compositing import check_seed, stream
+from vehicle_pf_tracker.scenes.solids import asphalt, concrete, foliage, grass, plain, value_noise
 
 SURFACES = (asphalt, concrete, foliage, grass)
 

@@ -23,21 +23,21 @@ import yaml
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.traffic.scorable import matches
+from vehicle_pf_tracker.evaluation.traffic.identities import matches
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 from vehicle_pf_tracker.road.calibration import parse_pairs
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import Sprite
 from vehicle_pf_tracker.scenes.flow import Driver, Hold, simulate
-from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
-from vehicle_pf_tracker.scenes.paths import Still
-from vehicle_pf_tracker.scenes.scene import Actor
-from vehicle_pf_tracker.scenes.simulated_detectors import (
+from vehicle_pf_tracker.scenes.mot_folder import (
     SIMULATED_DETECTORS,
     SimulatedDetector,
     detect,
+    write_mot_folder,
 )
+from vehicle_pf_tracker.scenes.paths import Still
+from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.traffic_catalogue import TRAFFIC_SCENES, make_traffic_scene
 from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, VehicleTruth
 

@@ -18,13 +18,16 @@ from estimate_samples import estimate
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.road import RoadParameters
+from vehicle_pf_tracker.road.camera import Lens, Pose
 from vehicle_pf_tracker.road.homography import Homography
-from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.road.poses import Pose
 from vehicle_pf_tracker.trackers.estimate import START, Mode
-from vehicle_pf_tracker.trackers.localisation import Localisation
-from vehicle_pf_tracker.trackers.road_follower import ROAD_COLUMNS, Contact, RoadFollower
+from vehicle_pf_tracker.trackers.localisation import (
+    ROAD_COLUMNS,
+    Contact,
+    Localisation,
+    RoadFollower,
+)
 
 PERIOD = 40_000_000
 TENTH = RoadPlane(Homography(np.diag([0.1, 0.1, 1.0])), None, None, 1.0)

@@ -12,29 +12,174 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`evaluate`: compare systems on recordings with truth, over seeds."""
+"""`evaluate`: compare systems on recordings with truth, over seeds.
+
+With `--traffic`, trackers of many vehicles on folders as MOTChallenge has them.
+"""
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli import report, stress, system_options, traffic_evaluation
-from vehicle_pf_tracker.cli.console import print_table, tell_error, tell_notices
+from vehicle_pf_tracker.cli import report, system_options
+from vehicle_pf_tracker.cli.console import (
+    UsageError,
+    counting,
+    print_rows,
+    print_table,
+    tell_error,
+    tell_notices,
+)
 from vehicle_pf_tracker.cli.report import ReportParts
 from vehicle_pf_tracker.cli.requests import VerbRequest, option, switch
 from vehicle_pf_tracker.cli.shared_options import MaxDiffOption, natural, positive
-from vehicle_pf_tracker.cli.stress import StressRequest
-from vehicle_pf_tracker.cli.traffic_evaluation import TrafficRequest
+from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
 from vehicle_pf_tracker.cli.work_progress import stages, telling
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
 from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
-from vehicle_pf_tracker.evaluation.grid.timing import time_systems
+from vehicle_pf_tracker.evaluation.grid.tracking import time_systems
 from vehicle_pf_tracker.evaluation.tables import SystemSummary, grid_table, summarise_grid
+from vehicle_pf_tracker.parameters.table import parse_assignments, specs
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
+    from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+
+_GRID_ONLY = (
+    "params", "without_defaults", "baseline_model", "scheduler", "timing", "shifted_starts",
+    "start_frames", "restarts", "max_rmse", "topic", "video", "recordings", "trajectories",
+    "figures",
+)  # fmt: skip
+"""Options of the grid that do not apply."""
+PAGE = "traffic.html"
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrafficRequest(EvaluationRequest):
+    """Request of the comparison on many vehicles."""
+
+    GROUP = "many vehicles, instead of the grid"
+
+    traffic: bool = switch(
+        help="compare `traffic` with SORT, ByteTrack, OC-SORT and C-BIoU; REC are folders as "
+        "MOTChallenge has them; see docs/traffic.md",
+    )  # fmt: skip
+    detections: str | None = option(
+        metavar="NAME,…",
+        help="only these files of det/, by name without .txt, and `motion` (default: all)",
+    )  # fmt: skip
+    perturbations: str | None = option(
+        metavar="NAME,…",
+        help="only these of dropped, gap20, gap40, squared and halved; `none` for none "
+        "(default: all)",
+    )  # fmt: skip
+
+
+def check(request: TrafficRequest) -> None:
+    """Refuse options that go with the grid only, or with this comparison only.
+
+    Raises
+    ------
+    UsageError
+        If there is one.
+    """
+    for name in _GRID_ONLY if request.traffic else ("detections", "perturbations"):
+        if getattr(request, name):
+            option = "--" + name.replace("_", "-")
+            raise UsageError(
+                f"{option} does not go {'with' if request.traffic else 'without'} --traffic"
+            )
+
+
+def run_traffic(request: TrafficRequest) -> int:
+    """Run the comparison, write its report, and print its tables."""
+    from vehicle_pf_tracker.evaluation.baselines.traffic_client import TrafficWorker
+    from vehicle_pf_tracker.evaluation.report.traffic import traffic_page
+    from vehicle_pf_tracker.evaluation.traffic.comparison import cases_of, compare
+    from vehicle_pf_tracker.evaluation.traffic.comparison_report import (
+        MARKDOWN,
+        by_case,
+        main_table,
+        write_traffic_report,
+    )
+    from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
+    from vehicle_pf_tracker.offline.output_files import write_text
+
+    sequences = [read_sequence(Path(source)) for source in request.sources]
+    cases = cases_of(sequences, _sources(request, sequences), _perturbations(request))
+    parameters = _parameters(request)
+    seeds = range(request.first_seed, request.first_seed + (request.seeds or FEW_SEEDS))
+    with (
+        TrafficWorker(request.baselines_python) as worker,
+        counting("compared") as progress,
+    ):
+        results = list(compare(cases, worker, parameters, seeds, on_progress=progress))
+        options = {
+            "command": list(request.command),
+            "seeds": list(seeds),
+            "set": request.assignments,
+            **worker.versions,
+        }
+    lines = write_traffic_report(results, request.output, options)
+    write_text(request.output / PAGE, traffic_page(lines, " ".join(request.command)))
+    for title, group in by_case(lines):
+        print_rows(*main_table(group), title)
+    print(f"the report is {request.output / PAGE}, and {MARKDOWN} beside it")
+    return 0
+
+
+def _sources(request: TrafficRequest, sequences: Sequence[TrafficSequence]) -> list[str] | None:
+    from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION
+
+    if request.detections is None:
+        return None
+    known = {MOTION, *(name for sequence in sequences for name in sequence.detections)}
+    return _names(request.detections, known, "detections")
+
+
+def _perturbations(request: TrafficRequest) -> list[str]:
+    from vehicle_pf_tracker.evaluation.traffic.comparison import PERTURBATIONS, UNCHANGED
+
+    if request.perturbations is None:
+        return list(PERTURBATIONS)
+    if request.perturbations == "none":
+        return [UNCHANGED]
+    return [UNCHANGED, *_names(request.perturbations, set(PERTURBATIONS), "perturbations")]
+
+
+def _names(text: str, known: set[str], what: str) -> list[str]:
+    names = list(dict.fromkeys(text.split(",")))
+    for name in names:
+        if name not in known:
+            raise InputError(
+                f"there are no {what} {name!r}{suggestion(name, known)}; choose from "
+                f"{', '.join(sorted(known))}"
+            )
+    return names
+
+
+def _parameters(request: TrafficRequest) -> TrafficParameters:
+    from vehicle_pf_tracker.parameters.configuration import Configuration
+    from vehicle_pf_tracker.trackers.registry import TRAFFIC
+
+    table = specs(TRAFFIC.parameters)
+    configuration = Configuration.of(TRAFFIC).updated(parse_assignments(table, request.assignments))
+    parameters: TrafficParameters = configuration.tracker
+    return parameters
+
 
 TIMING_FRAMES = 200
+_STRESS_MOVED = (
+    "the stress battery is no option of evaluate: in a clone of the repository, run "
+    "`python -m laboratory stress REC… -o DIR`"
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,9 +199,10 @@ class RobustnessOptions(VerbRequest):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(RobustnessOptions, StressRequest, TrafficRequest, ReportParts, MaxDiffOption):
+class Request(RobustnessOptions, TrafficRequest, ReportParts, MaxDiffOption):
     """Request of `evaluate`."""
 
+    stress: str | None = option(nargs="?", const="", help=argparse.SUPPRESS)
     scheduler: str | None = option(
         metavar="URL",
         help="run on the Dask cluster of this scheduler, as tcp://host:8786; the workers read the "
@@ -78,15 +224,13 @@ class Request(RobustnessOptions, StressRequest, TrafficRequest, ReportParts, Max
 
 def run(request: Request) -> int:
     """Run the missing cells, write the report, and print the table."""
-    traffic_evaluation.check(request)
-    stress.check(request)
-    is_grid = not (request.traffic or request.stress)
-    sources = find_recordings(request.sources) if is_grid else request.sources
+    check(request)
+    if request.stress is not None:
+        raise UsageError(_STRESS_MOVED)
+    sources = request.sources if request.traffic else find_recordings(request.sources)
     try:
         with claimed([Products(request.output)], sources, overwrite=True):
-            if is_grid:
-                return _run_grid(request, sources)
-            return stress.run(request) if request.stress else traffic_evaluation.run(request)
+            return run_traffic(request) if request.traffic else _run_grid(request, sources)
     except KeyboardInterrupt:
         if not request.traffic:
             tell_notices(["interrupted; run the same command to resume"])
@@ -128,7 +272,7 @@ def _plan(request: Request, sources: Sequence[str]) -> Plan:
 def _runner(request: Request) -> Runner:
     if request.scheduler is None:
         return on_this_machine(request.workers)
-    from vehicle_pf_tracker.evaluation.grid.cluster import on_cluster
+    from vehicle_pf_tracker.evaluation.grid.running import on_cluster
 
     return on_cluster(request.scheduler)
 

@@ -19,8 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import megabytes, tell_notices
-from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.console import counting, megabytes, tell_notices
 from vehicle_pf_tracker.cli.requests import option, positional
 from vehicle_pf_tracker.cli.shared_options import OverwriteOption
 from vehicle_pf_tracker.core.outputs import claimed

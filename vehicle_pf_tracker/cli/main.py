@@ -12,7 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The command `vehicle-pf-tracker`: chooses a verb, turns errors into a sentence and a status."""
+"""The command `vehicle-pf-tracker`: chooses a verb, turns errors into a sentence and a status.
+
+Remedies for Python modules that are not installed.
+"""
 
 from __future__ import annotations
 
@@ -35,11 +38,43 @@ from vehicle_pf_tracker.cli.console import (
     UsageError,
     tell_error,
 )
-from vehicle_pf_tracker.cli.missing_modules import remedy
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
 from vehicle_pf_tracker.core.address_space import check_address_space
 from vehicle_pf_tracker.core.errors import InputError, suggestion
+
+EXTRAS: Mapping[str, str] = MappingProxyType(
+    {
+        "matplotlib": "evaluation",
+        "jinja2": "evaluation",
+        "scipy": "traffic",  # `evaluation` brings it too, and says so before
+        "numba": "numba",
+        "av": "video",
+        "onnxruntime": "onnx",
+        "distributed": "cluster",
+        "fsspec": "cluster",
+        "optuna": "tune",
+    }
+)
+"""The extra that brings a module, by its name."""
+
+_ROS_ENDINGS = ("_msgs", "_interfaces", "_srvs")
+
+
+def remedy(module: str) -> str:
+    """Return one sentence that names `module` and what to install or source."""
+    name = module.partition(".")[0]
+    if name == "rclpy" or name.endswith(_ROS_ENDINGS):
+        how = "source ROS's setup.bash, or install the extra [ros], "
+        how += "pip install 'vehicle_pf_tracker[ros]'"
+    elif name in EXTRAS:
+        extra = EXTRAS[name]
+        how = f"install the extra [{extra}], pip install 'vehicle_pf_tracker[{extra}]'"
+    else:
+        how = "it belongs to every installation by pip; where the others are apt's, "
+        how += "`pip install mcap lz4 zstandard rosbags rich`"
+    return f"the Python module {name} is not there: {how}"
+
 
 VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {

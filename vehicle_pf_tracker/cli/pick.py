@@ -21,16 +21,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.picking import BOXES, POINTS, ask
-from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.console import UsageError, counting
+from vehicle_pf_tracker.cli.picking import BOXES, POINTS, ask, write_pairs
 from vehicle_pf_tracker.cli.requests import option, switch
-from vehicle_pf_tracker.cli.road_pairs import write_pairs
 from vehicle_pf_tracker.cli.shared_options import OverwriteOption, SourceOptions, positive
 from vehicle_pf_tracker.cli.targets import TargetOption, write_targets
 from vehicle_pf_tracker.core.outputs import claimed
-from vehicle_pf_tracker.evaluation.output_files import write_picture
-from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid
+from vehicle_pf_tracker.offline.drawing import draw_pixel_grid
+from vehicle_pf_tracker.offline.output_files import write_picture
 from vehicle_pf_tracker.recordings.source import Source, frame_at, open_source
 from vehicle_pf_tracker.road.calibration import format_pairs
 from vehicle_pf_tracker.road.plane import Pair

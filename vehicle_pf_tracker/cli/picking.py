@@ -12,7 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A page on this machine alone, on which a user drags boxes or clicks points over frames."""
+"""A page on this machine alone, on which a user drags boxes or clicks points over frames.
+
+Files of pixels and the points of the road that they show.
+"""
 
 from __future__ import annotations
 
@@ -28,14 +31,19 @@ from dataclasses import dataclass
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib import resources
+from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from vehicle_pf_tracker.cli.picture_window import has_display
-from vehicle_pf_tracker.cli.targets import TargetOption
+import yaml
+
+from vehicle_pf_tracker.cli.targets import TargetOption, has_display
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source
+from vehicle_pf_tracker.road.calibration import parse_pairs
 from vehicle_pf_tracker.road.plane import Pair
 
 AnswerT = TypeVar("AnswerT")
@@ -235,3 +243,36 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_header("Cache-Control", "no-store")
         self.end_headers()
         self.wfile.write(content)
+
+
+FORM = "pairs: [{pixel: [u, v], road: [x, y]}, …]"
+
+
+def read_pairs(path: Path) -> tuple[Pair, ...]:
+    """Read pairs from a YAML file.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is not of the form that the help says.
+    """
+    try:
+        document: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
+        words = [
+            ",".join(str(float(one)) for one in row["pixel"])
+            + "="
+            + ",".join(str(float(one)) for one in row["road"])
+            for row in document["pairs"]
+        ]
+    except OSError as error:
+        raise InputError(f"cannot read the pairs {path}: {error.strerror}") from None
+    except (yaml.YAMLError, ValueError, TypeError, KeyError, RecursionError):
+        raise InputError(f"the file {path} has no pairs of the form {FORM}") from None
+    return parse_pairs(";".join(words))
+
+
+def write_pairs(path: Path, pairs: Sequence[Pair]) -> None:
+    """Write a file that `read_pairs` reads."""
+    rows = [{"pixel": list(pair.pixel), "road": list(pair.road)} for pair in pairs]
+    text = yaml.safe_dump({"pairs": rows}, sort_keys=False, default_flow_style=None)
+    write_text(path, text)

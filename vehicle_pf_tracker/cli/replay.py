@@ -12,20 +12,28 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`replay`: feed a recording to ROS nodes; also installed as `bag_replay`."""
+"""`replay`: feed a recording to ROS nodes; also installed as `bag_replay`.
+
+Progress of a replay: a bar on a terminal, plain lines elsewhere.
+"""
 
 from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Sequence
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
-from vehicle_pf_tracker.cli.console import UsageError, tell_notices
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from vehicle_pf_tracker.cli.console import LineClock, UsageError, tell_notices
 from vehicle_pf_tracker.cli.parameter_options import parse_box
-from vehicle_pf_tracker.cli.replay_progress import progress_view
 from vehicle_pf_tracker.cli.requests import option, positional, switch
 from vehicle_pf_tracker.cli.shared_options import (
     OverwriteOption,
@@ -35,12 +43,92 @@ from vehicle_pf_tracker.cli.shared_options import (
 )
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.estimates import write_estimates
-from vehicle_pf_tracker.evaluation.output_files import make_folder
+from vehicle_pf_tracker.offline.estimates import write_estimates
+from vehicle_pf_tracker.offline.output_files import make_folder
 from vehicle_pf_tracker.recordings.reader import Recording
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions, ReplayReport
+    from vehicle_pf_tracker.ros.replay.replay_options import Progress as ReplayProgress
+
+
+@contextmanager
+def progress_view(
+    stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
+) -> Iterator[Callable[[ReplayProgress], None]]:
+    """Return a function that reports the progress of the replay.
+
+    Parameters
+    ----------
+    stream : text stream or None
+        Where to show it; None is standard error.
+    clock : callable
+        The monotonic clock in s.
+    """
+    stream = stream or sys.stderr
+    if not stream.isatty():
+        yield _Lines(stream, clock)
+        return
+    columns = (
+        BarColumn(),
+        TextColumn("{task.percentage:3.0f} %  {task.fields[frames]} frames  {task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(file=stream)) as bar:
+        yield _Bar(bar, clock)
+
+
+class _Bar:
+    """A bar that appears with the first image."""
+
+    def __init__(self, bar: Progress, clock: Callable[[], float]) -> None:
+        self._bar = bar
+        self._clock = clock
+        self._began = clock()
+        self._task = bar.add_task("replay", total=None, frames=0, rate="")
+
+    def __call__(self, progress: ReplayProgress) -> None:
+        if progress.frames == 1:
+            self._began = self._clock()
+        self._bar.update(
+            self._task,
+            completed=progress.position,
+            total=progress.length,
+            frames=progress.frames,
+            rate=_rate(progress, self._clock() - self._began),
+        )
+
+
+class _Lines:
+    def __init__(self, stream: TextIO, clock: Callable[[], float]) -> None:
+        self._stream = stream
+        self._clock = clock
+        self._began = self._pass_began = clock()
+        self._due = LineClock(self._began)
+        self._position = 0.0
+
+    def __call__(self, progress: ReplayProgress) -> None:
+        now = self._clock()
+        if progress.frames == 1:
+            self._began = self._pass_began = now
+            self._due = LineClock(now)
+        if progress.position < self._position:  # a loop begins again
+            self._pass_began = now
+        self._position = progress.position
+        if self._due.is_due(now):
+            print(self._line(progress, now), file=self._stream, flush=True)
+
+    def _line(self, progress: ReplayProgress, now: float) -> str:
+        line = f"{progress.frames} frames, {_rate(progress, now - self._began)}"
+        if not progress.position:
+            return line
+        share = progress.position / progress.length
+        left = (now - self._pass_began) * (1 / share - 1)
+        return f"{share:4.0%}, {line}, {left:.0f} s left"
+
+
+def _rate(progress: ReplayProgress, elapsed: float) -> str:
+    return f"{(progress.frames - 1) / elapsed:.1f} frames/s" if elapsed > 0 else ""
 
 
 ANSWERS = ("estimates.csv", "*/estimates.csv")
@@ -154,8 +242,7 @@ def run(request: Request) -> int:
     """
     if request.loop and request.output:
         raise UsageError("-o cannot be combined with --loop, which never ends")
-    from vehicle_pf_tracker.ros.replay.interruption import noted_interrupts
-    from vehicle_pf_tracker.ros.replay.replaying import NoTargetError, replay
+    from vehicle_pf_tracker.ros.replay.replaying import NoTargetError, noted_interrupts, replay
 
     recording = Recording(request.recording, request.topic)
     told = recording.notices
@@ -180,7 +267,7 @@ def run(request: Request) -> int:
 
 def options_of(request: Request) -> ReplayOptions:
     """Collect the options of a parsed command line."""
-    from vehicle_pf_tracker.ros.replay.recorded_qos import read_qos_overrides
+    from vehicle_pf_tracker.ros.replay.playable import read_qos_overrides
     from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
     qos_file = request.qos_profile_overrides_path

@@ -22,22 +22,20 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.picking import POINTS, ask
-from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.console import UsageError, counting
+from vehicle_pf_tracker.cli.picking import FORM, POINTS, ask, read_pairs
 from vehicle_pf_tracker.cli.requests import option, positional
-from vehicle_pf_tracker.cli.road_pairs import FORM, read_pairs
 from vehicle_pf_tracker.cli.shared_options import OverwriteOption, positive
 from vehicle_pf_tracker.core.outputs import claimed
-from vehicle_pf_tracker.evaluation.output_files import write_picture, write_text
-from vehicle_pf_tracker.evaluation.road_grid import draw_pixel_grid, draw_road_grid
+from vehicle_pf_tracker.offline.drawing import draw_pixel_grid, draw_road_grid
+from vehicle_pf_tracker.offline.output_files import write_picture, write_text
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.recordings.source import Source, frame_at, open_source
 from vehicle_pf_tracker.road.calibration import format_pairs, parse_pairs
-from vehicle_pf_tracker.road.lens import MODELS
+from vehicle_pf_tracker.road.camera import MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
 
 _TITLE = "Road. Written by `vehicle-pf-tracker road calibrate`."

@@ -22,34 +22,38 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli import parameter_options
-from vehicle_pf_tracker.cli.console import UsageError, show, tell_notices
-from vehicle_pf_tracker.cli.frames import (
+from vehicle_pf_tracker.cli.console import UsageError, counting, show, tell_notices
+from vehicle_pf_tracker.cli.requests import option, switch
+from vehicle_pf_tracker.cli.shared_options import MaxDiffOption
+from vehicle_pf_tracker.cli.stopping import (
     Numbered,
     TrackingRequest,
     cut_short,
     numbered_frames,
     peeked,
+    stopping,
 )
-from vehicle_pf_tracker.cli.picture_window import PictureWindow
-from vehicle_pf_tracker.cli.progress import counting
-from vehicle_pf_tracker.cli.requests import option, switch
-from vehicle_pf_tracker.cli.shared_options import MaxDiffOption
-from vehicle_pf_tracker.cli.stopping import stopping
-from vehicle_pf_tracker.cli.targets import TargetOption, by_name, parse_target, read_targets
+from vehicle_pf_tracker.cli.targets import (
+    PictureWindow,
+    TargetOption,
+    by_name,
+    parse_target,
+    read_targets,
+)
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.association import max_diff_ns
-from vehicle_pf_tracker.evaluation.estimates import (
-    EstimateRow,
-    interpolated_columns,
-    write_tracks,
-)
-from vehicle_pf_tracker.evaluation.following import Pictures, follow
 from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.mode_spans import summary
-from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
-from vehicle_pf_tracker.evaluation.run_folder import (
+from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.evaluation.tables import comparison
+from vehicle_pf_tracker.image.target_pixels import doubts
+from vehicle_pf_tracker.offline.contact_sheet import summary
+from vehicle_pf_tracker.offline.driver import OfflineTracker, with_target
+from vehicle_pf_tracker.offline.estimates import EstimateRow, interpolated_columns, write_tracks
+from vehicle_pf_tracker.offline.estimates_recording import OnFrame, run_recording
+from vehicle_pf_tracker.offline.following import Pictures, follow
+from vehicle_pf_tracker.offline.run_folder import (
     ESTIMATES,
     METRICS,
     RUN,
@@ -57,11 +61,7 @@ from vehicle_pf_tracker.evaluation.run_folder import (
     RunInfo,
     describe_run,
 )
-from vehicle_pf_tracker.evaluation.run_recording import OnFrame, run_recording
-from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.evaluation.tables import comparison
-from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
-from vehicle_pf_tracker.image.target_pixels import doubts
+from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, has_encoder
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source, open_source
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
@@ -177,7 +177,7 @@ def _write(
         return
     (found,) = rows.values()
     metrics = measure(score_frames(found, source.truth(), request.max_diff))
-    folder.write_metrics(metrics)
+    folder.write_metrics(metrics.to_json())
     if metrics.frames_scored:
         show(comparison({request.variant: metrics}))
 

@@ -23,7 +23,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, switch
-from vehicle_pf_tracker.evaluation.association import MAX_DIFF
+from vehicle_pf_tracker.core.clock import MAX_DIFF
 
 
 @dataclass(frozen=True, kw_only=True)

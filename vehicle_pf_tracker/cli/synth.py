@@ -21,21 +21,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.cli.console import UsageError, tell_notices
-from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notices
 from vehicle_pf_tracker.cli.requests import option, positional, switch
 from vehicle_pf_tracker.cli.shared_options import OverwriteOption
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import claimed
-from vehicle_pf_tracker.evaluation.output_files import write_text
-from vehicle_pf_tracker.evaluation.video_writer import (
-    NO_ENCODER,
-    SUFFIX,
-    has_encoder,
-    video_writer,
-)
+from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, SUFFIX, has_encoder, video_writer
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.importing import FORMATS, jpeg
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
@@ -46,7 +40,7 @@ from vehicle_pf_tracker.scenes.traffic_catalogue import (
     TRAFFIC_SCENES,
     make_traffic_scene,
 )
-from vehicle_pf_tracker.scenes.traffic_settings import TrafficSceneParameters
+from vehicle_pf_tracker.scenes.traffic_scene import TrafficSceneParameters
 
 
 @dataclass(frozen=True, kw_only=True)

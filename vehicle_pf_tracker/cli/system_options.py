@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.parameter_sets import (
+from vehicle_pf_tracker.cli.parameter_options import (
     ParameterSet,
     check_sets,
     configure,
@@ -34,12 +34,7 @@ from vehicle_pf_tracker.cli.requests import option, positional, switch
 from vehicle_pf_tracker.cli.shared_options import WorkersOption, natural, positive
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Baseline, unknown_baseline
-from vehicle_pf_tracker.evaluation.grid.systems import (
-    BASELINE,
-    BaselineSystem,
-    System,
-    VariantSystem,
-)
+from vehicle_pf_tracker.evaluation.grid.cells import BASELINE, BaselineSystem, System, VariantSystem
 from vehicle_pf_tracker.parameters.table import Value, parse_assignments, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
@@ -66,8 +61,8 @@ class EvaluationRequest(WorkersOption):
     )  # fmt: skip
     seeds: int | None = option(
         type=positive, metavar="N",
-        help=f"seeds of each stochastic system (default: {SEEDS}, with --stress "
-        f"{FEW_SEEDS})",
+        help=f"seeds of each stochastic system (default: {SEEDS}, or {FEW_SEEDS} where the "
+        "cases vary more than seeds do)",
     )  # fmt: skip
     first_seed: int = option(type=natural, default=0, metavar="S", help="the first of the seeds")
     variants: str = option(

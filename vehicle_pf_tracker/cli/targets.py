@@ -12,22 +12,28 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Targets of a run: boxes in px, each with a name and the frame that it is given for."""
+"""Targets of a run: boxes in px, each with a name and the frame that it is given for.
+
+A window that shows frames, where OpenCV has any.
+"""
 
 from __future__ import annotations
 
 import argparse
+import os
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+import cv2
 import yaml
 
 from vehicle_pf_tracker.cli.parameter_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.output_files import write_text
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.offline.output_files import write_text
 
 _WORDS = re.compile(r"(?:(?P<name>[A-Za-z0-9_-]*)(?:@(?P<frame>[0-9]{1,9}))?:)?(?P<box>[^:@]*)")
 
@@ -144,3 +150,43 @@ def _entry(entry: dict[str, object]) -> TargetOption:
 
 def _numbers(box: Box) -> list[float]:
     return [round(value, 2) for value in (box.x, box.y, box.width, box.height)]
+
+
+def has_display() -> bool:
+    """Return whether windows can be shown."""
+    return os.name != "posix" or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
+
+
+class PictureWindow:
+    """Shows one frame after the other.
+
+    Parameters
+    ----------
+    title : str
+        Title of the window.
+
+    Raises
+    ------
+    InputError
+        If there is no display, or this OpenCV has no windows.
+    """
+
+    def __init__(self, title: str) -> None:
+        self._title = title
+        try:
+            # Without a display, Qt would end the program instead of raising.
+            if not has_display():
+                raise InputError("--show needs a display, and there is none; use --video FILE")
+            cv2.namedWindow(title, cv2.WINDOW_NORMAL)
+        except cv2.error:
+            raise InputError(
+                "--show needs an OpenCV with windows (opencv-python, not -headless); "
+                "use --video FILE"
+            ) from None
+
+    def show(self, picture: Frame) -> bool:
+        """Show a frame; False when the user presses q or Escape."""
+        cv2.imshow(self._title, cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+        return cv2.waitKey(1) & 0xFF not in (ord("q"), 27)

@@ -24,29 +24,38 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle_pf_tracker.cli import parameter_options
-from vehicle_pf_tracker.cli.console import UsageError, tell_notices
-from vehicle_pf_tracker.cli.frames import TrackingRequest, cut_short, numbered_frames, peeked
-from vehicle_pf_tracker.cli.picture_window import PictureWindow
-from vehicle_pf_tracker.cli.progress import counting
+from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notices
 from vehicle_pf_tracker.cli.requests import option, switch
-from vehicle_pf_tracker.cli.stopping import stopping
-from vehicle_pf_tracker.cli.targets import TargetOption, by_name, parse_target, read_targets
+from vehicle_pf_tracker.cli.stopping import (
+    TrackingRequest,
+    cut_short,
+    numbered_frames,
+    peeked,
+    stopping,
+)
+from vehicle_pf_tracker.cli.targets import (
+    PictureWindow,
+    TargetOption,
+    by_name,
+    parse_target,
+    read_targets,
+)
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.following import Pictures
-from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
-from vehicle_pf_tracker.evaluation.run_folder import RUN, versions
-from vehicle_pf_tracker.evaluation.traffic.detection_file import DetectionFile
-from vehicle_pf_tracker.evaluation.traffic.detector_choice import detector_maker
-from vehicle_pf_tracker.evaluation.traffic.following import Target, TrafficRun
-from vehicle_pf_tracker.evaluation.traffic.summary import limited
-from vehicle_pf_tracker.evaluation.traffic.track_files import (
+from vehicle_pf_tracker.offline.detectors import detector_maker
+from vehicle_pf_tracker.offline.following import Pictures
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json
+from vehicle_pf_tracker.offline.run_folder import RUN, versions
+from vehicle_pf_tracker.offline.traffic_files import (
     COUNTS,
     MOT_TRACKS,
     TRACKS,
+    DetectionFile,
     track_files,
 )
-from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder
+from vehicle_pf_tracker.offline.traffic_following import Target, TrafficRun
+from vehicle_pf_tracker.offline.traffic_summary import limited
+from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, has_encoder
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.parameters.table import to_mapping
@@ -55,7 +64,7 @@ from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
-from vehicle_pf_tracker.trackers.traffic.detector_parameters import MODEL, MOTION, NONE, TOPIC
+from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, NONE, TOPIC
 from vehicle_pf_tracker.trackers.traffic.session import Detector, TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 

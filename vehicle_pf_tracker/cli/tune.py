@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli import parameter_options, system_options
 from vehicle_pf_tracker.cli.console import print_table, tell_notices
-from vehicle_pf_tracker.cli.parameter_sets import settable
+from vehicle_pf_tracker.cli.parameter_options import settable
 from vehicle_pf_tracker.cli.requests import option, positional
 from vehicle_pf_tracker.cli.shared_options import MaxDiffOption, WorkersOption, natural, positive
 from vehicle_pf_tracker.cli.work_progress import stages, telling
@@ -31,11 +31,10 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
+from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
-from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
-from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.evaluation.report import write_report
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.tuning import comparison
@@ -48,6 +47,7 @@ from vehicle_pf_tracker.evaluation.tuning.searching import (
     search,
     to_csv,
 )
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.table import parse_assignments
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant

@@ -26,8 +26,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
 from rich.progress import Progress as Bar
 
-from vehicle_pf_tracker.cli.progress import LineClock
-from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress
+from vehicle_pf_tracker.cli.console import LineClock
+from vehicle_pf_tracker.offline.processes import OnProgress, Progress
 
 _SHOWN = 4
 
@@ -50,7 +50,7 @@ def telling(
     stream = stream or sys.stderr
     began = clock()
     if not stream.isatty():
-        yield _Lines(name, stream, clock)
+        yield _WorkLines(name, stream, clock)
         return
     columns = (
         TextColumn(name),
@@ -87,7 +87,7 @@ def stages(
     yield show
 
 
-class _Lines:
+class _WorkLines:
     def __init__(self, name: str, stream: TextIO, clock: Callable[[], float]) -> None:
         self._name = name
         self._stream = stream

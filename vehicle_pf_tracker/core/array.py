@@ -12,14 +12,47 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Array type of most computations."""
+"""Array type of most computations.
+
+Matrix products with the same bits on any number of threads.
+
+OpenBLAS, which numpy uses, cuts a large product into one piece per thread, and rounds at the edges
+of pieces otherwise than inside; `OMP_NUM_THREADS`, or the number of cores, would change estimates.
+"""
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 Array: TypeAlias = npt.NDArray[np.float64]
 """Array of float64; shape and unit are documented where it is used."""
+
+
+_FloatT = TypeVar("_FloatT", bound=np.floating[Any])
+
+_SERIAL = 1 << 18
+"""Multiplications up to which OpenBLAS gives a product to one thread (its interface/gemm.c:
+SMP_THRESHOLD_MIN times GEMM_MULTITHREAD_THRESHOLD)."""
+
+
+def product(left: npt.NDArray[_FloatT], right: npt.NDArray[_FloatT]) -> npt.NDArray[_FloatT]:
+    """Matrix product (m, n) of an (m, k) and a (k, n) array, in pieces that one thread computes.
+
+    The longer side of the product is cut.
+    """
+    (rows, inner), columns = left.shape, right.shape[1]
+    longer = max(rows, columns)
+    piece = max(_SERIAL * longer // max(rows * inner * columns, 1), 1)
+    if piece >= longer:
+        return np.asarray(left @ right)
+    whole = np.empty((rows, columns), np.result_type(left, right))
+    for first in range(0, longer, piece):
+        part = slice(first, first + piece)
+        if rows > columns:
+            np.matmul(left[part], right, out=whole[part])
+        else:
+            np.matmul(left, right[:, part], out=whole[:, part])
+    return whole

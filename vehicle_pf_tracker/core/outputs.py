@@ -12,12 +12,16 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The rule for outputs: an input is never one, what exists is kept, and one command uses it."""
+"""The rule for outputs: an input is never one, what exists is kept, and one command uses it.
+
+Folders that appear whole or not at all.
+"""
 
 from __future__ import annotations
 
 import fcntl
 import os
+import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
@@ -213,3 +217,56 @@ def _lock(path: Path) -> int | None:
             os.close(descriptor)
             raise
         os.close(descriptor)
+
+
+class OutputFolder:
+    """Collects files in a hidden folder beside `target`, which takes its place at the end.
+
+    Parameters
+    ----------
+    target : Path
+        The folder to make; what is there under its name is replaced.
+
+    Attributes
+    ----------
+    partial : Path
+        The hidden folder.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written; also from `publish`.
+    """
+
+    def __init__(self, target: Path) -> None:
+        self.target = target.expanduser().resolve()
+        self.partial = self.target.parent / f".{self.target.name}.{os.getpid()}.partial"
+        self.partial.mkdir(parents=True)
+
+    def publish(self) -> None:
+        """Put the finished folder in its place; a former one goes when it is there."""
+        former = self.partial.with_suffix(".former")
+        try:
+            if self.target.exists():
+                self.target.rename(former)
+            self.partial.rename(self.target)
+        except BaseException:  # a signal too
+            if former.exists() and not self.target.exists():
+                former.rename(self.target)
+            raise
+        shutil.rmtree(former, ignore_errors=True)
+
+    def discard(self) -> None:
+        """Remove what was collected."""
+        shutil.rmtree(self.partial, ignore_errors=True)
+
+
+@contextmanager
+def whole_folder(target: Path) -> Iterator[Path]:
+    """Give an `OutputFolder` to fill; it is published if the block ends well, else removed."""
+    output = OutputFolder(target)
+    try:
+        yield output.partial
+        output.publish()
+    finally:
+        output.discard()

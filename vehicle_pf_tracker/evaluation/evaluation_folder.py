@@ -37,9 +37,9 @@ from typing import Any
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.estimates import EstimateRow, read_estimates
-from vehicle_pf_tracker.evaluation.output_files import write_text
-from vehicle_pf_tracker.evaluation.run_folder import ESTIMATES, RUN, damage
+from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
+from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN, damage
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
 

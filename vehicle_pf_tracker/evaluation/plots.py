@@ -29,8 +29,8 @@ from matplotlib.patheffects import Normal, Stroke
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
-from vehicle_pf_tracker.evaluation.output_files import replacing
 from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
+from vehicle_pf_tracker.offline.output_files import replacing
 
 
 class Style(NamedTuple):

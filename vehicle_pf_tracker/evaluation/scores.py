@@ -26,10 +26,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import MAX_DIFF, associate
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.association import MAX_DIFF, associate
-from vehicle_pf_tracker.evaluation.estimates import WAITING, EstimateRow
+from vehicle_pf_tracker.offline.estimates import WAITING, EstimateRow
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,7 +32,7 @@ from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
-from vehicle_pf_tracker.evaluation.run_folder import METRICS
+from vehicle_pf_tracker.offline.run_folder import METRICS
 
 Cell: TypeAlias = float | int | bool | str | None
 NOTHING = "-"

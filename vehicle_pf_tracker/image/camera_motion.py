@@ -12,7 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motion of the camera, from the flow of corners outside the target."""
+"""Motion of the camera, from the flow of corners outside the target.
+
+Reduced grey frames, for measurements that need neither colours nor details.
+"""
 
 from __future__ import annotations
 
@@ -24,9 +27,49 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE, MotionKernels
-from vehicle_pf_tracker.image.small_grey import SmallGrey
+
+_LARGEST_SIDE = 320
+"""Side in px that a frame is reduced to: the motion of its background is measured to a fraction of
+a pixel, so that a quarter of VGA's pixels suffice."""
+
+_SPARSE_FROM = 3
+"""Reduction from which rows are left out; of every two both are averaged."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SmallGrey:
+    """A reduced frame.
+
+    Attributes
+    ----------
+    image : (h, w) array of uint8
+        Luminance.
+    zoom : float
+        Its px per px of the frame, at most 1.
+    """
+
+    image: npt.NDArray[np.uint8]
+    zoom: float
+
+
+def small_grey(frame: Frame) -> SmallGrey:
+    """Reduce a frame (H, W, 3) until its larger side has 320 px at most.
+
+    Of a large frame only so many rows are read as the reduced one has: the cost lies in fetching
+    them from memory, and would grow with the frame.
+    """
+    width, height = frame_size(frame)
+    zoom = min(_LARGEST_SIDE / max(width, height), 1.0)
+    step = int(1 / zoom)
+    small = np.ascontiguousarray(frame) if step < _SPARSE_FROM else frame[step // 2 :: step]
+    if zoom < 1:
+        size = max(round(width * zoom), 1), max(round(height * zoom), 1)
+        small = np.asarray(cv2.resize(small, size, interpolation=cv2.INTER_LINEAR), np.uint8)
+    return SmallGrey(np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY), np.uint8), zoom)
+
 
 _LEAST_SIDE = 32
 """Side of the reduced frame in px below which its corners are too close to define a motion."""

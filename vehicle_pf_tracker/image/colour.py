@@ -22,9 +22,17 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.window import Bounds, Positions, Window, bounds
-from vehicle_pf_tracker.image.window_feature import Counted, CountedFeature
-from vehicle_pf_tracker.image.window_sums import areas, bin_counts, covered_region
+from vehicle_pf_tracker.image.window import (
+    Bounds,
+    Counted,
+    CountedFeature,
+    Positions,
+    Window,
+    areas,
+    bin_counts,
+    bounds,
+    covered_region,
+)
 
 Histogram = npt.NDArray[np.float64]
 BinIndices = npt.NDArray[np.uint16]

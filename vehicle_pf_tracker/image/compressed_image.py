@@ -29,10 +29,14 @@ import numpy as np
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image import jpeg_structure, png_structure
+from vehicle_pf_tracker.image import compressed_structure
+from vehicle_pf_tracker.image.compressed_structure import (
+    JpegStructure,
+    PngStructure,
+    read_jpeg_structure,
+    read_png_structure,
+)
 from vehicle_pf_tracker.image.encodings import MAX_SIDE, Buffer, flat_bytes
-from vehicle_pf_tracker.image.jpeg_structure import JpegStructure, read_jpeg_structure
-from vehicle_pf_tracker.image.png_structure import PngStructure, read_png_structure
 
 MAX_PIXELS = 30_000_000
 """Three and a half times those of 4K video."""
@@ -41,7 +45,7 @@ MAX_SECONDS = 1.0
 MAX_BYTES = 200_000_000
 """CPU time and memory to decode one image, by the costs below."""
 
-# Of the dearest files that were made for it: benchmarks/hostile_images.py. By them a camera's JPEG
+# Of the dearest files that were made for it: laboratory/hostile_images.py. By them a camera's JPEG
 # of 4K takes 0.1 s.
 _PIXEL, _BYTE = 12e-9, 9e-9
 _SCANNED_PIXEL, _SCANNED_BYTE = 7e-9, 35e-9
@@ -135,9 +139,9 @@ def read_compressed(format: str, data: Buffer) -> CodedImage:  # noqa: A002
     coded = flat_bytes(data).tobytes()
     if not coded:
         raise InputError(f"{name} holds no data")
-    if coded.startswith(png_structure.SIGNATURE):
+    if coded.startswith(compressed_structure.PNG_SIGNATURE):
         return _read_png(name, coded)
-    if coded.startswith(jpeg_structure.SIGNATURE):
+    if coded.startswith(compressed_structure.JPEG_SIGNATURE):
         return _read_jpeg(name, coded)
     raise InputError(f"{name} is neither JPEG nor PNG")
 

@@ -23,6 +23,8 @@ around it. Each training step solves
 
 for one image by a few steps of the alternating direction method of multipliers (ADMM); `x` are the
 feature channels, `*` is correlation, and `y` a narrow Gaussian at the target's centre.
+
+Climbing on a map: the best place close to each of some places, in numpy.
 """
 
 from __future__ import annotations
@@ -36,8 +38,14 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
-from vehicle_pf_tracker.image.partial_fourier import PartialFourier, Spectrum, upsampled
-from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty, SpectralKernels
+from vehicle_pf_tracker.image.spectra import (
+    FilterProblem,
+    PartialFourier,
+    Penalty,
+    SpectralKernels,
+    Spectrum,
+    upsampled,
+)
 
 Response: TypeAlias = npt.NDArray[np.float32]
 """Filter response by [y, x], its middle at the patch's centre; 1 is the ideal peak."""
@@ -197,3 +205,36 @@ class CorrelationFilter:
 @functools.cache
 def _transforms(size: int, top: int, bottom: int, left: int, right: int) -> PartialFourier:
     return PartialFourier(size, slice(top, bottom), slice(left, right))
+
+
+Places = npt.NDArray[np.intp]
+"""Places (N, 2) on a map, as x and y."""
+
+
+def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
+    """Move places to the best value in reach, less what the move costs.
+
+    Parameters
+    ----------
+    values : (m, m) array
+        The map by [y, x]; beyond its border the outermost values are repeated.
+    places : (N, 2) array
+        On the map.
+    costs : (2 r + 1, 2 r + 1) array
+        Of the moves by up to `r` places, by [y, x].
+
+    Returns
+    -------
+    moves : (N, 2) array
+        The best of the moves; of equal ones the first.
+    gains : (N,) array
+        Value there, less the cost.
+    """
+    reach, last = len(costs) // 2, len(values) - 1
+    offsets = np.arange(-reach, reach + 1)
+    dy, dx = (grid.ravel() for grid in np.meshgrid(offsets, offsets, indexing="ij"))
+    rows = np.clip(places[:, 1, np.newaxis] + dy, 0, last)
+    columns = np.clip(places[:, 0, np.newaxis] + dx, 0, last)
+    gains = values[rows, columns] - costs.ravel()
+    best = gains.argmax(axis=1)
+    return np.column_stack([dx[best], dy[best]]), gains[np.arange(len(best)), best]

@@ -27,14 +27,19 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.window import (
     Bounds,
+    Counted,
+    CountedFeature,
+    Grey,
     Positions,
     Window,
+    areas,
+    bin_counts,
     bounds,
     centres,
+    covered_region,
     keep_inside,
+    to_grey,
 )
-from vehicle_pf_tracker.image.window_feature import Counted, CountedFeature, Grey, to_grey
-from vehicle_pf_tracker.image.window_sums import areas, bin_counts, covered_region
 
 Strengths: TypeAlias = npt.NDArray[np.float32]
 """Squared magnitude of the gradient; integers below 2**24, so exact."""

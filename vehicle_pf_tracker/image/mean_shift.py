@@ -31,8 +31,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import Histogram, bin_count, bin_indices
 from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient
-from vehicle_pf_tracker.image.window import Centres, Positions, Window, centres
-from vehicle_pf_tracker.image.window_feature import Coefficients
+from vehicle_pf_tracker.image.window import Centres, Coefficients, Positions, Window, centres
 
 Indices = npt.NDArray[np.intp]
 

@@ -32,7 +32,7 @@ LARGEST_SHARE = 0.4
 LEAST_CONTRAST = 6.0
 """Contrast, of 255, below which a patch is an empty road. True boxes have at least 9.4 on truck4_1,
 of 5 px, and 12.6 on the 18 other sequences; of boxes thrown into the lower part of their images,
-which is mostly road, up to 47 % have less (`benchmarks/target_contrast.py`)."""
+which is mostly road, up to 47 % have less (`laboratory/target_contrast.py`)."""
 _MARGIN = 0.25
 """Surroundings that belong to the patch, as a share of the box: a plain vehicle has its outline."""
 

@@ -24,16 +24,21 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.window import Bounds, Positions, Window, bounds
-from vehicle_pf_tracker.image.window_feature import (
+from vehicle_pf_tracker.image.window import (
+    Bounds,
     Counted,
     CountedFeature,
     Grey,
     Histograms,
+    Positions,
+    Window,
     WindowFeature,
+    areas,
+    bin_counts,
+    bounds,
+    covered_region,
     to_grey,
 )
-from vehicle_pf_tracker.image.window_sums import areas, bin_counts, covered_region
 
 LEVELS = 8
 """Grey levels of co-occurrences (P2, section III-D)."""

@@ -25,7 +25,7 @@ from typing import Any, TypeAlias
 
 from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.core.errors import InputError, suggestion
-from vehicle_pf_tracker.parameters.yaml_text import read_yaml_file
+from vehicle_pf_tracker.parameters.files import read_yaml_file
 
 _LARGEST = 1e5
 """Bound of coordinates in px: three times the largest side of an image (32767 px)."""

@@ -21,9 +21,8 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.calibration import parse_lens, parse_pairs, parse_pose
-from vehicle_pf_tracker.road.lens import MODELS, Lens
+from vehicle_pf_tracker.road.camera import MODELS, Lens, Pose
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
-from vehicle_pf_tracker.road.poses import Pose
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,8 +26,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.recordings.footage import Footage, Picture
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
-from vehicle_pf_tracker.recordings.open_footage import is_recording, refuse_other_bags
-from vehicle_pf_tracker.recordings.video import VideoFile
+from vehicle_pf_tracker.recordings.video import VideoFile, is_recording, refuse_other_bags
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 FORMATS = ("compressed", "raw")

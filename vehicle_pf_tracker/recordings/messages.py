@@ -28,15 +28,32 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings import topics
 from vehicle_pf_tracker.recordings.cdr import message_class
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
+from vehicle_pf_tracker.recordings.topics import (
+    CAMERA_FRAME,
+    COMPRESSED_IMAGE,
+    DIAGNOSTIC_ARRAY,
+    IMAGE,
+    POINT_STAMPED,
+    POLYGON_STAMPED,
+    TRUTH_BOX_TOPIC,
+    TRUTH_MODE_TOPIC,
+    TRUTH_POSITION_TOPIC,
+)
+
+
+def as_token(name: str) -> str:
+    """Return `name` as a part of a topic: letters, digits and underscores, no digit first."""
+    token = "".join(c if c.isascii() and c.isalnum() else "_" for c in name)
+    return f"_{token}" if token[:1].isdigit() else token
+
 
 OK, WARN, ERROR = 0, 1, 2
 """Levels of a diagnostic status."""
 
 
-def header(stamp_ns: int, frame_id: str = topics.CAMERA_FRAME) -> Any:
+def header(stamp_ns: int, frame_id: str = CAMERA_FRAME) -> Any:
     """Make a `std_msgs/Header` with this stamp in ns."""
     seconds, nanoseconds = divmod(stamp_ns, 1_000_000_000)
     stamp = message_class("builtin_interfaces/msg/Time")(sec=seconds, nanosec=nanoseconds)
@@ -52,7 +69,7 @@ def stamp_ns(message: Any) -> int:
 def image(stamp_ns: int, frame: Frame) -> Any:
     """Make an `rgb8` image; the data are `frame` itself where it is contiguous."""
     height, width = check_frame(frame).shape[:2]
-    return message_class(topics.IMAGE)(
+    return message_class(IMAGE)(
         header=header(stamp_ns),
         height=height,
         width=width,
@@ -65,7 +82,7 @@ def image(stamp_ns: int, frame: Frame) -> Any:
 
 def compressed_image(stamp_ns: int, image_format: str, data: bytes) -> Any:
     """Make a compressed image of the bytes of a file; `image_format` is ``jpeg`` or ``png``."""
-    return message_class(topics.COMPRESSED_IMAGE)(
+    return message_class(COMPRESSED_IMAGE)(
         header=header(stamp_ns), format=image_format, data=np.frombuffer(data, np.uint8)
     )
 
@@ -73,7 +90,7 @@ def compressed_image(stamp_ns: int, image_format: str, data: bytes) -> Any:
 def point_stamped(stamp_ns: int, x: float, y: float, z: float = 0.0) -> Any:
     """Make a point, here a position in px."""
     point = message_class("geometry_msgs/msg/Point")(x=float(x), y=float(y), z=float(z))
-    return message_class(topics.POINT_STAMPED)(header=header(stamp_ns), point=point)
+    return message_class(POINT_STAMPED)(header=header(stamp_ns), point=point)
 
 
 def polygon_stamped(
@@ -83,7 +100,7 @@ def polygon_stamped(
     point = message_class("geometry_msgs/msg/Point32")
     points = [point(x=float(x), y=float(y), z=0.0) for x, y in corners]
     polygon = message_class("geometry_msgs/msg/Polygon")(points=points)
-    return message_class(topics.POLYGON_STAMPED)(header=header(stamp_ns), polygon=polygon)
+    return message_class(POLYGON_STAMPED)(header=header(stamp_ns), polygon=polygon)
 
 
 def diagnostic_array(
@@ -98,13 +115,13 @@ def diagnostic_array(
         hardware_id="",
         values=[pair(key=key, value=value) for key, value in values.items()],
     )
-    return message_class(topics.DIAGNOSTIC_ARRAY)(header=header(stamp_ns), status=[status])
+    return message_class(DIAGNOSTIC_ARRAY)(header=header(stamp_ns), status=[status])
 
 
 TRUTH_TYPES = {
-    topics.TRUTH_POSITION_TOPIC: topics.POINT_STAMPED,
-    topics.TRUTH_BOX_TOPIC: topics.POLYGON_STAMPED,
-    topics.TRUTH_MODE_TOPIC: topics.DIAGNOSTIC_ARRAY,
+    TRUTH_POSITION_TOPIC: POINT_STAMPED,
+    TRUTH_BOX_TOPIC: POLYGON_STAMPED,
+    TRUTH_MODE_TOPIC: DIAGNOSTIC_ARRAY,
 }
 """The type of each truth topic."""
 
@@ -116,9 +133,9 @@ def truth_to_messages(truth: Truth) -> dict[str, Any]:
     level = WARN if truth.occlusion is Occlusion.TOTAL else OK
     values = {"occlusion": name, "visible_fraction": repr(visible)}
     return {
-        topics.TRUTH_POSITION_TOPIC: point_stamped(stamp, *truth.box.centre),
-        topics.TRUTH_BOX_TOPIC: polygon_stamped(stamp, truth.box.corners),
-        topics.TRUTH_MODE_TOPIC: diagnostic_array(stamp, "ground_truth", level, name, values),
+        TRUTH_POSITION_TOPIC: point_stamped(stamp, *truth.box.centre),
+        TRUTH_BOX_TOPIC: polygon_stamped(stamp, truth.box.corners),
+        TRUTH_MODE_TOPIC: diagnostic_array(stamp, "ground_truth", level, name, values),
     }
 
 
@@ -148,17 +165,17 @@ def truth_from_messages(
 
 
 def _truth_of(stamp_ns: int, by_topic: dict[str, Any]) -> Truth:
-    if topics.TRUTH_BOX_TOPIC not in by_topic:
-        raise InputError(f"the truth at stamp {stamp_ns} ns has no box on {topics.TRUTH_BOX_TOPIC}")
+    if TRUTH_BOX_TOPIC not in by_topic:
+        raise InputError(f"the truth at stamp {stamp_ns} ns has no box on {TRUTH_BOX_TOPIC}")
     box = _box_of(stamp_ns, by_topic)
-    if topics.TRUTH_MODE_TOPIC not in by_topic:
+    if TRUTH_MODE_TOPIC not in by_topic:
         return Truth(stamp_ns, box, Occlusion.NONE)
-    occlusion, visible = _occlusion_of(stamp_ns, by_topic[topics.TRUTH_MODE_TOPIC])
+    occlusion, visible = _occlusion_of(stamp_ns, by_topic[TRUTH_MODE_TOPIC])
     return Truth(stamp_ns, box, occlusion, visible)
 
 
 def _box_of(stamp_ns: int, by_topic: dict[str, Any]) -> Box:
-    points = by_topic[topics.TRUTH_BOX_TOPIC].polygon.points
+    points = by_topic[TRUTH_BOX_TOPIC].polygon.points
     xs, ys = [point.x for point in points], [point.y for point in points]
     if len(points) < 3 or not all(abs(side) <= LARGEST_PX for side in xs + ys):
         raise InputError(
@@ -167,9 +184,9 @@ def _box_of(stamp_ns: int, by_topic: dict[str, Any]) -> Box:
     width, height = max(xs) - min(xs), max(ys) - min(ys)
     if width <= 0 or height <= 0:
         raise InputError(f"the truth box at stamp {stamp_ns} ns has no area")
-    if topics.TRUTH_POSITION_TOPIC not in by_topic:
+    if TRUTH_POSITION_TOPIC not in by_topic:
         return Box(min(xs), min(ys), width, height)
-    point = by_topic[topics.TRUTH_POSITION_TOPIC].point
+    point = by_topic[TRUTH_POSITION_TOPIC].point
     if not (abs(point.x) <= LARGEST_PX and abs(point.y) <= LARGEST_PX):
         raise InputError(f"the truth position at stamp {stamp_ns} ns is not within 2^24 px")
     return Box.around((point.x, point.y), width, height)

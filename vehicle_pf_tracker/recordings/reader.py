@@ -33,8 +33,12 @@ from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.cdr import deserialize, header_stamp_ns
 from vehicle_pf_tracker.recordings.mcap_blocks import Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
-from vehicle_pf_tracker.recordings.read_notices import ReadNotices
-from vehicle_pf_tracker.recordings.topic_table import TopicInfo, choose_image_topic, list_topics
+from vehicle_pf_tracker.recordings.topic_table import (
+    ReadNotices,
+    TopicInfo,
+    choose_image_topic,
+    list_topics,
+)
 
 _UNREADABLE_IN_A_ROW = 10
 """Unreadable images at the beginning after which reading stops: a recording of another encoding

@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Footage in a video file, and from a camera or a stream."""
+"""Footage in a video file, and from a camera or a stream.
+
+Footage by its name: a video file, a folder of images, a camera or a stream.
+
+OpenCV's own complaints, kept off the terminal where an error says the same in one sentence.
+"""
 
 from __future__ import annotations
 
@@ -20,22 +25,42 @@ import math
 import os
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.image.opencv_log import quiet_opencv
 from vehicle_pf_tracker.recordings.footage import (
     LAST_STAMP_NS,
     START_NS,
+    Footage,
     Picture,
     check_fps,
     read_truth_table,
     stamp_of,
 )
+from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
+
+_SILENT = 0
+"""OpenCV's level at which it logs nothing."""
+
+
+@contextmanager
+def quiet_opencv() -> Iterator[None]:
+    """Keep OpenCV from complaining on the terminal."""
+    # OpenCV moved these functions between 4 and 5.
+    logging: Any = getattr(cv2.utils, "logging", cv2)
+    level = logging.getLogLevel()
+    logging.setLogLevel(_SILENT)
+    try:
+        yield
+    finally:
+        logging.setLogLevel(level)
+
 
 # The decoder's own complaints would go to the terminal beside our sentence.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
@@ -204,3 +229,64 @@ def _next_frame(video: cv2.VideoCapture) -> Frame | None:
     if not is_read:
         return None
     return cv2.cvtColor(image, cv2.COLOR_BGR2RGB)  # type: ignore[return-value]
+
+
+_CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
+
+
+def open_footage(source: str | Path, *, fps: float | None = None) -> Footage:
+    """Open a video file, a folder of images, a camera or a stream.
+
+    Parameters
+    ----------
+    source : str or Path
+        Path; index of a camera, as ``0``; or URL, as ``rtsp://...`` or ``https://...``.
+    fps : float or None
+        Frame rate of a folder or a video, 1/s; None takes what it states.
+
+    Raises
+    ------
+    InputError
+        If there is no such source, or it is a bag.
+    """
+    text = str(source)
+    if text.isdecimal() and not Path(text).exists():
+        return Camera(int(text))
+    if "://" in text:
+        camera = Camera(text)
+        return camera if camera.is_endless else VideoFile(text, fps=fps)
+    path = Path(text)
+    refuse_other_bags(path)
+    if not path.exists():
+        raise InputError(f"there is no file or folder {path}")
+    if path.is_dir():
+        return FrameFolder(path, fps)
+    if not path.is_file():
+        raise InputError(f"{path} is not a regular file or a folder")
+    return VideoFile(path, fps=fps)
+
+
+def is_live(footage: Footage) -> bool:
+    """Return whether the images come by themselves: those of a camera or a stream."""
+    return isinstance(footage, Camera)
+
+
+def is_recording(path: Path) -> bool:
+    """Return whether `path` is a rosbag2 folder or an MCAP file, by its name and content."""
+    return path.suffix == ".mcap" or (path / "metadata.yaml").exists()
+
+
+def refuse_other_bags(path: Path) -> None:
+    """Raise for a bag of ROS 1 or of SQLite, with the command that converts it.
+
+    Raises
+    ------
+    InputError
+        If it is one.
+    """
+    kinds = {".bag": "a ROS 1 bag", ".db3": "a bag in SQLite"}
+    if path.suffix in kinds:
+        folder = path.parent if path.suffix == ".db3" else path
+        raise InputError(
+            f"{path} is {kinds[path.suffix]}; convert it to MCAP: {_CONVERSION.format(path=folder)}"
+        )

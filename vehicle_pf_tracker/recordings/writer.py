@@ -27,8 +27,7 @@ from mcap.writer import CompressionType, Writer
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.core.output_folder import OutputFolder
-from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, check_free
+from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, OutputFolder, check_free
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.bag_folder import (

@@ -19,9 +19,8 @@ from __future__ import annotations
 import re
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.lens import Lens
+from vehicle_pf_tracker.road.camera import Lens, Pose
 from vehicle_pf_tracker.road.plane import Pair
-from vehicle_pf_tracker.road.poses import Pose
 
 _LARGEST = 1e7
 """Bound of every number: no image is as wide, and map coordinates (UTM) are below it."""

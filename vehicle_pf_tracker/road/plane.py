@@ -23,9 +23,8 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.road.camera import Lens, Pose
 from vehicle_pf_tracker.road.homography import Homography, fit_homography
-from vehicle_pf_tracker.road.lens import Lens
-from vehicle_pf_tracker.road.poses import Pose
 
 _STEP = 0.01
 """Step in px of the derivative through the lens: far below the distances over which it changes."""

@@ -52,7 +52,7 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
 
         found, words = find_node(name), sys.argv[1:] if args is None else args
         if found is TRAFFIC:
-            from vehicle_pf_tracker.ros.traffic.process import run_traffic  # noqa: PLC0415
+            from vehicle_pf_tracker.ros.traffic.traffic_node import run_traffic  # noqa: PLC0415
 
             return run_traffic(words)
         from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
@@ -73,11 +73,11 @@ def video_source(args: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status; see `vehicle_pf_tracker.ros.video_source.process.run_video_source`.
+        Exit status; see `vehicle_pf_tracker.ros.video_source.source_node.run_video_source`.
     """
 
     def run() -> int:
-        from vehicle_pf_tracker.ros.video_source.process import run_video_source  # noqa: PLC0415
+        from vehicle_pf_tracker.ros.video_source.source_node import run_video_source  # noqa: PLC0415
 
         return run_video_source(sys.argv[1:] if args is None else args)
 

@@ -29,9 +29,8 @@ import yaml
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml, read_yaml_file
 from vehicle_pf_tracker.parameters.table import unknown_name
-from vehicle_pf_tracker.parameters.yaml_text import check_yaml_file, read_yaml_file
 from vehicle_pf_tracker.ros.transport import profile
 from vehicle_pf_tracker.trackers.registry import find_node
 

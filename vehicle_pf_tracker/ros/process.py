@@ -29,7 +29,7 @@ import rclpy
 from rclpy.utilities import remove_ros_args
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.yaml_text import check_yaml_file
+from vehicle_pf_tracker.parameters.files import check_yaml_file
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
 
 

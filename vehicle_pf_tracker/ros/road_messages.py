@@ -25,8 +25,7 @@ from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.lens import FIRST_PIXEL, Lens
-from vehicle_pf_tracker.road.poses import Pose
+from vehicle_pf_tracker.road.camera import FIRST_PIXEL, Lens, Pose
 
 UNKNOWN_ANGLE = math.pi**2 / 3
 """Variance of an angle that nothing is known of, rad²."""

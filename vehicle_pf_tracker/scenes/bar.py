@@ -24,12 +24,10 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.cameras import Camera
-from vehicle_pf_tracker.scenes.compositing import Image, Sprite
+from vehicle_pf_tracker.scenes.compositing import Image, Sprite, stream
 from vehicle_pf_tracker.scenes.paths import Still, Straight
-from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
-from vehicle_pf_tracker.scenes.solids import draw
-from vehicle_pf_tracker.scenes.textures import plain
+from vehicle_pf_tracker.scenes.solids import draw, plain
 from vehicle_pf_tracker.scenes.vehicles import car
 
 WIDTH, HEIGHT = 640, 480

@@ -27,8 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.scenes.compositing import Colour, Image
-from vehicle_pf_tracker.scenes.randomness import stream
+from vehicle_pf_tracker.scenes.compositing import Colour, Image, stream
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,8 +23,8 @@ from typing import Any
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.scenes.bar import BarParameters, bar
-from vehicle_pf_tracker.scenes.drive import DriveParameters
-from vehicle_pf_tracker.scenes.highway import HighwayParameters, highway
+from vehicle_pf_tracker.scenes.compositing import check_seed
+from vehicle_pf_tracker.scenes.drive import DriveParameters, HighwayParameters, highway
 from vehicle_pf_tracker.scenes.light import (
     IlluminationParameters,
     ShadowParameters,
@@ -53,7 +53,6 @@ from vehicle_pf_tracker.scenes.occluded_drives import (
     trees,
     twin,
 )
-from vehicle_pf_tracker.scenes.randomness import check_seed
 from vehicle_pf_tracker.scenes.road import RoadSceneParameters, road
 from vehicle_pf_tracker.scenes.scene import Scene
 

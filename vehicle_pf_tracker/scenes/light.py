@@ -22,13 +22,11 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
+from vehicle_pf_tracker.scenes.compositing import Colour, Sprite, stream
 from vehicle_pf_tracker.scenes.drive import Drive, DriveParameters
 from vehicle_pf_tracker.scenes.paths import Still
-from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
-from vehicle_pf_tracker.scenes.solids import SHADE
-from vehicle_pf_tracker.scenes.textures import value_noise
+from vehicle_pf_tracker.scenes.solids import SHADE, value_noise
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,17 +25,14 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.cameras import DISTURBANCES, MARGIN, OutdoorCamera
-from vehicle_pf_tracker.scenes.compositing import Image
+from vehicle_pf_tracker.scenes.compositing import Image, cells_inside, stream
 from vehicle_pf_tracker.scenes.drive import RADIUS, SIZES, Drive, DriveParameters, target_faces
 from vehicle_pf_tracker.scenes.models import Model
 from vehicle_pf_tracker.scenes.obstacles import house
 from vehicle_pf_tracker.scenes.occluded_drives import bridge_at
 from vehicle_pf_tracker.scenes.paths import Pace, Pose
-from vehicle_pf_tracker.scenes.polygons import cells_inside
-from vehicle_pf_tracker.scenes.randomness import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
-from vehicle_pf_tracker.scenes.solids import ELEVATION
-from vehicle_pf_tracker.scenes.textures import asphalt, grass
+from vehicle_pf_tracker.scenes.solids import ELEVATION, asphalt, grass
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,8 +23,7 @@ from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
 from vehicle_pf_tracker.scenes.paths import Still
 from vehicle_pf_tracker.scenes.roads import PAINT
 from vehicle_pf_tracker.scenes.scene import Actor
-from vehicle_pf_tracker.scenes.solids import SHADE
-from vehicle_pf_tracker.scenes.textures import asphalt, concrete, foliage, value_noise
+from vehicle_pf_tracker.scenes.solids import SHADE, asphalt, concrete, foliage, value_noise
 
 STEEL: Colour = (128, 132, 134)
 BARK: Colour = (74, 62, 50)

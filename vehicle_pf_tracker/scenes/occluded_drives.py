@@ -22,17 +22,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.compositing import Image, overlap
+from vehicle_pf_tracker.scenes.compositing import Image, overlap, stream
 from vehicle_pf_tracker.scenes.drive import LANE, PAINTS, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.models import Model
 from vehicle_pf_tracker.scenes.obstacles import bridge as make_bridge
 from vehicle_pf_tracker.scenes.obstacles import pillar, post, sign, tree
 from vehicle_pf_tracker.scenes.paths import Bend, Pace, Pose
-from vehicle_pf_tracker.scenes.randomness import stream
-from vehicle_pf_tracker.scenes.roads import side_road
+from vehicle_pf_tracker.scenes.roads import convoy, side_road
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.solids import ELEVATION
-from vehicle_pf_tracker.scenes.traffic import convoy
 from vehicle_pf_tracker.scenes.vehicles import car, coach, saloon, suv, van
 
 

@@ -25,12 +25,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.road.lens import Lens
+from vehicle_pf_tracker.road.camera import Lens
 from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.drive import PAINTS
-from vehicle_pf_tracker.scenes.perspective import Drive, RoadCamera, RoadVehicle, looking
-from vehicle_pf_tracker.scenes.randomness import stream
-from vehicle_pf_tracker.scenes.road_ground import RoadMarks, ground_picture
+from vehicle_pf_tracker.scenes.perspective import (
+    Drive,
+    RoadCamera,
+    RoadMarks,
+    RoadVehicle,
+    ground_picture,
+    looking,
+)
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.vehicles import car, saloon, suv
 

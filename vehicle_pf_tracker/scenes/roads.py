@@ -12,21 +12,40 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Roads with their lanes: a dual carriageway, or any number of lanes in country or town."""
+"""Roads with their lanes: a dual carriageway, or any number of lanes in country or town.
+
+Vehicles in lanes: sprites at the lane's scale with their shadows, and convoys of them.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 
-from vehicle_pf_tracker.scenes.compositing import Colour, Image
-from vehicle_pf_tracker.scenes.polygons import cells_inside
-from vehicle_pf_tracker.scenes.solids import ELEVATION
-from vehicle_pf_tracker.scenes.textures import asphalt, concrete, foliage, grass, value_noise
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, cells_inside
+from vehicle_pf_tracker.scenes.paths import Attached, Path, Straight
+from vehicle_pf_tracker.scenes.scene import Actor
+from vehicle_pf_tracker.scenes.solids import (
+    ELEVATION,
+    Face,
+    asphalt,
+    concrete,
+    draw,
+    extent,
+    foliage,
+    grass,
+    mirrored,
+    shadow,
+    value_noise,
+)
+from vehicle_pf_tracker.scenes.vehicles import car, saloon, tinted, van
 
 PAINT: Colour = (214, 214, 206)
 STEEL: Colour = (176, 180, 182)
@@ -226,3 +245,96 @@ def _pave(picture: Image, roads: Sequence[Carriageway], rng: np.random.Generator
         first = rows.start + SHOULDER
         dividers = tuple(round(first + number * road.pitch) for number in range(1, road.lanes))
         mark(picture, (first - 2, rows.stop - SHOULDER), dividers, rng)
+
+
+SHADOW_OPACITY = 0.5
+
+PAINTS: tuple[Colour, ...] = (
+    (222, 222, 220),
+    (168, 172, 176),
+    (44, 46, 50),
+    (96, 100, 104),
+    (158, 34, 36),
+    (40, 74, 58),
+    (186, 172, 140),
+    (206, 208, 212),
+)
+"""Common colours of cars; none is near the target's."""
+
+
+class Vehicle:
+    """The appearance of a vehicle in one lane, with its shadow; drawn when first seen.
+
+    Parameters
+    ----------
+    faces : sequence of Face
+        The solid, heading to the right.
+    lane : Lane
+        The lane it drives in.
+    """
+
+    def __init__(self, faces: Sequence[Face], lane: Lane) -> None:
+        self._faces = faces if lane.rightward else mirrored(faces)
+        self._cast = shadow(self._faces)
+        body, shade, scale = extent(self._faces), extent(self._cast), lane.scale
+        self.size = body.width * scale, body.height * scale
+        self._shade_size = shade.width * scale, shade.height * scale
+        self._shade_offset = (shade.x - body.x) * scale, (shade.y - body.y) * scale
+
+    def box(self, left: float, lane: Lane) -> Box:
+        """Box with its left edge at `left` and its wheels on the lane's ground."""
+        return Box(left, lane.ground - self.size[1], *self.size)
+
+    def on(self, path: Path) -> tuple[Actor, Actor]:
+        """Send it along `path`; returns shadow and body, in the order to paint them."""
+        follow = Attached(path, self._shade_offset, self._shade_size)
+        return (
+            Actor(lambda _: self._shade, follow, hides=False),
+            Actor(lambda _: self._body, path),
+        )
+
+    @cached_property
+    def _body(self) -> Sprite:
+        return draw(self._faces, *self.size)
+
+    @cached_property
+    def _shade(self) -> Sprite:
+        return draw(self._cast, *self._shade_size, SHADOW_OPACITY)
+
+
+Kinds: TypeAlias = tuple[Callable[[Colour], list[Face]], ...]
+"""Kinds of vehicles to choose from; each makes the solid of one colour."""
+
+
+def any_car(
+    lane: Lane, rng: np.random.Generator, kinds: Kinds = (car, saloon, saloon, van)
+) -> Vehicle:
+    """Draw a vehicle of a kind and colour left to chance."""
+    paint = tinted(PAINTS[rng.integers(len(PAINTS))], rng.uniform(0.9, 1.08))
+    return Vehicle(kinds[rng.integers(len(kinds))](paint), lane)
+
+
+def convoy(
+    lane: Lane,
+    speed: float,
+    frame_count: int,
+    width: int,
+    rng: np.random.Generator,
+    gaps: tuple[float, float] = (90, 420),
+    kinds: Kinds = (car, saloon, saloon, van),
+) -> list[Actor]:
+    """Fill `lane` for the whole scene with vehicles that all drive at `speed` (px/frame, > 0).
+
+    Gaps are left to chance between two limits (px). The lane runs across a stage of `width` px.
+    """
+    models = [any_car(lane, rng, kinds) for _ in range(4)]
+    velocity = speed if lane.rightward else -speed
+    actors: list[Actor] = []
+    ahead = rng.uniform(0, 200)
+    while ahead < width + speed * frame_count:
+        model = models[rng.integers(len(models))]
+        # `ahead` counts backwards from the end of the lane that vehicles leave by.
+        left = width - ahead - model.size[0] if lane.rightward else ahead
+        actors += model.on(Straight(model.box(left, lane), (velocity, 0.0)))
+        ahead += model.size[0] + rng.uniform(*gaps)
+    return actors

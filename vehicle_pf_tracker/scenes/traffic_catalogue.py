@@ -31,16 +31,13 @@ from vehicle_pf_tracker.parameters.table import (
     specs,
 )
 from vehicle_pf_tracker.scenes.cameras import Camera
-from vehicle_pf_tracker.scenes.compositing import Image
+from vehicle_pf_tracker.scenes.compositing import Image, check_seed, stream
+from vehicle_pf_tracker.scenes.flow import draw_lorries, drive
 from vehicle_pf_tracker.scenes.obstacles import bridge
-from vehicle_pf_tracker.scenes.randomness import check_seed, stream
-from vehicle_pf_tracker.scenes.roads import Carriageway, Lane, countryside
+from vehicle_pf_tracker.scenes.roads import PAINTS, Carriageway, Lane, Vehicle, any_car, countryside
 from vehicle_pf_tracker.scenes.scene import Actor
-from vehicle_pf_tracker.scenes.traffic import PAINTS, Vehicle, any_car
-from vehicle_pf_tracker.scenes.traffic_drivers import draw_lorries, drive
 from vehicle_pf_tracker.scenes.traffic_perspective import perspective_scene
-from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene
-from vehicle_pf_tracker.scenes.traffic_settings import TrafficSceneParameters
+from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, TrafficSceneParameters
 from vehicle_pf_tracker.scenes.vehicles import lorry
 
 WIDTH, HEIGHT = 640, 360

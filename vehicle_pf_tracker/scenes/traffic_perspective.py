@@ -26,17 +26,21 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.lens import Lens
+from vehicle_pf_tracker.road.camera import Lens
 from vehicle_pf_tracker.scenes.cameras import Camera
-from vehicle_pf_tracker.scenes.perspective import RoadCamera, RoadVehicle, looking
-from vehicle_pf_tracker.scenes.randomness import stream
-from vehicle_pf_tracker.scenes.road_ground import RoadMarks, ground_picture
+from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.flow import draw_lorries, drive
+from vehicle_pf_tracker.scenes.perspective import (
+    RoadCamera,
+    RoadMarks,
+    RoadVehicle,
+    ground_picture,
+    looking,
+)
+from vehicle_pf_tracker.scenes.roads import PAINTS
 from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.solids import Face
-from vehicle_pf_tracker.scenes.traffic import PAINTS
-from vehicle_pf_tracker.scenes.traffic_drivers import draw_lorries, drive
-from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene
-from vehicle_pf_tracker.scenes.traffic_settings import TrafficSceneParameters
+from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, TrafficSceneParameters
 from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, tinted, van
 
 WIDTH, HEIGHT = 640, 360

@@ -12,10 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Common frame of all trackers, around the step in which they differ."""
+"""Common frame of all trackers, around the step in which they differ.
+
+Target as it was in the first frame.
+"""
 
 from __future__ import annotations
 
+import math
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -30,13 +34,56 @@ from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
+from vehicle_pf_tracker.image.colour import Histogram, joint_histogram
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
 from vehicle_pf_tracker.image.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.parameters.table import specs, to_mapping
-from vehicle_pf_tracker.trackers.contract import CommonParameters, ParticleParameters
+from vehicle_pf_tracker.trackers.contract import (
+    CommonParameters,
+    ParticleParameters,
+    WindowParameters,
+)
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
-from vehicle_pf_tracker.trackers.target import Target
+
+_MARGIN = 64
+"""Least margin kept around the target, in px, so that a wider window can still be measured: of
+small targets, windows of several times their size."""
+
+
+class Target:
+    """Patch of the first frame around the target.
+
+    References can be rebuilt from it when window, bins or features change while tracking, without
+    learning whatever hides the target by then.
+
+    Parameters
+    ----------
+    frame : (H, W, 3) array
+        First frame; the part that is kept is copied.
+    box : Box
+        Box of the target in it.
+    """
+
+    def __init__(self, frame: Frame, box: Box) -> None:
+        width, height = frame_size(frame)
+        margin = max(_MARGIN, math.ceil(max(box.width, box.height)))
+        left = max(math.floor(box.x) - margin, 0)
+        top = max(math.floor(box.y) - margin, 0)
+        right = min(math.ceil(box.x + box.width) + margin, width)
+        bottom = min(math.ceil(box.y + box.height) + margin, height)
+        self.box = box
+        self.patch: Frame = frame[top:bottom, left:right].copy()
+        self.centre = box.centre[0] - left, box.centre[1] - top
+
+    def window(self, size: WindowParameters) -> Window:
+        """Return the window of the given size; where that is 0, of the target's own."""
+        return Window.of_size(size.width or self.box.width, size.height or self.box.height)
+
+    def joint_histogram(self, window: Window, bits: int) -> Histogram:
+        """Return the joint RGB histogram of the target in the first frame."""
+        return joint_histogram(self.patch, self.centre, window, bits)
+
 
 ParametersT = TypeVar("ParametersT", bound=CommonParameters)
 ParticleParametersT = TypeVar("ParticleParametersT", bound=ParticleParameters)

@@ -20,11 +20,11 @@ import json
 from drive import box_of, frame_of, stamp_of
 
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.sources import describe
-from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.tracking import run_cell
-from vehicle_pf_tracker.evaluation.processes import Turn
+from vehicle_pf_tracker.offline.processes import Turn
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
 from vehicle_pf_tracker.recordings.writer import RecordingWriter

@@ -26,9 +26,8 @@ import pytest
 from grid_samples import here, make_plan, results, silent, system, write_recordings
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.grid.cluster import on_cluster, run_checked
-from vehicle_pf_tracker.evaluation.grid.running import complete
-from vehicle_pf_tracker.evaluation.grid.systems import BaselineSystem
+from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem
+from vehicle_pf_tracker.evaluation.grid.running import complete, on_cluster, run_checked
 
 distributed = pytest.importorskip("distributed")
 

@@ -30,9 +30,8 @@ from grid_samples import (
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.grid import sources
-from vehicle_pf_tracker.evaluation.grid.cells import Start
+from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, Start
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
-from vehicle_pf_tracker.evaluation.grid.systems import BaselineSystem
 from vehicle_pf_tracker.recordings.reader import Recording
 
 

@@ -20,13 +20,17 @@ from grid_samples import HIDDEN, here, make_plan, silent, system, write_recordin
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.estimates import WAITING, EstimateRow, read_estimates
-from vehicle_pf_tracker.evaluation.failures import follow_restarted
-from vehicle_pf_tracker.evaluation.grid.cells import Start, shifted_starts, start_frames
+from vehicle_pf_tracker.evaluation.grid.cells import (
+    BaselineSystem,
+    Start,
+    shifted_starts,
+    start_frames,
+)
 from vehicle_pf_tracker.evaluation.grid.plan import Robustness
 from vehicle_pf_tracker.evaluation.grid.running import complete
-from vehicle_pf_tracker.evaluation.grid.systems import BaselineSystem
-from vehicle_pf_tracker.evaluation.grid.timing import WARM_UP, time_systems
+from vehicle_pf_tracker.evaluation.grid.tracking import WARM_UP, time_systems
+from vehicle_pf_tracker.evaluation.occlusions import follow_restarted
+from vehicle_pf_tracker.offline.estimates import WAITING, EstimateRow, read_estimates
 
 TRUE = Box(100, 50, 20, 10)
 

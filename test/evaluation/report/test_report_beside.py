@@ -20,10 +20,10 @@ import shutil
 import pytest
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
 from vehicle_pf_tracker.evaluation.report.page_tables import speed_note, speed_table
 from vehicle_pf_tracker.evaluation.report.robustness import robustness_sections
-from vehicle_pf_tracker.evaluation.run_folder import seal
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json
+from vehicle_pf_tracker.offline.run_folder import seal
 
 ORDER = ("pf", "ms")
 

@@ -25,8 +25,7 @@ from rosbags.rosbag2 import Reader
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
-from vehicle_pf_tracker.evaluation.report.exports import topic_name
-from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
+from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, topic_name
 from vehicle_pf_tracker.evaluation.report.video import frame_rate
 
 OPTIONS = ReportOptions(images=False, video=True, recordings=True, trajectories=True)

@@ -27,16 +27,18 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.figure_data import stretches
-from vehicle_pf_tracker.evaluation.report.figures import LEAST_ERROR, error_panel
+from vehicle_pf_tracker.evaluation.report.figures import LEAST_ERROR, PAGE, SvgMaker, error_panel
 from vehicle_pf_tracker.evaluation.report.filmstrip import (
+    Crop,
+    Mark,
     Shot,
+    colour_of,
+    draw_overlay,
     longest_occlusions,
     plan_strips,
     take_stills,
 )
-from vehicle_pf_tracker.evaluation.report.overlay import Crop, Mark, colour_of, draw_overlay
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
-from vehicle_pf_tracker.evaluation.report.svg import PAGE, SvgMaker
 
 BOX = Box(100, 60, 20, 10)
 

@@ -17,7 +17,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.evaluation.statistics.intervals import Summary, summarise
+from vehicle_pf_tracker.evaluation.statistics import Summary, summarise
 
 
 def test_mean_and_spread_by_hand():

@@ -17,7 +17,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.evaluation.statistics.paired import (
+from vehicle_pf_tracker.evaluation.statistics import (
     PairedTest,
     RunKey,
     compare_pairs,

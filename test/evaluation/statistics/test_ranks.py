@@ -15,7 +15,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.evaluation.statistics.ranks import rank_systems
+from vehicle_pf_tracker.evaluation.statistics import rank_systems
 
 
 def table(**systems):

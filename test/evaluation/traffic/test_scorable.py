@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.evaluation.traffic.scorable import matches, overlaps, scorable
+from vehicle_pf_tracker.evaluation.traffic.identities import matches, overlaps, scorable
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
 

@@ -24,9 +24,9 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.baselines import traffic_client, traffic_worker
 from vehicle_pf_tracker.evaluation.baselines.client import DEFAULT, VARIABLE
-from vehicle_pf_tracker.evaluation.traffic import client, worker
-from vehicle_pf_tracker.evaluation.traffic.client import TRAFFIC_BASELINES, TrafficWorker
+from vehicle_pf_tracker.evaluation.baselines.traffic_client import TRAFFIC_BASELINES, TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
 PYTHON = Path(sys.executable)
@@ -135,7 +135,7 @@ DIES = 'import sys; print("{}", flush=True); input(); sys.exit("out of memory")'
 def start(monkeypatch, tmp_path, text):
     script = tmp_path / "worker.py"
     script.write_text(text)
-    monkeypatch.setattr(client, "_WORKER", script)
+    monkeypatch.setattr(traffic_client, "_WORKER", script)
     return TrafficWorker(PYTHON)
 
 
@@ -170,7 +170,7 @@ def test_an_environment_without_the_libraries_is_told():
 
 def test_the_worker_needs_nothing_of_this_package():
     named: list[str] = []
-    for node in ast.walk(ast.parse(Path(worker.__file__).read_text())):
+    for node in ast.walk(ast.parse(Path(traffic_worker.__file__).read_text())):
         if isinstance(node, ast.Import):
             named += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):

@@ -26,13 +26,18 @@ from vehicle_pf_tracker.evaluation.report.traffic import (
     traffic_page,
     traffic_sections,
 )
-from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION, cases_of, compare, follow
+from vehicle_pf_tracker.evaluation.traffic.comparison import (
+    MOTION,
+    PERTURBATIONS,
+    cases_of,
+    compare,
+    follow,
+)
 from vehicle_pf_tracker.evaluation.traffic.comparison_report import (
     main_table,
     perturbed_table,
     write_traffic_report,
 )
-from vehicle_pf_tracker.evaluation.traffic.perturbation import PERTURBATIONS
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene

@@ -19,8 +19,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from vehicle_pf_tracker.evaluation.traffic.comparison import PERTURBATIONS
 from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
-from vehicle_pf_tracker.evaluation.traffic.perturbation import PERTURBATIONS
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
 FRAMES = 100

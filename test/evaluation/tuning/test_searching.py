@@ -18,9 +18,8 @@ pytest.importorskip("optuna", reason="the extra [tune] is not installed")
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem
+from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.tracking import CellResult
-from vehicle_pf_tracker.evaluation.processes import Turn
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.tuning.search_space import search_space
 from vehicle_pf_tracker.evaluation.tuning.searching import (
@@ -32,6 +31,7 @@ from vehicle_pf_tracker.evaluation.tuning.searching import (
     search,
     to_csv,
 )
+from vehicle_pf_tracker.offline.processes import Turn
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 

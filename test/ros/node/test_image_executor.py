@@ -26,8 +26,8 @@ import rclpy
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger
 
-from vehicle_pf_tracker.ros.node import image_executor
-from vehicle_pf_tracker.ros.node.image_executor import ImageExecutor
+from vehicle_pf_tracker.ros.node import process
+from vehicle_pf_tracker.ros.node.process import ImageExecutor
 
 pytestmark = pytest.mark.ros
 
@@ -94,7 +94,7 @@ def served(bench):
 def clock(monkeypatch):
     """The executor's clock, which stands still unless it is set."""
     times = [0.0]
-    monkeypatch.setattr(image_executor.time, "monotonic", lambda: times[0])
+    monkeypatch.setattr(process.time, "monotonic", lambda: times[0])
     return times
 
 
@@ -116,7 +116,7 @@ def test_messages_that_never_pause_starve_no_service(served):
 
 def test_a_look_at_everything_ends_once_nothing_is_ready(served, clock):
     served.hear_one()
-    clock[0] += image_executor.LOOK_EVERY
+    clock[0] += process.LOOK_EVERY
     assert served.waits_for_all()
     assert not served.waits_for_all()
 

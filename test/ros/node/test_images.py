@@ -26,7 +26,7 @@ from sensor_msgs.msg import Image
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.messages import image_message
-from vehicle_pf_tracker.ros.node.images import read_serialized
+from vehicle_pf_tracker.ros.node.image_input import read_serialized
 
 pytestmark = pytest.mark.ros
 

@@ -33,8 +33,8 @@ from tracker_rig import Rig, on_target
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.ros import detections
-from vehicle_pf_tracker.ros.node.located_outputs import LocatedOutputs
+from vehicle_pf_tracker.ros import messages
+from vehicle_pf_tracker.ros.node.outputs import LocatedOutputs
 from vehicle_pf_tracker.ros.node.target_messages import box_of_detection
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.localisation import Localisation
@@ -91,8 +91,8 @@ class Detection2D:
 
 @pytest.fixture
 def stand_in(monkeypatch):
-    monkeypatch.setattr(detections, "Detection2D", Detection2D)
-    monkeypatch.setattr(detections, "ObjectHypothesisWithPose", ObjectHypothesisWithPose)
+    monkeypatch.setattr(messages, "Detection2D", Detection2D)
+    monkeypatch.setattr(messages, "ObjectHypothesisWithPose", ObjectHypothesisWithPose)
 
 
 def detection(x=40.0, y=60.0, width=24.0, height=18.0, *, frame_id="", theta=0.0):
@@ -103,7 +103,7 @@ def detection(x=40.0, y=60.0, width=24.0, height=18.0, *, frame_id="", theta=0.0
 def test_an_estimate_becomes_a_detection(stand_in):
     header = Header(frame_id="camera")
     one = estimate((100.0, 80.0), size=(20.0, 10.0), confidence=0.75)
-    message = detections.detection_message(header, one, "3")
+    message = messages.detection_message(header, one, "3")
     assert (message.header, message.id) == (header, "3")
     assert message.bbox == BoundingBox2D(Pose2D(Point2D(100.0, 80.0)), 20.0, 10.0)
     (result,) = message.results
@@ -159,7 +159,7 @@ def test_every_start_has_an_id_of_its_own(stand_in):
 
 
 def test_without_the_package_there_are_no_such_topics(bench, monkeypatch):
-    monkeypatch.setattr(detections, "Detection2D", None)
+    monkeypatch.setattr(messages, "Detection2D", None)
     rig = Rig(bench, on_target())
     names = {name for name, _ in rig.node.get_topic_names_and_types()}
     assert not {name for name in names if "detection" in name}

@@ -27,7 +27,7 @@ from tracker_rig import Rig, header, on_target, road
 
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node import diagnostics
-from vehicle_pf_tracker.ros.node.health import Health
+from vehicle_pf_tracker.ros.node.diagnostics import Health
 
 pytestmark = pytest.mark.ros
 

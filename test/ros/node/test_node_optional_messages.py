@@ -24,7 +24,6 @@ from geometry_msgs.msg import TransformStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from tracker_rig import HEIGHT, TARGET, WIDTH, Rig, overrides, road, values_of
 
-from vehicle_pf_tracker.ros import detections
 from vehicle_pf_tracker.ros.node import camera_inputs
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -35,7 +34,7 @@ NODE = "/apf_tracker"
 def test_a_detection_starts_a_node_and_comes_back(bench, messages, monkeypatch):
     vision = messages("vision_msgs")
     for name in ("Detection2D", "ObjectHypothesisWithPose"):
-        monkeypatch.setattr(detections, name, getattr(vision, name))
+        monkeypatch.setattr(messages, name, getattr(vision, name))
     rig = Rig(bench, overrides())
     found = bench.collect(vision.Detection2D, f"{NODE}/detection")
     target = bench.publisher(vision.Detection2D, f"{NODE}/set_detection")

@@ -27,7 +27,7 @@ from sensor_msgs.msg import Image, PointCloud2
 from tracker_rig import HEIGHT, PERIOD_NS, SPEED, WIDTH, Rig, on_target, road, values_of
 
 from vehicle_pf_tracker.ros.node import outputs
-from vehicle_pf_tracker.ros.node.overlay import Overlay
+from vehicle_pf_tracker.ros.node.outputs import Overlay
 
 pytestmark = pytest.mark.ros
 

@@ -48,12 +48,12 @@ from tracker_rig import (
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.offline import OfflineTracker, with_target
+from vehicle_pf_tracker.offline.driver import OfflineTracker, with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.road.lens import Lens
-from vehicle_pf_tracker.ros.node import camera_inputs, located_outputs
-from vehicle_pf_tracker.ros.replay.answers import Answers
+from vehicle_pf_tracker.road.camera import Lens
+from vehicle_pf_tracker.ros.node import camera_inputs, outputs
+from vehicle_pf_tracker.ros.replay.tracker_link import Answers
 from vehicle_pf_tracker.ros.road_messages import lens_of_info
 from vehicle_pf_tracker.trackers.registry import find_variant
 
@@ -135,7 +135,7 @@ def test_covariance_grows_while_the_vehicle_is_hidden(bench):
 def test_nothing_is_computed_without_subscribers(bench, monkeypatch):
     rig = Rig(bench, on_target())
     for name in ("pose_message", "place_message", "road_velocity_message"):
-        monkeypatch.setattr(located_outputs, name, lambda *_: pytest.fail("nobody looks"))
+        monkeypatch.setattr(outputs, name, lambda *_: pytest.fail("nobody looks"))
     assert rig.play(road(3)) == ["TRACKING"] * 3
 
 

@@ -16,9 +16,9 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.ros.replay.answers import Answers
-from vehicle_pf_tracker.ros.replay.pacing import Pace
+from vehicle_pf_tracker.ros.replay.controls import Pace
 from vehicle_pf_tracker.ros.replay.starting_target import nearest_frame
+from vehicle_pf_tracker.ros.replay.tracker_link import Answers
 
 
 class Watch:

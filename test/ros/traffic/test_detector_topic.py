@@ -34,7 +34,6 @@ from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, hear_notices, lanes
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
-from vehicle_pf_tracker.ros import detections
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.ros.traffic import stream
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
@@ -57,7 +56,7 @@ MOST = 40
 def vision(messages, monkeypatch):
     module = messages("vision_msgs")
     for name in ("Detection2D", "Detection2DArray", "ObjectHypothesisWithPose"):
-        monkeypatch.setattr(detections, name, getattr(module, name))
+        monkeypatch.setattr(messages, name, getattr(module, name))
     return module
 
 

@@ -24,7 +24,7 @@ from tracker_rig import QUEUE, header
 
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.traffic import stream
-from vehicle_pf_tracker.ros.traffic.notices import Notices
+from vehicle_pf_tracker.ros.traffic.stream import Notices
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
 
 WIDTH, HEIGHT = 160, 120

@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.small_grey import SmallGrey
+from vehicle_pf_tracker.image.camera_motion import SmallGrey
 from vehicle_pf_tracker.trackers.fusion.foreground import Foreground, _median
 
 SIZE = np.array([24.0, 14.0])

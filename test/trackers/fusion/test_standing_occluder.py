@@ -18,8 +18,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
-from vehicle_pf_tracker.trackers.fusion.standing_occluder import made_whole
+from vehicle_pf_tracker.trackers.fusion.perspective import Sightings, made_whole
 
 COUNT = 30
 AGES = np.arange(COUNT)[::-1].astype(float)

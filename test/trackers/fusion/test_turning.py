@@ -20,8 +20,8 @@ import cv2
 import numpy as np
 import pytest
 
+from vehicle_pf_tracker.image.camera_motion import SmallGrey
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.small_grey import SmallGrey
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting
 from vehicle_pf_tracker.trackers.fusion.turning import TurningBranch

@@ -26,8 +26,8 @@ from vehicle_pf_tracker.trackers.papers.adaptive import AdaptiveParameters, Adap
 from vehicle_pf_tracker.trackers.papers.conventional import (
     ConventionalParameters,
     ConventionalTracker,
+    WeighedParticles,
 )
-from vehicle_pf_tracker.trackers.papers.repeated_resampling import WeighedParticles
 
 
 def conventional(**values):

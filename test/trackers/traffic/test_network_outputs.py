@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.traffic import class_names
+from vehicle_pf_tracker.trackers.traffic import network_outputs
 from vehicle_pf_tracker.trackers.traffic.network_outputs import class_count, decode, form_of
 
 
@@ -106,7 +106,7 @@ def test_numbers_without_meaning_are_passed_on_as_such():
 
 
 def test_coco_from_one_has_its_gaps():
-    names = class_names.coco_from_one()
+    names = network_outputs.coco_from_one()
     assert [names[number] for number in (1, 3, 4, 6, 8, 90)] == [
         "person", "car", "motorcycle", "bus", "truck", "toothbrush",
     ]  # fmt: skip
@@ -116,9 +116,9 @@ def test_coco_from_one_has_its_gaps():
 
 @pytest.mark.parametrize("text", ["", "names", "__import__('os')", "{0: ", "[" * 5000, "{'a': 1}"])
 def test_odd_metadata_gives_no_names(text):
-    assert class_names.parse_metadata(text) == {}
+    assert network_outputs.parse_metadata(text) == {}
 
 
 def test_names_of_exporters_are_read():
-    assert class_names.parse_metadata("{0: 'car', 1: 'bus'}") == {0: "car", 1: "bus"}
-    assert class_names.parse_metadata("['car', 'bus']") == {0: "car", 1: "bus"}
+    assert network_outputs.parse_metadata("{0: 'car', 1: 'bus'}") == {0: "car", 1: "bus"}
+    assert network_outputs.parse_metadata("['car', 'bus']") == {0: "car", 1: "bus"}

@@ -17,9 +17,8 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.colours import BINS
-from vehicle_pf_tracker.trackers.traffic.returning import former, resume
-from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.association import former, resume
+from vehicle_pf_tracker.trackers.traffic.track import BINS, Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
 
 RED, BLUE = np.eye(BINS)[:2]

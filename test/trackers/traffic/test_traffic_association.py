@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.trackers.traffic.association import assign, edge_costs
-from vehicle_pf_tracker.trackers.traffic.overlaps import (
+from vehicle_pf_tracker.trackers.traffic.detections import (
     areas,
     clipped,
     inside_image,

@@ -18,16 +18,14 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.road.lens import Lens
+from vehicle_pf_tracker.road.camera import Lens, Pose
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.road.poses import Pose
 from vehicle_pf_tracker.scenes.perspective import looking
 from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.horizon import calibrated_row
-from vehicle_pf_tracker.trackers.traffic.occlusion import nearest_first
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.track import Track, nearest_first
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
 

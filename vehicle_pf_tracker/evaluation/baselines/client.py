@@ -25,12 +25,12 @@ from typing import NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.evaluation.baselines.worker_process import WorkerProcess
-from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 
 VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 """Environment variable that names the interpreter."""

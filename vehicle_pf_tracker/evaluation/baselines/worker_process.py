@@ -27,7 +27,7 @@ from typing import Any
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.processes import wait_or_kill
+from vehicle_pf_tracker.offline.processes import wait_or_kill
 
 
 class WorkerProcess:

@@ -17,20 +17,170 @@
 Shifted starts and other first frames are those of the OTB benchmark (Wu, Lim and Yang 2013, "Online
 object tracking: a benchmark", spatial and temporal robustness evaluation); failures and re-starts
 are those of VOT, see `evaluation.failures`.
+
+Systems under comparison: a variant with its parameters, or a baseline.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, cell_folder, safe_name
-from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem
-from vehicle_pf_tracker.evaluation.identity import result_key, variant_modules
-from vehicle_pf_tracker.trackers.registry import find_variant
+from vehicle_pf_tracker.evaluation.result_store import result_key, variant_modules
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
+from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs
+from vehicle_pf_tracker.trackers.contract import ParticleParameters
+from vehicle_pf_tracker.trackers.registry import Variant, find_variant
+
+BASELINE = "baseline:"
+Settings = tuple[tuple[str, Value], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class VariantSystem:
+    """A variant with its parameters.
+
+    Attributes
+    ----------
+    label : str
+        Name of the system in all tables.
+    variant : str
+        Name of the variant in the registry.
+    parameter_set : str
+        Label of its parameter set; empty for the defaults.
+    overrides : tuple of (str, Value)
+        Parameters set on the command line.
+    parameters : tuple of (str, Value)
+        All parameters in effect but the seed and the target.
+    """
+
+    label: str
+    variant: str
+    parameter_set: str
+    overrides: Settings
+    parameters: Settings
+
+    @property
+    def is_deterministic(self) -> bool:
+        """True if the seed has no effect: a variant without particles is deterministic."""
+        return not issubclass(self._entry.parameters, ParticleParameters)
+
+    @property
+    def _entry(self) -> Variant:
+        return find_variant(self.variant)
+
+    def tracker_parameters(self, seed: int) -> Any:
+        """Make the variant's parameters."""
+        kind = self._entry.parameters
+        return from_mapping(kind, {**self._own(kind), "seed": seed})
+
+    def changed(self, name: str, values: Mapping[str, Value]) -> VariantSystem:
+        """Return the same variant with `values`, as the parameter set `name`.
+
+        Raises
+        ------
+        InputError
+            If a value does not fit, alone or together with others.
+        """
+        kinds = {**specs(self._entry.parameters), **specs(SessionParameters)}
+        checked = {key: kinds[key].check(value) for key, value in values.items()}
+        changed = VariantSystem(
+            f"{self.variant}@{name}", self.variant, name, tuple(sorted(checked.items())),
+            tuple({**dict(self.parameters), **checked}.items()),
+        )  # fmt: skip
+        changed.tracker_parameters(0)
+        return changed
+
+    def session_parameters(self) -> SessionParameters:
+        """Make the parameters of the session."""
+        return from_mapping(SessionParameters, self._own(SessionParameters))
+
+    def _own(self, kind: type[Any]) -> dict[str, Value]:
+        table = specs(kind)
+        return {name: value for name, value in self.parameters if name in table}
+
+    def facts(self, seed: int) -> dict[str, Any]:
+        """Return what determines its runs, besides the code."""
+        return {"variant": self.variant, "parameters": {**dict(self.parameters), "seed": seed}}
+
+    def to_json(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        return {
+            "label": self.label,
+            "variant": self.variant,
+            "parameter_set": self.parameter_set,
+            "overrides": dict(self.overrides),
+            "parameters": dict(self.parameters),
+            "deterministic": self.is_deterministic,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class BaselineSystem:
+    """One of OpenCV's trackers, in an environment of its own.
+
+    A new process repeats a run exactly, so that one run of it is enough.
+
+    Attributes
+    ----------
+    baseline : str
+        Name of the baseline without ``baseline:``.
+    python : str
+        The interpreter that runs it; empty looks where `baseline_python` says.
+    models : tuple of (str, str)
+        Model files by name.
+    build : str
+        Version of the interpreter's OpenCV, so that results of another one are not reused.
+    """
+
+    baseline: str
+    python: str = ""
+    models: tuple[tuple[str, str], ...] = ()
+    build: str = ""
+
+    @property
+    def label(self) -> str:
+        """Name of the system in all tables."""
+        return f"{BASELINE}{self.baseline}"
+
+    @property
+    def is_deterministic(self) -> bool:
+        """True: the seed has no effect."""
+        return True
+
+    def facts(self, seed: int) -> dict[str, Any]:
+        """Return what determines its runs, besides the code."""
+        return {"baseline": self.baseline, "models": self.models, "build": self.build, "seed": seed}
+
+    def model_files(self) -> Mapping[str, Path]:
+        """Return its model files."""
+        return {name: Path(path) for name, path in self.models}
+
+    def to_json(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        models: dict[str, Value] = dict(self.models)
+        return {
+            "label": self.label,
+            "baseline": self.baseline,
+            "parameter_set": "",
+            "overrides": models,
+            "parameters": {**models, "opencv": self.build},
+            "deterministic": True,
+        }
+
+
+System = VariantSystem | BaselineSystem
+
+
+def seeds_of(system: System, seeds: Sequence[int]) -> Sequence[int]:
+    """Return the seeds that `system` runs with: the first alone where the seed has no effect."""
+    return seeds[:1] if system.is_deterministic else seeds
+
 
 SHIFTED, FRAMES, RESTARTS = "shifted_starts", "start_frames", "restarts"
 _SHIFT = 0.1

@@ -21,9 +21,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.association import MAX_DIFF
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     FORMAT,
     PLAN,
@@ -37,12 +37,14 @@ from vehicle_pf_tracker.evaluation.grid.cells import (
     USUAL,
     GridCell,
     Start,
+    System,
+    VariantSystem,
+    seeds_of,
     shifted_starts,
     start_frames,
 )
-from vehicle_pf_tracker.evaluation.grid.systems import System, VariantSystem, seeds_of
-from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json
-from vehicle_pf_tracker.evaluation.run_folder import versions
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json
+from vehicle_pf_tracker.offline.run_folder import versions
 
 
 @dataclass(frozen=True, slots=True)

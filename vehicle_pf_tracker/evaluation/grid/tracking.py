@@ -12,32 +12,57 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Run a cell of the grid."""
+"""Run a cell of the grid.
+
+Measure the speed of all systems, in a serial pass of its own.
+
+Each frame is given to all systems before the next one is, so that whatever slows the machine down
+for a while slows all of them alike, and nothing of ours runs beside. What counts is the processor
+time of the thread that tracks; decoding and the way to a baseline's process are left out.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import itertools
+import os
+import platform
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, Protocol
 
 import cv2
+import numpy as np
 
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.baselines.client import Baseline, baseline_rows
-from vehicle_pf_tracker.evaluation.estimates import REJECTED, WAITING, EstimateRow
-from vehicle_pf_tracker.evaluation.failures import follow_restarted
-from vehicle_pf_tracker.evaluation.grid.cells import RESTARTS, GridCell
+from vehicle_pf_tracker.evaluation.evaluation_folder import TIMINGS, Source
+from vehicle_pf_tracker.evaluation.grid.cells import (
+    RESTARTS,
+    BaselineSystem,
+    GridCell,
+    System,
+    VariantSystem,
+)
+from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
-from vehicle_pf_tracker.evaluation.grid.systems import BaselineSystem, VariantSystem
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
-from vehicle_pf_tracker.evaluation.offline import OfflineTracker
-from vehicle_pf_tracker.evaluation.run_folder import RunInfo, describe_run, versions
+from vehicle_pf_tracker.evaluation.occlusions import follow_restarted
 from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.offline.driver import OfflineTracker, with_target
+from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.offline.output_files import write_json
+from vehicle_pf_tracker.offline.processes import OnProgress, Progress
+from vehicle_pf_tracker.offline.run_folder import RunInfo, describe_run, versions
 from vehicle_pf_tracker.trackers.registry import find_variant
+from vehicle_pf_tracker.trackers.session import Session
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,3 +188,123 @@ class _BaselineFollower:
             "versions": {**versions(), "opencv": self._opencv},
             "notices": notices,
         }
+
+
+WARM_UP = 2
+"""First steps left out: the start, and a step that still finds caches cold."""
+
+
+def time_systems(plan: Plan, folder: Path, frames: int, on_progress: OnProgress) -> None:
+    """Measure every step of the first seed's run, and write `timings.json`.
+
+    Parameters
+    ----------
+    plan : Plan
+        The recordings and systems to measure.
+    folder : Path
+        Folder of the evaluation.
+    frames : int
+        Largest number of frames of each recording, from the first true box on.
+    on_progress : callable
+        Called before every recording.
+
+    Raises
+    ------
+    InputError
+        If a recording cannot be read, or the file not be written.
+    """
+    cv2.setNumThreads(1)
+    cells: list[dict[str, Any]] = []
+    for done, source in enumerate(plan.recordings):
+        on_progress(Progress(done, len(plan.recordings), (source.name,)))
+        times = _time_on(source, plan, frames)
+        cells += [_cell(source, system, times.get(system.label, [])) for system in plan.systems]
+    write_json(
+        folder / TIMINGS,
+        {
+            "clock": "processor time of the tracking thread, ms per step",
+            "frames": frames,
+            "cells": cells,
+            "versions": versions(),
+            "processor": [platform.processor() or platform.machine(), os.cpu_count()],
+        },
+    )
+
+
+def _cell(source: Source, system: System, steps: Sequence[float]) -> dict[str, Any]:
+    kept = steps[WARM_UP:]
+    median, late = map(float, np.quantile(kept, (0.5, 0.95))) if kept else (None, None)
+    return {
+        "recording": source.name,
+        "system": system.label,
+        "steps": len(kept),
+        "step_ms_p50": median,
+        "step_ms_p95": late,
+    }
+
+
+def _time_on(source: Source, plan: Plan, count: int) -> dict[str, list[float]]:
+    """Return the times (ms) of the steps of all systems that can run."""
+    recording = footage(source)
+    stamped = _frames(recording, plan.max_diff)
+    first = next(stamped)
+    box = recording.truth[0].box
+    with ExitStack() as stack:
+        running: dict[str, _Timed] = {}
+        for system in plan.systems:
+            with suppress(InputError):  # the grid says why it cannot run
+                running[system.label] = _start(system, plan.seeds[0], box, first, stack)
+        times: dict[str, list[float]] = {label: [] for label in running}
+        for shown in itertools.islice(stamped, count - 1):
+            for label, timed in running.items():
+                with suppress(InputError):  # a frame that is refused takes no time
+                    times[label].append(1e3 * timed.step(*shown))
+    return times
+
+
+def _frames(recording: Footage, max_diff: float) -> Iterator[tuple[int, Frame]]:
+    """Give the frames that can be read, from that of the first truth on."""
+    limit = max_diff_ns(max_diff)
+    first = recording.truth[0].stamp_ns
+    for stamp, frame in recording.frames():
+        if frame is not None and stamp >= first - limit:
+            yield stamp, frame
+
+
+class _Timed(Protocol):
+    def step(self, stamp_ns: int, frame: Frame) -> float:
+        """Return the processor time of the step in s."""
+        ...
+
+
+class _TimedVariant:
+    def __init__(self, system: VariantSystem, seed: int, box: Box) -> None:
+        settings = with_target(system.session_parameters(), box)
+        variant = find_variant(system.variant)
+        self._session = Session(variant, system.tracker_parameters(seed), settings)
+
+    def step(self, stamp_ns: int, frame: Frame) -> float:
+        began = time.thread_time()
+        self._session.feed(frame, stamp_ns)
+        return time.thread_time() - began
+
+
+class _TimedBaseline:
+    def __init__(self, baseline: Baseline) -> None:
+        self._baseline = baseline
+
+    def step(self, stamp_ns: int, frame: Frame) -> float:
+        return self._baseline.step(frame).seconds
+
+
+def _start(
+    system: System, seed: int, box: Box, first: tuple[int, Frame], stack: ExitStack
+) -> _Timed:
+    if isinstance(system, VariantSystem):
+        timed = _TimedVariant(system, seed, box)
+        timed.step(*first)
+        return timed
+    python = Path(system.python) if system.python else None
+    baseline = stack.enter_context(Baseline(system.baseline, python, system.model_files()))
+    baseline.start(first[1], box)
+    return _TimedBaseline(baseline)

@@ -20,7 +20,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
-from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
+from vehicle_pf_tracker.evaluation.statistics import Summary
 
 
 @dataclass(frozen=True, slots=True)

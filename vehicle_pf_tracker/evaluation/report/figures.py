@@ -12,13 +12,24 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The small figures of a report: errors over time, curves, robustness."""
+"""The small figures of a report: errors over time, curves, robustness.
+
+Colours and letters of figures, for a page and for a paper.
+
+Figures as SVG that stands in a page and takes its colours from the page's scheme.
+"""
 
 from __future__ import annotations
 
+import html
+import io
+import itertools
+import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -40,9 +51,99 @@ from vehicle_pf_tracker.evaluation.report.figure_data import (
     error_series,
     interval_rows,
 )
-from vehicle_pf_tracker.evaluation.report.look import Look
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
-from vehicle_pf_tracker.evaluation.report.svg import PAGE, SvgMaker
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """Colours and letters that figures are drawn with.
+
+    Attributes
+    ----------
+    colours : mapping of str to str
+        Colours by name, such as ``ink``, ``accent`` and ``s0`` for the first style of a line.
+    letters : float
+        Size of the letters, points.
+    svg_letters : str
+        ``none`` leaves the letters of an SVG to the reader's fonts, ``path`` draws them.
+    """
+
+    colours: Mapping[str, str]
+    letters: float
+    svg_letters: str
+
+    def __getitem__(self, name: str) -> str:
+        """Return the colour `name`."""
+        return self.colours[name]
+
+    @property
+    def settings(self) -> Any:
+        """Settings to make figures under; see `matplotlib.rc_context`."""
+        return {
+            "svg.fonttype": self.svg_letters,
+            "svg.hashsalt": "vehicle_pf_tracker",
+            "pdf.fonttype": 42,  # journals refuse matplotlib's usual Type 3
+            "font.size": self.letters,
+            "axes.edgecolor": self["rule"],
+            "axes.labelcolor": self["muted"],
+            "axes.linewidth": 0.8,
+            "axes.spines.top": False,
+            "axes.spines.right": False,
+            "text.color": self["ink"],
+            "xtick.color": self["rule"],
+            "ytick.color": self["rule"],
+            "xtick.labelcolor": self["muted"],
+            "ytick.labelcolor": self["muted"],
+            "grid.color": self["rule"],
+            "grid.linewidth": 0.5,
+        }
+
+
+_INK: Mapping[str, str] = MappingProxyType(
+    {
+        "ink": "#010101",
+        "muted": "#020202",
+        "rule": "#030303",
+        "total": "#040404",
+        "partial": "#050505",
+        "accent": "#060606",
+        **{f"s{slot}": f"#0a0a{slot:02x}" for slot in range(6)},
+    }
+)
+"""Stand-ins for the page's colours: what is drawn in one of them is drawn in ``var(--name)``."""
+
+
+PAGE = Look(_INK, 8.0, "none")
+"""Figures of the page, which are recoloured by its scheme."""
+
+
+class SvgMaker:
+    """Turns figures into SVG elements that can stand in one page: no two share an id."""
+
+    def __init__(self) -> None:
+        self._numbers = itertools.count(1)
+
+    def make(self, figure: Figure, label: str) -> str:
+        """Return `figure` as an SVG element that is read out as `label`."""
+        text = io.StringIO()
+        nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+        with rc_context(PAGE.settings):
+            figure.savefig(text, format="svg", transparent=True, metadata=nothing)
+        element = text.getvalue()
+        element = element[element.index("<svg") :]
+        element = re.sub(r"<metadata>.*?</metadata>\s*", "", element, flags=re.DOTALL)
+        element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.DOTALL)
+        prefix = f"f{next(self._numbers)}-"
+        for before in (' id="', 'href="#', "url(#"):
+            element = element.replace(before, before + prefix)
+        for name, colour in _INK.items():
+            element = element.replace(colour, f"var(--{name})")
+        size = re.search(r'viewBox="[^"]*"', element)
+        assert size is not None
+        head = f'<svg {size[0]} role="img" aria-label="{html.escape(label)}"'
+        head += ' xmlns:xlink="http://www.w3.org/1999/xlink"'
+        return re.sub(r"^<svg[^>]*", head, element).replace("\n", " ").replace("  ", " ")
+
 
 LEAST_ERROR = 0.5
 """Errors below this, in px, are drawn at the foot of the logarithmic scale."""

@@ -29,16 +29,16 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, SystemEntry
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report import filmstrip, page_tables
-from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, findings, power
 from vehicle_pf_tracker.evaluation.report.columns import RANKED, counted, p_value_text
 from vehicle_pf_tracker.evaluation.report.figures import (
     Panel,
+    SvgMaker,
     curve_panels,
     error_panels,
     main_panel,
 )
 from vehicle_pf_tracker.evaluation.report.filmstrip import Still
-from vehicle_pf_tracker.evaluation.report.findings import findings, power
 from vehicle_pf_tracker.evaluation.report.page_tables import speed_note, speed_table
 from vehicle_pf_tracker.evaluation.report.robustness import robustness_sections
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
@@ -47,7 +47,6 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredRun,
     typical,
 )
-from vehicle_pf_tracker.evaluation.report.svg import SvgMaker
 from vehicle_pf_tracker.evaluation.report.traffic import stored_sections
 from vehicle_pf_tracker.evaluation.traffic.comparison_report import RULES
 

@@ -39,8 +39,7 @@ from vehicle_pf_tracker.evaluation.report.columns import (
     p_value_text,
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
-from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
-from vehicle_pf_tracker.evaluation.statistics.paired import ALPHA
+from vehicle_pf_tracker.evaluation.statistics import ALPHA, Summary
 
 Slots = Mapping[str, int]
 

@@ -25,7 +25,6 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
-from vehicle_pf_tracker.evaluation.output_files import make_folder, replacing
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.columns import RANKED
@@ -38,12 +37,13 @@ from vehicle_pf_tracker.evaluation.report.figure_data import (
     interval_rows,
 )
 from vehicle_pf_tracker.evaluation.report.figures import (
+    Look,
     draw_curves,
     draw_errors,
     intervals_panel,
 )
-from vehicle_pf_tracker.evaluation.report.look import Look
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
+from vehicle_pf_tracker.offline.output_files import make_folder, replacing
 
 FORMATS = ("pdf", "svg", "png")
 FIGURES = "figures"

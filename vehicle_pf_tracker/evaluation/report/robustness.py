@@ -32,7 +32,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
 )
 from vehicle_pf_tracker.evaluation.report.columns import SUCCESS, number_text
 from vehicle_pf_tracker.evaluation.report.page_tables import Header, PageTable, Row, TableCell
-from vehicle_pf_tracker.evaluation.run_folder import METRICS, damage
+from vehicle_pf_tracker.offline.run_folder import METRICS, damage
 
 SHIFTED, FRAMES, RESTARTS = "shifted_starts", "start_frames", "restarts"
 """Names of the folders, and of the options that ask for them."""

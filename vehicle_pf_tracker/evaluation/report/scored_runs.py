@@ -12,35 +12,47 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Cells of an evaluation, scored against the truth."""
+"""Cells of an evaluation, scored against the truth.
+
+The evaluation's runs for other tools: TUM trajectories for evo, recordings for Foxglove.
+"""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.association import MAX_DIFF
-from vehicle_pf_tracker.evaluation.curves import (
-    Curve,
-    normalised_precision_curve,
-    precision_curve,
-    success_curve,
-)
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     Cell,
     EvaluationFolder,
     Source,
     SystemEntry,
+    safe_name,
 )
-from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
+from vehicle_pf_tracker.evaluation.grid.sources import local_copy
+from vehicle_pf_tracker.evaluation.metrics import (
+    Curve,
+    Metrics,
+    measure,
+    normalised_precision_curve,
+    precision_curve,
+    success_curve,
+)
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
+from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.offline.estimates_recording import write_with_estimates
+from vehicle_pf_tracker.offline.output_files import make_folder, write_text
+from vehicle_pf_tracker.recordings.messages import as_token
+from vehicle_pf_tracker.recordings.reader import Recording
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,3 +206,97 @@ def _box(frame: FrameScore) -> Box | None:
     if row is None or row.x is None or row.y is None or frame.waiting:
         return None
     return Box.around((row.x, row.y), row.width or 0.0, row.height or 0.0)
+
+
+TRAJECTORIES = "trajectories"
+
+
+def write_trajectories(evaluation: ScoredEvaluation) -> list[Path]:
+    """Write the truth of each recording and each run's scored estimates where there is truth.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    written = []
+    for entry in evaluation.recordings:
+        truths = evaluation.truths[entry.name]
+        if not truths:
+            continue
+        folder = make_folder(_folder(evaluation.folder, entry.name))
+        written.append(_write(folder / "truth.tum", _true_points(truths)))
+        for run in evaluation.of(entry.name):
+            name = f"{safe_name(run.system)}_seed-{run.seed}.tum"
+            written.append(_write(folder / name, _points(run, truths)))
+    return written
+
+
+def _folder(evaluation: EvaluationFolder, recording: str) -> Path:
+    return evaluation.path / TRAJECTORIES / recording
+
+
+Point = tuple[int, float, float]
+"""Stamp in ns, x and y in px."""
+
+
+def _true_points(truths: Mapping[int, Truth]) -> list[Point]:
+    return [(truth.stamp_ns, *truth.box.centre) for truth in truths.values()]
+
+
+def _points(run: ScoredRun, truths: Mapping[int, Truth]) -> list[Point]:
+    return [
+        (truths[number].stamp_ns, *box.centre)
+        for number, box in enumerate(run.boxes, start=1)
+        if box is not None and number in truths
+    ]
+
+
+def _write(path: Path, points: Iterable[Point]) -> Path:
+    lines = (
+        f"{stamp // 10**9}.{stamp % 10**9:09d} {x!r} {y!r} 0 0 0 0 1\n" for stamp, x, y in points
+    )
+    write_text(path, "".join(lines))
+    return path
+
+
+ESTIMATE_RECORDINGS = "estimates"
+
+
+def write_estimate_recordings(
+    evaluation: ScoredEvaluation,
+    notify: Callable[[str], object],
+    on_stage: Callable[[str], object] = lambda _: None,
+) -> list[Path]:
+    """Write a recording for each of the evaluation's, and return their folders.
+
+    The estimates are on ``/<system>/seed_<n>/position``, ``box``, ``mode`` and ``annotations``.
+    `notify` takes a sentence for each recording that could not be made, and `on_stage` a few words
+    before each.
+    """
+    written = []
+    for entry in evaluation.recordings:
+        on_stage(f"the recording {entry.name} with estimates")
+        path = evaluation.folder.path / ESTIMATE_RECORDINGS / entry.name
+        try:
+            recording = Recording(local_copy(entry.path), entry.topic)
+            runs = _rows(evaluation, entry.name)
+            write_with_estimates(path, recording, runs, overwrite=True)
+            written.append(path)
+        except InputError as error:
+            notify(f"there is no recording of {entry.name} with estimates: {error}")
+    return written
+
+
+def topic_name(system: str, seed: int) -> str:
+    """Return the namespace of a run."""
+    return f"{as_token(system)}/seed_{seed}"
+
+
+def _rows(evaluation: ScoredEvaluation, recording: str) -> dict[str, tuple[EstimateRow, ...]]:
+    rows = {}
+    for run in evaluation.of(recording):
+        cell = evaluation.folder.cell(recording, run.system, run.seed)
+        if cell.rows is not None:
+            rows[topic_name(run.system, run.seed)] = cell.rows
+    return rows

@@ -26,6 +26,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import read_document
 from vehicle_pf_tracker.evaluation.report.page_tables import Header, PageTable, Row, TableCell
+from vehicle_pf_tracker.evaluation.traffic.comparison import UNCHANGED
 from vehicle_pf_tracker.evaluation.traffic.comparison_report import (
     COLUMNS,
     JSON,
@@ -35,7 +36,6 @@ from vehicle_pf_tracker.evaluation.traffic.comparison_report import (
     by_case,
     cell,
 )
-from vehicle_pf_tracker.evaluation.traffic.perturbation import UNCHANGED
 
 _LOWER_IS_BETTER = ("IDSW", "Frag", "step_ms")
 

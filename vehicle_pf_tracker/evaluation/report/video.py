@@ -26,11 +26,16 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.output_files import make_folder
-from vehicle_pf_tracker.evaluation.report.filmstrip import numbered_frames
-from vehicle_pf_tracker.evaluation.report.overlay import Crop, Mark, colour_of, draw_overlay
+from vehicle_pf_tracker.evaluation.report.filmstrip import (
+    Crop,
+    Mark,
+    colour_of,
+    draw_overlay,
+    numbered_frames,
+)
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun, typical
-from vehicle_pf_tracker.evaluation.video_writer import NO_ENCODER, has_encoder, video_writer
+from vehicle_pf_tracker.offline.output_files import make_folder
+from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, has_encoder, video_writer
 
 FOLDER = "videos"
 WIDTH = 640

@@ -24,8 +24,13 @@ from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.output_files import write_json, write_text
-from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, Summaries, aggregate
+from vehicle_pf_tracker.evaluation.report.aggregates import (
+    Aggregates,
+    Summaries,
+    aggregate,
+    findings,
+    power,
+)
 from vehicle_pf_tracker.evaluation.report.columns import (
     COLUMNS,
     NO_VALUE,
@@ -40,17 +45,18 @@ from vehicle_pf_tracker.evaluation.report.columns import (
     mean_and_spread_text,
     mean_text,
 )
-from vehicle_pf_tracker.evaluation.report.exports import (
+from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
+from vehicle_pf_tracker.evaluation.report.paper_figures import write_figures
+from vehicle_pf_tracker.evaluation.report.scored_runs import (
+    ScoredEvaluation,
+    score_folder,
     write_estimate_recordings,
     write_trajectories,
 )
-from vehicle_pf_tracker.evaluation.report.findings import findings, power
-from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
-from vehicle_pf_tracker.evaluation.report.paper_figures import write_figures
-from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
 from vehicle_pf_tracker.evaluation.report.video import write_videos
-from vehicle_pf_tracker.evaluation.statistics.intervals import Summary
+from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import markdown
+from vehicle_pf_tracker.offline.output_files import write_json, write_text
 
 ALL_RECORDINGS = "(all)"
 """Stands for the name of a recording where values are means over all of them."""

@@ -12,21 +12,24 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The tracker of many vehicles and baselines on the same detections of scenes with truth."""
+"""The tracker of many vehicles and baselines on the same detections of scenes with truth.
+
+Detections made worse, or scored otherwise, by name.
+"""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.traffic.client import TRAFFIC_BASELINES, TrafficWorker
+from vehicle_pf_tracker.evaluation.baselines.traffic_client import TRAFFIC_BASELINES, TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
-from vehicle_pf_tracker.evaluation.traffic.perturbation import PERTURBATIONS, UNCHANGED
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -34,6 +37,50 @@ from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+
+UNCHANGED = "unchanged"
+DROPPED = 0.2
+"""Share of detections that `dropped` leaves out."""
+_SEED = 20
+"""Seed of what is left out: the same for every system."""
+_PERIOD, _FIRST = 200, 100
+"""Frames from one gap to the next, and the first gap's first frame: the tracks before it are old
+enough, and the last clip has four gaps."""
+
+Perturbation = Callable[[Array], Array]
+"""Takes rows (frame, left, top, width, height, score) and returns others."""
+
+
+def _dropped(rows: Array) -> Array:
+    kept: Array = rows[np.random.default_rng(_SEED).uniform(size=len(rows)) >= DROPPED]
+    return kept
+
+
+def _with_gaps(length: int) -> Perturbation:
+    def without(rows: Array) -> Array:
+        late = rows[:, 0] - _FIRST
+        kept: Array = rows[(late < 0) | (late % _PERIOD >= length)]
+        return kept
+
+    return without
+
+
+def _scored(change: Callable[[Array], Array]) -> Perturbation:
+    return lambda rows: np.column_stack([rows[:, :5], change(rows[:, 5])])
+
+
+PERTURBATIONS: Mapping[str, Perturbation] = MappingProxyType(
+    {
+        UNCHANGED: lambda rows: rows,
+        "dropped": _dropped,
+        "gap20": _with_gaps(20),
+        "gap40": _with_gaps(40),
+        "squared": _scored(np.square),
+        "halved": _scored(lambda scores: scores / 2),
+    }
+)
+"""A fifth of the detections dropped; 20 and 40 of every 200 frames without any; other scores."""
+
 
 OURS = "traffic"
 MOTION = "motion"

@@ -26,11 +26,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from vehicle_pf_tracker.evaluation.output_files import make_folder, write_json, write_text
-from vehicle_pf_tracker.evaluation.run_folder import versions
 from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
-from vehicle_pf_tracker.evaluation.traffic.comparison import TrafficResult
-from vehicle_pf_tracker.evaluation.traffic.perturbation import UNCHANGED
+from vehicle_pf_tracker.evaluation.traffic.comparison import UNCHANGED, TrafficResult
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.offline.run_folder import versions
 
 CSV, JSON, MARKDOWN = "traffic.csv", "traffic.json", "traffic.md"
 

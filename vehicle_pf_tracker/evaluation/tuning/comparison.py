@@ -27,8 +27,8 @@ from rich.text import Text
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import read_document
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
-from vehicle_pf_tracker.evaluation.run_folder import METRICS
 from vehicle_pf_tracker.evaluation.tuning.searching import Objective, mean_of_means
+from vehicle_pf_tracker.offline.run_folder import METRICS
 
 TUNED, HELD_OUT = "tuned on", "held out"
 

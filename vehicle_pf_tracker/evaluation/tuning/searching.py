@@ -34,13 +34,11 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.grid.cells import GridCell
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell, VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.grid.running import Runner
-from vehicle_pf_tracker.evaluation.grid.systems import VariantSystem, seeds_of
-from vehicle_pf_tracker.evaluation.identity import scoring_digest
-from vehicle_pf_tracker.evaluation.processes import OnProgress, Progress
-from vehicle_pf_tracker.evaluation.result_store import ResultStore
+from vehicle_pf_tracker.evaluation.result_store import ResultStore, scoring_digest
 from vehicle_pf_tracker.evaluation.tuning.search_space import Dimension
+from vehicle_pf_tracker.offline.processes import OnProgress, Progress
 from vehicle_pf_tracker.parameters.table import Value
 
 

@@ -25,19 +25,19 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.climbing import Places
 from vehicle_pf_tracker.image.colour import JointColour
+from vehicle_pf_tracker.image.correlation_filter import Places
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey
-from vehicle_pf_tracker.image.partial_fourier import Spectrum
 from vehicle_pf_tracker.image.shared_motion import Alive, CellBlock, Flow
 from vehicle_pf_tracker.image.similarity import Reference
-from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty
-from vehicle_pf_tracker.image.window import Positions, Window
-from vehicle_pf_tracker.image.window_feature import (
+from vehicle_pf_tracker.image.spectra import FilterProblem, Penalty, Spectrum
+from vehicle_pf_tracker.image.window import (
     Coefficients,
     Counted,
     CountedFeature,
     Histograms,
+    Positions,
+    Window,
     WindowFeature,
 )
 

@@ -30,11 +30,10 @@ from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.gradients import DIRECTION_BINS, GradientDirections
-from vehicle_pf_tracker.image.kernels.numba_cells import RECTANGLES, TABLE, Table
 from vehicle_pf_tracker.image.kernels.numba_inputs import CellTable, Placement
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
+from vehicle_pf_tracker.image.kernels.numba_jit import RECTANGLES, TABLE, Table, compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_windows import PAIR, QUAD, Counts, Pixels
-from vehicle_pf_tracker.image.window_feature import Grey, to_grey
+from vehicle_pf_tracker.image.window import Grey, to_grey
 
 Gradients: TypeAlias = npt.NDArray[np.int16]
 Strengths: TypeAlias = npt.NDArray[np.int32]

@@ -26,8 +26,7 @@ from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.kernels.interface import PixelRange
-from vehicle_pf_tracker.image.kernels.numba_cells import RECTANGLES, Rectangles, Table
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled
+from vehicle_pf_tracker.image.kernels.numba_jit import RECTANGLES, Rectangles, Table, compiled
 from vehicle_pf_tracker.image.kernels.numba_windows import (
     PAIR,
     REACH,
@@ -38,8 +37,7 @@ from vehicle_pf_tracker.image.kernels.numba_windows import (
 )
 from vehicle_pf_tracker.image.similarity import Histogram, Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
-from vehicle_pf_tracker.image.window import Positions, Window
-from vehicle_pf_tracker.image.window_feature import WindowFeature
+from vehicle_pf_tracker.image.window import Positions, Window, WindowFeature
 
 
 @compiled(RECTANGLES(RECTANGLES, REACH, PAIR, PAIR))

@@ -23,23 +23,12 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.climbing import Places
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
+from vehicle_pf_tracker.image.correlation_filter import Places
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.kernels import (
-    numba_climbing,
-    numba_jit,
-    numba_shared_motion,
-    numba_spectra,
-)
+from vehicle_pf_tracker.image.kernels import numba_jit, numba_shared_motion, numba_spectra
 from vehicle_pf_tracker.image.kernels.interface import Kernels, PixelRange, SimilarityMap
-from vehicle_pf_tracker.image.kernels.numba_cells import (
-    Cells,
-    marginal_cells,
-    pair_cells,
-    stack_windows,
-)
 from vehicle_pf_tracker.image.kernels.numba_edges import count_directions
 from vehicle_pf_tracker.image.kernels.numba_gradient_cells import gradient_cells
 from vehicle_pf_tracker.image.kernels.numba_inputs import (
@@ -51,6 +40,12 @@ from vehicle_pf_tracker.image.kernels.numba_inputs import (
     table_of,
     table_of_all,
     window_rectangles,
+)
+from vehicle_pf_tracker.image.kernels.numba_jit import (
+    Cells,
+    marginal_cells,
+    pair_cells,
+    stack_windows,
 )
 from vehicle_pf_tracker.image.kernels.numba_mean_shift import (
     compare_kernels,
@@ -67,17 +62,17 @@ from vehicle_pf_tracker.image.kernels.numba_windows import (
     joint_cells,
     map_windows,
 )
-from vehicle_pf_tracker.image.partial_fourier import Spectrum
 from vehicle_pf_tracker.image.shared_motion import Alive, CellBlock, Flow
 from vehicle_pf_tracker.image.similarity import Reference
-from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty
+from vehicle_pf_tracker.image.spectra import FilterProblem, Penalty, Spectrum
 from vehicle_pf_tracker.image.textures import Cooccurrence
-from vehicle_pf_tracker.image.window import Positions, Window
-from vehicle_pf_tracker.image.window_feature import (
+from vehicle_pf_tracker.image.window import (
     Coefficients,
     Counted,
     CountedFeature,
     Histograms,
+    Positions,
+    Window,
     WindowFeature,
     to_grey,
 )
@@ -206,7 +201,7 @@ class NumbaKernels(Kernels):
 
     def climbed(self, values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
         """Move places; see `Kernels.climbed`."""
-        return numba_climbing.climbed(values, places, costs)
+        return numba_spectra.climbed(values, places, costs)
 
     def counts(
         self,

@@ -18,6 +18,8 @@ A frequency k along y and its negative are made of the same cosines and sines: c
 the one, cosine + i sine the other ("low" and "high" here). Loops run over such pairs of rows, and
 along x, where they are vectorised. Frequencies 0 and n / 2 have no sine, and go first, while the
 right side of the sines is zero.
+
+Climbing on a map, compiled; see `image.climbing` for what it is.
 """
 
 from __future__ import annotations
@@ -26,11 +28,12 @@ from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from numba import float32, float64, types, void
+from numba import float32, float64, intp, types, void
 
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.correlation_filter import Places
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
-from vehicle_pf_tracker.image.partial_fourier import Spectrum
-from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty
+from vehicle_pf_tracker.image.spectra import FilterProblem, Penalty, Spectrum
 
 _Rows: TypeAlias = npt.NDArray[np.float32]
 _Pair: TypeAlias = tuple[Spectrum, Spectrum]
@@ -217,3 +220,25 @@ def take_filter_step(
     weights = problem.stiffness, penalty.weight, penalty.growth
     images, sums = (problem.spectrum, problem.before), (multiplier, confined)
     _take_filter_step(images, problem.label, sums, weights)
+
+
+_MAP = types.Array(float64, 2, "C", readonly=True)
+_PLACES = types.Array(intp, 2, "C")
+
+
+@compiled(types.Tuple([_PLACES, types.Array(float64, 1, "C")])(_MAP, _PLACES, _MAP))
+def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
+    """See `climbing.climbed`."""
+    reach, last = len(costs) // 2, len(values) - 1
+    moves, gains = np.zeros_like(places), np.empty(len(places))
+    for i in range(len(places)):
+        best = -np.inf
+        for dy in range(-reach, reach + 1):
+            row = min(max(places[i, 1] + dy, 0), last)
+            for dx in range(-reach, reach + 1):
+                column = min(max(places[i, 0] + dx, 0), last)
+                gain = values[row, column] - costs[dy + reach, dx + reach]
+                if gain > best:
+                    best, moves[i, 0], moves[i, 1] = gain, dx, dy
+        gains[i] = best
+    return moves, gains

@@ -30,7 +30,7 @@ import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.kernels.numba_cells import (
+from vehicle_pf_tracker.image.kernels.numba_jit import (
     CELLS,
     FRAME,
     RECTANGLES,
@@ -38,8 +38,9 @@ from vehicle_pf_tracker.image.kernels.numba_cells import (
     Cells,
     Rectangles,
     Table,
+    compiled,
+    inlined,
 )
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 from vehicle_pf_tracker.image.window import Positions
 
 Pixels: TypeAlias = npt.NDArray[np.int64]

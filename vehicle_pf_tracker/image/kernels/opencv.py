@@ -24,21 +24,21 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image import climbing, shared_motion, spectral_products
-from vehicle_pf_tracker.image.climbing import Places
+from vehicle_pf_tracker.image import correlation_filter, shared_motion, spectra
 from vehicle_pf_tracker.image.colour import JointColour, bin_indices
+from vehicle_pf_tracker.image.correlation_filter import Places
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey, gradient_cells
 from vehicle_pf_tracker.image.kernels.interface import Kernels, PixelRange, SimilarityMap
 from vehicle_pf_tracker.image.mean_shift import kernel_similarity, mean_shift
-from vehicle_pf_tracker.image.partial_fourier import Spectrum
 from vehicle_pf_tracker.image.shared_motion import Alive, CellBlock, Flow
 from vehicle_pf_tracker.image.similarity import Reference
-from vehicle_pf_tracker.image.spectral_products import FilterProblem, Penalty
-from vehicle_pf_tracker.image.window import Positions, Window
-from vehicle_pf_tracker.image.window_feature import (
+from vehicle_pf_tracker.image.spectra import FilterProblem, Penalty, Spectrum
+from vehicle_pf_tracker.image.window import (
     Coefficients,
     Counted,
     CountedFeature,
+    Positions,
+    Window,
     WindowFeature,
 )
 
@@ -65,15 +65,15 @@ class OpenCvKernels(Kernels):
         self, problem: FilterProblem, penalty: Penalty, multiplier: Spectrum, confined: Spectrum
     ) -> None:
         """Train a filter by one step; see `Kernels.take_filter_step`."""
-        spectral_products.take_filter_step(problem, penalty, multiplier, confined)
+        spectra.take_filter_step(problem, penalty, multiplier, confined)
 
     def correlated(self, spectrum: Spectrum, weights: Spectrum) -> Spectrum:
         """Correlate and sum over channels; see `Kernels.correlated`."""
-        return spectral_products.correlated(spectrum, weights)
+        return spectra.correlated(spectrum, weights)
 
     def shifted(self, spectrum: Spectrum, x: float, y: float) -> Spectrum:
         """Move cells; see `Kernels.shifted`."""
-        return spectral_products.shifted(spectrum, x, y)
+        return spectra.shifted(spectrum, x, y)
 
     def shared_similarity(self, before: Array, after: Array) -> Array:
         """Fit a similarity; see `Kernels.shared_similarity`."""
@@ -95,7 +95,7 @@ class OpenCvKernels(Kernels):
 
     def climbed(self, values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
         """Move places; see `Kernels.climbed`."""
-        return climbing.climbed(values, places, costs)
+        return correlation_filter.climbed(values, places, costs)
 
     def counts(
         self,

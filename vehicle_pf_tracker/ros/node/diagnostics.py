@@ -12,20 +12,132 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`/diagnostics` at 1 Hz: the node's health, and why no images arrive."""
+"""`/diagnostics` at 1 Hz: the node's health, and why no images arrive.
+
+Counts of a node's input and work, for `/diagnostics`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from vehicle_pf_tracker.ros.messages import LEVELS, key_values
-from vehicle_pf_tracker.ros.node.health import Health
+from vehicle_pf_tracker.ros.messages import LEVELS, WAITING, key_values
 from vehicle_pf_tracker.ros.node.image_input import ImageInput
+
+
+class Health:
+    """Counters since the node was configured; rates since the last report.
+
+    Parameters
+    ----------
+    clock : callable
+        Steady time in s.
+
+    Attributes
+    ----------
+    images, rejected, dropped : int
+        Images that arrived, that could not be used, and that were sent but never arrived.
+    refused_targets : int
+        Targets that could not be used.
+    restarts : int
+        Times that the tracker failed twice in a row and started anew.
+    last_rejection, last_refusal : str
+        The reasons.
+    road : mapping
+        Place and speed on the road with the last estimate, by name; empty without a road.
+    mode : str
+        What the last `~/mode` said.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self.images = self.rejected = self.dropped = self.refused_targets = 0
+        self.restarts = 0
+        self.last_rejection = self.last_refusal = ""
+        self.mode = WAITING
+        self.road: Mapping[str, object] = {}
+        self._mode_since = self._heard = self._reported = clock()
+        self._images_reported = 0
+        self._number: int | None = None
+        self._age = 0.0
+        self._step_ms = 0.0
+
+    @property
+    def silence(self) -> float:
+        """Seconds since the last image, or since listening began."""
+        return self._clock() - self._heard
+
+    def listen(self) -> None:
+        """Start waiting for images: neither the time nor the images missed before count."""
+        self._heard = self._clock()
+        self._number = None
+
+    def arrived(self, info: Mapping[str, Any], age: float, publishers: int) -> None:
+        """Count an image.
+
+        Parameters
+        ----------
+        info : mapping
+            The message's info; gaps in its publication sequence number are dropped images.
+        age : float
+            Time from the image's stamp to now, in s.
+        publishers : int
+            How many publish on the topic; the numbers of several cannot be told apart.
+        """
+        self.images += 1
+        self._heard = self._clock()
+        self._age = age
+        number = info.get("publication_sequence_number")
+        if number is not None and self._number is not None and publishers == 1:
+            # A publisher that was restarted counts from 1 again.
+            self.dropped += max(number - self._number - 1, 0)
+        self._number = number
+
+    def answered(self, mode: str, step_ms: float | None = None) -> None:
+        """Note the mode that an image was answered with, and how long the step took."""
+        if mode != self.mode:
+            self.mode, self._mode_since = mode, self._clock()
+        if step_ms is not None:
+            self._step_ms = step_ms
+
+    def reject(self, reason: str) -> None:
+        """Count an image that could not be used."""
+        self.rejected += 1
+        self.last_rejection = reason
+
+    def refuse_target(self, reason: str) -> None:
+        """Count a target that could not be used."""
+        self.refused_targets += 1
+        self.last_refusal = reason
+
+    def report(self) -> dict[str, object]:
+        """Give the values for `/diagnostics` by name, and begin the next interval."""
+        now = self._clock()
+        new, seconds = self.images - self._images_reported, now - self._reported
+        self._images_reported, self._reported = self.images, now
+        return {
+            "mode": self.mode,
+            "time in mode (s)": round(now - self._mode_since, 1),
+            "input rate (Hz)": round(new / seconds, 2) if seconds > 0 else 0.0,
+            "age of frames (ms)": round(self._age * 1e3, 1),
+            "step time (ms)": round(self._step_ms, 3),
+            "images": self.images,
+            "dropped": self.dropped,
+            "rejected": self.rejected,
+            "last rejection": self.last_rejection,
+            "refused targets": self.refused_targets,
+            "last refused target": self.last_refusal,
+            "restarts after errors": self.restarts,
+            "time since last image (s)": round(now - self._heard, 1),
+            **self.road,
+        }
+
 
 PERIOD = 1.0
 SILENCE = 5.0

@@ -29,11 +29,11 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns
-from vehicle_pf_tracker.ros.node.health import Health
-from vehicle_pf_tracker.ros.node.images import SerializedImage, frame_of, read_image
+from vehicle_pf_tracker.ros.node.camera_inputs import StreamLocalisation
+from vehicle_pf_tracker.ros.node.diagnostics import Health
+from vehicle_pf_tracker.ros.node.image_input import SerializedImage, frame_of, read_image
 from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
 from vehicle_pf_tracker.ros.node.outputs import Outputs
-from vehicle_pf_tracker.ros.node.stream_localisation import StreamLocalisation
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.failures import TrackerError, unexpected
 from vehicle_pf_tracker.trackers.registry import Variant

@@ -28,8 +28,8 @@ from std_srvs.srv import Trigger
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.road.poses import PoseTree
-from vehicle_pf_tracker.ros.detections import detection_type
+from vehicle_pf_tracker.road.camera import PoseTree
+from vehicle_pf_tracker.ros.messages import detection_type
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
 from vehicle_pf_tracker.ros.node.image_input import image_topic
 from vehicle_pf_tracker.ros.node.image_node import ImageNode

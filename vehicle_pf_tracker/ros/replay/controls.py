@@ -16,15 +16,23 @@
 
 They are named as those of the rosbag2 player, with the types of std_srvs: rosbag2's own are not
 installed where rosbag2 is not. Speed and position are parameters.
+
+Pace of a replay: log times mapped to the monotonic clock.
+
+`/clock`: the time of the recording while it plays.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rclpy.clock import Clock as RosClock
+from rclpy.clock import ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 
 RATE, POSITION = "rate", "position"
@@ -144,3 +152,80 @@ def _answering(
         return response
 
     return respond
+
+
+class Pace:
+    """Maps log times to the monotonic clock.
+
+    Parameters
+    ----------
+    rate : float or None
+        Seconds of log time per second; None does not pace: everything is due at once.
+    clock : callable
+        The monotonic clock in s.
+    """
+
+    def __init__(self, rate: float | None, clock: Callable[[], float] = time.monotonic) -> None:
+        self._rate = rate
+        self._clock = clock
+        self._begin: tuple[int, float] | None = None
+        self._latest_ns = 0
+
+    def set_rate(self, rate: float | None) -> None:
+        """Go on at another rate from the next log time."""
+        self._rate = rate
+        self.restart()
+
+    def restart(self) -> None:
+        """Take the next log time as now; a loop does this at each restart, a pause at its end."""
+        self._begin = None
+
+    def due(self, log_time_ns: int) -> float:
+        """Moment on the clock, in s, at which a message with this log time is due."""
+        now = self._clock()
+        if self._begin is None:
+            self._begin = log_time_ns, now
+        self._latest_ns = log_time_ns
+        if self._rate is None:
+            return now
+        first_ns, began = self._begin
+        return began + (log_time_ns - first_ns) * 1e-9 / self._rate
+
+    def log_time_ns(self) -> int | None:
+        """Present log time, never beyond the message asked for last; None before the first.
+
+        Without a rate, time advances with the messages.
+        """
+        if self._begin is None or self._rate is None:
+            return self._latest_ns if self._begin else None
+        first_ns, began = self._begin
+        return min(first_ns + round((self._clock() - began) * self._rate * 1e9), self._latest_ns)
+
+
+class PlaybackClock:
+    """Publishes the log time that it is by `pace`, from the first message on.
+
+    Parameters
+    ----------
+    node : Node
+        The player's own node.
+    pace : Pace
+        Tells the log time.
+    frequency : float
+        Messages per second.
+    """
+
+    def __init__(self, node: Node, pace: Pace, frequency: float) -> None:
+        self._pace = pace
+        self._publisher = node.create_publisher(Clock, "/clock", 10)
+        steady = RosClock(clock_type=ClockType.STEADY_TIME)
+        self._timer = node.create_timer(1 / frequency, self.publish, clock=steady)
+
+    def publish(self) -> None:
+        """Publish the time now."""
+        log_time_ns = self._pace.log_time_ns()
+        if log_time_ns is None:
+            return
+        message = Clock()
+        message.clock.sec, message.clock.nanosec = divmod(log_time_ns, 1_000_000_000)
+        self._publisher.publish(message)

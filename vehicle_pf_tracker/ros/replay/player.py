@@ -22,13 +22,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from rclpy.node import Node
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.replay.controls import Controls
-from vehicle_pf_tracker.ros.replay.pacing import Pace
+from vehicle_pf_tracker.ros.replay.controls import Controls, Pace, PlaybackClock
+from vehicle_pf_tracker.ros.replay.discovery import Spinner
 from vehicle_pf_tracker.ros.replay.playable import Playable, PlayableMessage
-from vehicle_pf_tracker.ros.replay.playback_clock import PlaybackClock
 from vehicle_pf_tracker.ros.replay.publishing import TopicPublisher
 from vehicle_pf_tracker.ros.replay.replay_options import Progress, ReplayOptions
-from vehicle_pf_tracker.ros.replay.spinner import Spinner
 from vehicle_pf_tracker.ros.replay.starting_target import Targets
 from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink
 

@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 from rclpy.qos import QoSProfile
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.evaluation.estimates import EstimateRow
+from vehicle_pf_tracker.offline.estimates import EstimateRow
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,13 +12,19 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Replaying a recording from start to end: transport, nodes, target, player, report."""
+"""Replaying a recording from start to end: transport, nodes, target, player, report.
+
+Ctrl-C as an event, not as an exception raised anywhere.
+"""
 
 from __future__ import annotations
 
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import rclpy
 from rclpy.context import Context
@@ -27,8 +33,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
-from vehicle_pf_tracker.ros.replay.discovery import Lookout
-from vehicle_pf_tracker.ros.replay.interruption import noted_interrupts
+from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
 from vehicle_pf_tracker.ros.replay.playable import Playable
 from vehicle_pf_tracker.ros.replay.player import Player
 from vehicle_pf_tracker.ros.replay.publishing import TopicPublisher, decompressed, make_publishers
@@ -38,10 +43,37 @@ from vehicle_pf_tracker.ros.replay.replay_options import (
     ReplayOptions,
     ReplayReport,
 )
-from vehicle_pf_tracker.ros.replay.spinner import Interrupted, Spinner
 from vehicle_pf_tracker.ros.replay.starting_target import Targets, first_image, starting_target
 from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink
 from vehicle_pf_tracker.ros.transport import image_transport
+
+
+@contextmanager
+def noted_interrupts() -> Iterator[threading.Event]:
+    """Return an event that SIGINT, SIGTERM and SIGHUP set, however often they come.
+
+    SIGHUP, from a terminal that closes, would otherwise leave the segments in shared memory. Launch
+    files send SIGINT twice, and the second must not break the cleaning up. Outside of the main
+    thread, where Python allows no handlers, signals stay as they are.
+    """
+    noted = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield noted
+        return
+
+    def note(*_: Any) -> None:
+        noted.set()
+
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as nohup sets it
+        numbers.append(signal.SIGHUP)
+    before = {number: signal.signal(number, note) for number in numbers}
+    try:
+        yield noted
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
 
 NODE_NAME = "bag_replay"
 

@@ -21,8 +21,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.association import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.ros.replay.playable import Playable, PlayableMessage
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink

@@ -12,11 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The player's side of one tracker node: its answers, its target and its reset."""
+"""The player's side of one tracker node: its answers, its target and its reset.
+
+Images that a node has answered, and its answers.
+"""
 
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Mapping
 from typing import Any
 
@@ -29,10 +33,83 @@ from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.ros.messages import NOT_READY
-from vehicle_pf_tracker.ros.replay.answers import Answers
-from vehicle_pf_tracker.ros.replay.discovery import DISCOVERY
-from vehicle_pf_tracker.ros.replay.spinner import Spinner
+from vehicle_pf_tracker.ros.replay.discovery import DISCOVERY, Spinner
+from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS
+
+DROPPED = "DROPPED"
+"""Mode of a frame that a node never answered; all numbers are empty."""
+
+
+class Answers:
+    """Pairs the `~/mode` messages of one node with the images published, by stamp.
+
+    Images of the same stamp are answered in the order in which they were published.
+
+    Attributes
+    ----------
+    count : int
+        Images answered, in all passes.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._stamps: dict[int, int] = {}
+        self._waiting: dict[int, deque[int]] = {}
+        self._rows: dict[int, EstimateRow] = {}
+        self._on_road: dict[int, Mapping[str, str]] = {}
+
+    def begin_pass(self) -> None:
+        """Discard earlier frames; a loop begins again with their stamps."""
+        self._stamps.clear()
+        self._waiting.clear()
+        self._rows.clear()
+        self._on_road.clear()
+
+    def expect(self, frame: int, stamp_ns: int) -> None:
+        """Note that the image number `frame` was published."""
+        self._stamps[frame] = stamp_ns
+        self._waiting.setdefault(stamp_ns, deque()).append(frame)
+
+    def receive(self, message: Any) -> None:
+        """Take a `DiagnosticArray` of `~/mode`; answers to other images are passed over."""
+        stamp = message.header.stamp
+        stamp_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
+        frames = self._waiting.get(stamp_ns)
+        if not frames or not message.status:
+            return
+        frame = frames.popleft()
+        if not frames:
+            del self._waiting[stamp_ns]
+        status = message.status[0]
+        scalars = {"mode": status.message, **{pair.key: pair.value for pair in status.values}}
+        self._rows[frame] = EstimateRow.from_scalars(frame, stamp_ns, scalars)
+        if "road" in scalars:
+            self._on_road[frame] = scalars
+        self.count += 1
+
+    def has(self, frame: int) -> bool:
+        """Return whether image number `frame` of this pass was answered."""
+        return frame in self._rows
+
+    def road_columns(self) -> dict[str, list[float | None]]:
+        """Return places and speeds on the road, a value for each of `rows`; none without a road."""
+        if not self._on_road:
+            return {}
+        answers = [self._on_road.get(frame, {}) for frame in self._stamps]
+        return {
+            name: [float(one[name]) if name in one else None for one in answers]
+            for name in ROAD_COLUMNS
+        }
+
+    def rows(self) -> tuple[EstimateRow, ...]:
+        """One row for each image of this pass, in order."""
+        return tuple(
+            self._rows.get(frame) or EstimateRow.without(frame, stamp_ns, DROPPED)
+            for frame, stamp_ns in self._stamps.items()
+        )
+
 
 _DEEP = QoSProfile(depth=1000)
 _AGAIN = 0.2

@@ -24,7 +24,7 @@ from contextlib import contextmanager
 from typing import NamedTuple
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.processes import wait_or_kill
+from vehicle_pf_tracker.offline.processes import wait_or_kill
 from vehicle_pf_tracker.parameters.table import Value
 
 _SCRIPT = "import sys; from vehicle_pf_tracker.ros.executables import main; sys.exit(main({!r}))"

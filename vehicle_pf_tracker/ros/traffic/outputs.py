@@ -28,22 +28,21 @@ from std_msgs.msg import Header
 from visualization_msgs.msg import MarkerArray
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.traffic.drawing import annotated
-from vehicle_pf_tracker.image.lettering import line_width
-from vehicle_pf_tracker.image.outlines import Colour, draw_box
+from vehicle_pf_tracker.offline.drawing import Colour, draw_box, line_width
+from vehicle_pf_tracker.offline.traffic_drawing import annotated
 from vehicle_pf_tracker.parameters.configuration import NodeParameters
-from vehicle_pf_tracker.ros.detections import detections_type
 from vehicle_pf_tracker.ros.messages import (
     box_message,
+    detections_type,
     image_message,
     mode_message,
     position_message,
     velocity_message,
 )
-from vehicle_pf_tracker.ros.node.located_outputs import in_frame, is_heard
-from vehicle_pf_tracker.ros.traffic.count_messages import counts_message
-from vehicle_pf_tracker.ros.traffic.detection_messages import detections_message
-from vehicle_pf_tracker.ros.traffic.track_messages import (
+from vehicle_pf_tracker.ros.node.outputs import in_frame, is_heard
+from vehicle_pf_tracker.ros.traffic.messages import (
+    counts_message,
+    detections_message,
     markers_message,
     modes_message,
     tracks_message,

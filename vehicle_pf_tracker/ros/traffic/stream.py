@@ -12,13 +12,16 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""One stream of images and detections, and what is published of it."""
+"""One stream of images and detections, and what is published of it.
+
+Sentences in the log, each kind of them at most every few seconds.
+"""
 
 from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from rclpy.node import Node
@@ -28,17 +31,46 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns
-from vehicle_pf_tracker.ros.node.health import Health
-from vehicle_pf_tracker.ros.node.images import frame_of, read_image
-from vehicle_pf_tracker.ros.traffic.detection_messages import read_serialized_detections, read_stamp
-from vehicle_pf_tracker.ros.traffic.notices import Notices
+from vehicle_pf_tracker.ros.node.diagnostics import Health
+from vehicle_pf_tracker.ros.node.image_input import frame_of, read_image
+from vehicle_pf_tracker.ros.traffic.messages import read_serialized_detections, read_stamp, scalars
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
-from vehicle_pf_tracker.ros.traffic.track_messages import scalars
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.failures import TrackerError, unexpected
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
-from vehicle_pf_tracker.trackers.traffic.detector_parameters import TOPIC
+from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
+
+_PERIOD = 5.0
+"""Interval between two lines of the same kind, s."""
+
+
+class Notices:
+    """Writes a sentence unless one of its kind was written a moment ago.
+
+    rclpy throttles by the line of code that logs, and so cannot tell kinds apart.
+
+    Parameters
+    ----------
+    write : callable
+        Writes a line.
+    clock : callable
+        Steady time in s.
+    """
+
+    def __init__(
+        self, write: Callable[[str], object], clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._write = write
+        self._clock = clock
+        self._last: dict[str, float] = {}
+
+    def say(self, kind: str, sentence: str) -> None:
+        """Write `sentence`, one of few kinds."""
+        now = self._clock()
+        if now - self._last.get(kind, -_PERIOD) >= _PERIOD:
+            self._last[kind] = now
+            self._write(sentence)
 
 
 class TrafficStream:

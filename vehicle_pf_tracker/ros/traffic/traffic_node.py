@@ -12,12 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node that follows many vehicles: images and detections in, tracks out."""
+"""The node that follows many vehicles: images and detections in, tracks out.
+
+The process of the node that follows many vehicles.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from geometry_msgs.msg import PointStamped
@@ -31,16 +34,17 @@ from std_srvs.srv import Trigger
 from vehicle_pf_tracker.core.box import check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.detections import detections_type
+from vehicle_pf_tracker.ros.messages import detections_type
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
+from vehicle_pf_tracker.ros.node.process import run_node_of
 from vehicle_pf_tracker.ros.node.target_messages import box_of_region, check_frame_id
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.stream import TrafficStream
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles, plane_of
 from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.detector_parameters import TOPIC
+from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
 _LOOK_EVERY = 0.02
 """Interval in s in which images that wait for detections are looked at."""
@@ -228,3 +232,19 @@ class TrafficNode(ImageNode):
         if self.stream is not None and self.table.configuration.tracker.seed < 0:
             seed = self.stream.vehicles.session.tracker.seed
             self.get_logger().info(f"drew the seed {seed}; set it to repeat this run")
+
+
+def run_traffic(arguments: Sequence[str]) -> int:
+    """Run the node until it is told to end.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Command line without the program's name.
+
+    Returns
+    -------
+    int
+        Exit status; see `vehicle_pf_tracker.ros.node.process.run_node`.
+    """
+    return run_node_of(TRAFFIC.executable, TrafficNode, arguments)

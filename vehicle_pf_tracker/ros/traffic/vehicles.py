@@ -12,29 +12,102 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Everything that a node knows of the vehicles: session, counts, selection, targets."""
+"""Everything that a node knows of the vehicles: session, counts, selection, targets.
+
+The vehicle that is reported as that of a single tracker is.
+"""
 
 from __future__ import annotations
 
+import math
 from collections import Counter as Tally
+from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.box import Box, Position, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import CodedFrame, Frame
-from vehicle_pf_tracker.evaluation.traffic.detector_choice import detector_maker
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
+from vehicle_pf_tracker.offline.detectors import detector_maker
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.ros.traffic.selection import NONE, Selection
 from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+
+NONE = 0
+"""Number that ends a selection; vehicles have numbers from 1."""
+_SHOWN = 10
+"""Numbers of vehicles that an error lists."""
+
+
+class Selection:
+    """Number of the selected vehicle.
+
+    Attributes
+    ----------
+    identity : int
+        Its number; `NONE` where none is selected.
+    """
+
+    def __init__(self) -> None:
+        self.identity = NONE
+
+    def choose(self, identity: int, estimates: Sequence[TrackEstimate]) -> None:
+        """Select a vehicle by its number; `NONE` selects none.
+
+        Raises
+        ------
+        InputError
+            If no vehicle has it.
+        """
+        numbers = [one.identity for one in estimates]
+        if identity != NONE and identity not in numbers:
+            known = ", ".join(map(str, numbers[:_SHOWN])) + (", …" if numbers[_SHOWN:] else "")
+            there = f"there are {known}" if numbers else "there is none"
+            raise InputError(f"no vehicle has the number {identity}; {there}")
+        self.identity = identity
+
+    def choose_at(self, point: Position, estimates: Sequence[TrackEstimate]) -> None:
+        """Select the vehicle at a point: of several the one with the smallest box.
+
+        Raises
+        ------
+        InputError
+            If there is none, within the size of a vehicle.
+        """
+        shown = [one for one in estimates if one.mode is not TrackMode.LOST]
+        inside = [one for one in shown if _contains(one.box, point)]
+        if inside:
+            self.identity = min(inside, key=lambda one: (one.box.area, one.identity)).identity
+            return
+        near = [one for one in shown if _distance(one.box, point) < one.box.diagonal]
+        if not near:
+            raise InputError(f"there is no vehicle at {point[0]:g},{point[1]:g} px")
+        self.identity = min(near, key=lambda one: _distance(one.box, point)).identity
+
+    def clear(self) -> None:
+        """Select none."""
+        self.identity = NONE
+
+    def of(self, estimates: Sequence[TrackEstimate]) -> TrackEstimate | None:
+        """Return the estimate of the selected vehicle, where there is one."""
+        return next((one for one in estimates if one.identity == self.identity), None)
+
+
+def _contains(box: Box, point: Position) -> bool:
+    x, y = point
+    return box.x <= x < box.x + box.width and box.y <= y < box.y + box.height
+
+
+def _distance(box: Box, point: Position) -> float:
+    return math.dist(box.centre, point)
+
 
 _MOST_TARGETS = 100
 """Targets that may wait for the first image, or come between two: more are a mistake of a program,

@@ -12,26 +12,102 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node that publishes the images of a source."""
+"""The node that publishes the images of a source.
+
+Stamps of published images, and the moment at which each is due.
+
+The executable `video_source`.
+"""
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import rclpy
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.recordings.footage import Footage, Picture
-from vehicle_pf_tracker.recordings.open_footage import is_live, is_recording, open_footage
-from vehicle_pf_tracker.ros.video_source.calibration import read_calibration
-from vehicle_pf_tracker.ros.video_source.outputs import ImageOutputs
-from vehicle_pf_tracker.ros.video_source.pacing import BackOff, Pace
+from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
+from vehicle_pf_tracker.ros.process import end_at_once, run_process
+from vehicle_pf_tracker.ros.transport import image_transport
+from vehicle_pf_tracker.ros.video_source.outputs import ImageOutputs, read_calibration
 from vehicle_pf_tracker.ros.video_source.parameters import declare
+
+
+class Pace:
+    """Stamps for the images of one pass through a source.
+
+    Images of a file keep the intervals that it states: the first is stamped by the clock, and the
+    others follow, so that stamps do not carry the jitter of this process. Live images are stamped
+    by the clock as they come.
+
+    Parameters
+    ----------
+    clock : callable
+        Returns the present time in ns.
+    stop : threading.Event
+        Ends every wait.
+    """
+
+    def __init__(self, clock: Callable[[], int], stop: threading.Event) -> None:
+        self._clock, self._stop, self._is_live = clock, stop, False
+        self._began: tuple[int, int, float] | None = None
+        self.last = 0
+
+    def begin(self, *, is_live: bool) -> None:
+        """Begin a pass, of images that come by themselves where `is_live`."""
+        self._began, self._is_live = None, is_live
+
+    def stamp(self, recorded_ns: int) -> int:
+        """Return the stamp of an image with the source's own time, once it is due.
+
+        It is later than any before. Returns early when the process ends.
+        """
+        if self._is_live:
+            self.last = max(self._clock(), self.last + 1)
+            return self.last
+        if self._began is None:
+            self._began = recorded_ns, max(self._clock(), self.last + 1), time.monotonic()
+        first, stamped, when = self._began
+        passed = recorded_ns - first
+        self._stop.wait(max(when + passed / 1e9 - time.monotonic(), 0.0))
+        self.last = stamped + passed
+        return self.last
+
+
+class BackOff:
+    """Waits before one more try, twice as long as before the last.
+
+    Parameters
+    ----------
+    stop : threading.Event
+        Ends every wait.
+    shortest, longest : float
+        First wait, and the one that is kept to in the end, s.
+    """
+
+    def __init__(self, stop: threading.Event, shortest: float = 1.0, longest: float = 30.0) -> None:
+        self._stop, self._shortest, self._longest = stop, shortest, longest
+        self.seconds = shortest
+
+    def reset(self) -> None:
+        """Begin with the shortest wait again: an image came."""
+        self.seconds = self._shortest
+
+    def wait(self) -> None:
+        """Wait, unless the process ends meanwhile."""
+        self._stop.wait(self.seconds)
+        self.seconds = min(2 * self.seconds, self._longest)
+
 
 _NAME = "video_source"
 _LATE = 1.0
@@ -195,3 +271,84 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         except InputError as error:
             self._note_break(str(error))
             return None
+
+
+_NODE_NAME = "video_source"
+_IMAGE_BYTES = 1920 * 1080 * 3
+"""Size of an image of which the segment holds four; one of 4K still fits once."""
+_LAST_WAIT = 2.0
+"""Seconds that the thread gets to end; one that waits for a silent camera is left behind."""
+_LOOK_EVERY = 0.1
+"""Seconds between two looks whether the source has ended."""
+_USAGE = """\
+usage: video_source SOURCE [--ros-args -p NAME:=VALUE -r image:=TOPIC ...]
+SOURCE is a video file, a folder of images, a camera's index or a stream's URL. Parameters: source,
+fps, loop, frame_id, compressed, jpeg_quality, camera_info_url."""
+
+
+def run_video_source(arguments: Sequence[str]) -> int:
+    """Publish a source until it ends or a signal comes.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Command line without the program's name.
+
+    Returns
+    -------
+    int
+        Exit status: 0 ended by a signal or at the end of a file, 1 a source that cannot be read
+        (printed on stderr), 2 usage.
+    """
+    is_left_behind = False
+
+    def serve(words: list[str]) -> int:
+        nonlocal is_left_behind
+        if len(words) > 1 or any(word.startswith("-") for word in words):
+            return _usage(words)
+        status, is_left_behind = _serve(*words)
+        return status
+
+    status = run_process(_NODE_NAME, arguments, serve)
+    if is_left_behind:
+        end_at_once(status)
+    return status
+
+
+def _serve(source: str = "") -> tuple[int, bool]:
+    """Return the exit status, and whether a thread was left behind."""
+    executor = SingleThreadedExecutor()
+    node = None
+    try:
+        with image_transport(_IMAGE_BYTES, rclpy.get_rmw_implementation_identifier()) as notices:
+            node = VideoSourceNode(source)
+        for notice in notices:
+            node.get_logger().warning(notice)
+        executor.add_node(node)
+        while rclpy.ok() and not node.is_done:
+            executor.spin_once(timeout_sec=_LOOK_EVERY)
+    except ExternalShutdownException:
+        pass
+    except Exception:
+        if rclpy.ok():
+            raise  # otherwise a signal took the ground from under a call
+    finally:
+        executor.shutdown()
+    return _end(node) if node is not None else (0, False)
+
+
+def _end(node: VideoSourceNode) -> tuple[int, bool]:
+    """End the node, also beside a thread that waits: else its shared memory would stay."""
+    has_ended = node.stop(_LAST_WAIT)
+    node.destroy_node()
+    if node.problem:
+        print(f"{_NODE_NAME}: {node.problem}", file=sys.stderr)
+    return (1 if node.problem else 0), not has_ended
+
+
+def _usage(words: Sequence[str]) -> int:
+    is_asked = set(words) <= {"-h", "--help"}
+    if not is_asked:
+        print(f"{_NODE_NAME}: unknown arguments: {' '.join(words)}", file=sys.stderr)
+    print(_USAGE, file=sys.stdout if is_asked else sys.stderr)
+    return 0 if is_asked else 2

@@ -12,12 +12,16 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Appearance of the target: cells of gradients and colour, and the filter that finds them."""
+"""Appearance of the target: cells of gradients and colour, and the filter that finds them.
+
+Width and height of the box, by trying sizes a step larger and smaller.
+"""
 
 from __future__ import annotations
 
 import copy
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -36,7 +40,8 @@ from vehicle_pf_tracker.image.correlation_filter import (
 )
 from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures, Grey
 from vehicle_pf_tracker.image.kernels.interface import Kernels
-from vehicle_pf_tracker.image.partial_fourier import Spectrum
+from vehicle_pf_tracker.image.spectra import Spectrum
+from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
 
 _CELLS = 32
 """Cells along each side of a patch; a power of two for the Fourier transform."""
@@ -254,3 +259,38 @@ class Appearance:
         # Lightness is 0 to 100, a and b about as much to either side: all within about one.
         features[GRADIENT_CHANNELS:] = (lab * _COLOUR_GAINS - _COLOUR_MIDDLE).transpose(2, 0, 1)
         return features
+
+
+_DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
+"""Axes that are stretched, one pair of sizes per frame in turns: vehicles mostly keep their aspect,
+so that both sides together have every second turn."""
+
+
+def searched_size(
+    size: Array, turn: int, peak: Callable[[Array], float],
+    parameters: SizeParameters,
+) -> Array:  # fmt: skip
+    """Move the size towards the vertex of the response over three sizes.
+
+    Parameters
+    ----------
+    size : (2,) array
+        Width and height, px.
+    turn : int
+        Number of the frame, which decides the direction that is tried.
+    peak : callable
+        Response at a size.
+    """
+    direction = np.array(_DIRECTIONS[turn % len(_DIRECTIONS)])
+    together = direction.all()
+    gain = parameters.gain if together else parameters.aspect_gain
+    if not parameters.step or not gain:
+        return size
+    factor = (1 + parameters.step) ** direction
+    at_size, smaller, larger = peak(size), peak(size / factor), peak(size * factor)
+    bend = smaller + larger - 2 * at_size
+    if bend < -1e-6 * at_size:
+        steps = min(max(0.5 * (smaller - larger) / bend, -1.0), 1.0)
+    else:
+        steps = float(np.sign(larger - smaller))
+    return np.asarray(size * factor ** (gain * steps))

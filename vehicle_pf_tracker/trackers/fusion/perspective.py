@@ -12,7 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Constant velocity on the road as the camera sees it, fitted to where the vehicle was seen."""
+"""Constant velocity on the road as the camera sees it, fitted to where the vehicle was seen.
+
+Sightings that a standing occluder has cut, made whole.
+
+A vehicle that drives behind a wall slowly is followed while less and less of it shows: the box
+shrinks with what is visible. One of its sides then stands with the wall while the opposite one
+drives on; and the other dimension tells the size.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +30,76 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.trackers.fusion.standing_occluder import made_whole
+
+_JUDGED = 8
+"""Last sightings that the sides' motion is fitted to: a quarter of a second."""
+_LEAST_RESPONSE = 0.6
+"""Response, of the usual one, of sightings that are judged, as sizes are followed from there on."""
+_WHOLE_QUANTILE = 0.9
+"""Quantile of the ratio of the sides that is the whole vehicle's: two seconds may mostly be cut."""
+_CUT = 0.9
+"""Ratio of the sides, of the whole vehicle's, below which the box is cut; sizes are good to 4 %."""
+_STANDS = 0.4
+"""Speed of a side that stands, of the opposite one's."""
+_LEAST_SPEED = 0.01
+"""Speed of the side that drives on, of the size per frame; below it all sides stand."""
+
+
+def made_whole(
+    ages: Array, positions: Array, sizes: Array, responses: Array
+) -> tuple[Array, Array] | None:
+    """Restore sightings that were cut from one side; None where the last ones are not cut.
+
+    Parameters
+    ----------
+    ages : (N,) array
+        Frames ago, descending.
+    positions, sizes : (N, 2) arrays
+        Centres, and widths and heights, px; the background stands.
+    responses : (N,) array
+        Of the usual one.
+
+    Returns
+    -------
+    positions, sizes : (N, 2) arrays
+        With the side that drives on where it was seen, and the other one as far away as the whole
+        vehicle's ratio of width and height tells.
+    """
+    judged = np.flatnonzero(responses >= _LEAST_RESPONSE)[-_JUDGED:]
+    if len(judged) < _JUDGED or len(ages) < 2 * _JUDGED:
+        return None
+    positions, sizes = positions.copy(), sizes.copy()
+    seen = sizes.copy()
+    restored = False
+    for axis in (0, 1):
+        ratio = seen[:, axis] / seen[:, 1 - axis]
+        whole = float(np.quantile(ratio, _WHOLE_QUANTILE))
+        low = positions[:, axis] - seen[:, axis] / 2
+        sides = np.stack([low, low + seen[:, axis]])
+        driving = _driving_side(ages[judged], sides[:, judged], float(np.sqrt(seen[-1].prod())))
+        if driving is None or ratio[judged[-1]] > _CUT * whole:
+            continue
+        cut = ratio < whole
+        sizes[cut, axis] = whole * seen[cut, 1 - axis]
+        inwards = 0.5 if driving == 0 else -0.5
+        positions[cut, axis] = sides[driving, cut] + inwards * sizes[cut, axis]
+        restored = True
+    return (positions, sizes) if restored else None
+
+
+def _driving_side(ages: Array, sides: Array, extent: float) -> int | None:
+    """Find the one of two sides (2, N) that drives towards the other, if it stands."""
+    times = ages.mean() - ages
+    spread = float(times @ times)
+    if not spread:  # repeated stamps: no time has passed
+        return None
+    speeds = sides @ times / spread
+    driving = int(np.abs(speeds).argmax())
+    stands = abs(speeds[1 - driving]) <= _STANDS * abs(speeds[driving])
+    moves = abs(speeds[driving]) >= _LEAST_SPEED * extent
+    inwards = (speeds[driving] > 0) == (driving == 0)
+    return driving if stands and moves and inwards else None
+
 
 KEPT_FRAMES = 60.0
 """Age in frames from which a sighting tells nothing about the present motion."""

@@ -25,16 +25,14 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.camera_motion import CameraFlow
-from vehicle_pf_tracker.image.small_grey import small_grey
+from vehicle_pf_tracker.image.camera_motion import CameraFlow, small_grey
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
-from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
+from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View, searched_size
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, FASTEST_GROWTH, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
-from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.turning import Turned, TurningBranch

@@ -34,9 +34,8 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.camera_motion import CameraMotion, small_grey
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.small_grey import small_grey
 from vehicle_pf_tracker.image.window import is_outside, keep_inside
 from vehicle_pf_tracker.trackers.base import Outcome
 from vehicle_pf_tracker.trackers.estimate import Estimate

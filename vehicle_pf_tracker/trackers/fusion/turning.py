@@ -27,7 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.small_grey import SmallGrey
+from vehicle_pf_tracker.image.camera_motion import SmallGrey
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.perspective import (

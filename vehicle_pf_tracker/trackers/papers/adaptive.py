@@ -30,7 +30,7 @@ from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
 from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.parameters.table import group, parameter
-from vehicle_pf_tracker.trackers.papers.repeated_resampling import (
+from vehicle_pf_tracker.trackers.papers.conventional import (
     RepeatedResampling,
     RepeatedResamplingParameters,
     WeighedParticles,

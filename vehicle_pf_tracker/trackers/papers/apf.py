@@ -48,13 +48,14 @@ from vehicle_pf_tracker.trackers.papers.clear_level import (
     ClearLevel,
     ClearLevelParameters,
 )
-from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters, log_likelihood
-from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
-from vehicle_pf_tracker.trackers.papers.shared_parameters import (
+from vehicle_pf_tracker.trackers.papers.likelihood import (
+    LikelihoodParameters,
     as_printed_switch,
     histogram_bits_parameter,
+    log_likelihood,
     resampling_parameter,
 )
+from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 
 
 @dataclass(frozen=True, slots=True)

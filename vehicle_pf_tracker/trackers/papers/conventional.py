@@ -16,19 +16,168 @@
 
 While the effective sample size is too small, every particle is replaced by a jittered copy drawn
 from the weighted ones, and weighted again. Step numbers are those of Table I.
+
+Repeated resampling within a frame: common part of `conventional` and `adaptive` (P3).
+
+Particles are weighted, and while their effective sample size is too small they are replaced and
+weighted again (Tables I and II). The two filters differ in which particles they replace. Equation 6
+has a particle's previous weight as a factor, the tables have not; as in the tables, the next frame
+starts without it also where no pass has run (interpretation 28).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from abc import abstractmethod
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.trackers.papers.repeated_resampling import (
-    RepeatedResampling,
-    RepeatedResamplingParameters,
-    WeighedParticles,
-    common_print,
+from vehicle_pf_tracker.filtering.motion import sample_normal
+from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
+from vehicle_pf_tracker.image.similarity import hellinger_distance
+from vehicle_pf_tracker.image.window import keep_inside
+from vehicle_pf_tracker.parameters.table import group, parameter
+from vehicle_pf_tracker.trackers.base import Cloud, Outcome
+from vehicle_pf_tracker.trackers.papers.likelihood import (
+    LikelihoodParameters,
+    as_printed_switch,
+    log_likelihood,
 )
+from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+
+
+@dataclass(frozen=True, slots=True)
+class RepeatedResamplingParameters(ColourParameters):
+    """Parameters of both filters of P3."""
+
+    as_printed: bool = as_printed_switch("interpretations 21, 22 and 29")
+    sigma: float = parameter(
+        14.0,
+        "About 1.75 times the speed: less loses fast vehicles, more follows similar vehicles.",
+        minimum=0.01,
+        maximum=1000.0,
+        unit="px/frame",
+        source="P3 Table I step 5, interpretation 23",
+        tuned=True,
+    )
+    jitter: float = parameter(
+        0.5,
+        "Larger: regenerated particles lie further from the ones they are copies of.",
+        minimum=0.0,
+        maximum=10.0,
+        unit="share of sigma",
+        source="P3 Table I step 16, interpretation 23",
+        tuned=True,
+    )
+    criterion: float = parameter(
+        0.7,
+        "Higher: more passes a frame until the effective sample size is reached; 1, as printed, "
+        "never is.",
+        minimum=0.0,
+        maximum=1.0,
+        unit="share of the particles",
+        source="P3 Table I step 13, interpretation 21",
+        tuned=True,
+    )
+    most_passes: int = parameter(
+        20,
+        "Lower: a frame takes less time at most.",
+        minimum=0,
+        maximum=1000,
+        unit="passes/frame",
+        source="P3 section VI",
+    )
+    weighted_mean: bool = parameter(
+        True,
+        "Weigh particles in the estimate; off takes their plain mean, as printed.",
+        source="P3 section V, interpretation 29",
+    )
+    likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.2)
+
+
+RepeatedParametersT = TypeVar("RepeatedParametersT", bound=RepeatedResamplingParameters)
+
+
+def common_print(parameters: RepeatedParametersT) -> RepeatedParametersT:
+    """Return `parameters` with everything as printed that both filters of P3 have."""
+    return replace(
+        parameters,
+        histogram_bits=3,
+        criterion=1.0,
+        most_passes=20,
+        weighted_mean=False,
+        likelihood=replace(parameters.likelihood, squared_distance=True),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class WeighedParticles:
+    """Particles with their similarities and weights.
+
+    Attributes
+    ----------
+    positions : (N, 2) array
+        Positions in px.
+    coefficients : (N,) array
+        Bhattacharyya coefficients with the reference.
+    cloud : Cloud
+        The positions with their normalised weights.
+    """
+
+    positions: Array
+    coefficients: Array
+    cloud: Cloud
+
+
+class RepeatedResampling(ColourTracker[RepeatedParametersT]):
+    """Tables I and II of P3 but for the pass of resampling."""
+
+    @property
+    @abstractmethod
+    def _settings(self) -> RepeatedParametersT:
+        """Effective parameters."""
+
+    @abstractmethod
+    def resample_once(
+        self, frame: Frame, particles: WeighedParticles, elapsed: float
+    ) -> tuple[WeighedParticles, int, str]:
+        """Replace particles once; also returns their number, and the branch taken."""
+
+    def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        settings = self._settings
+        parents = self._cloud.positions
+        moved, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)  # steps 3 to 7
+        particles = self.weigh(moved, self.similarity(frame, moved))  # steps 8 to 11
+        passes, replaced, regime = 0, 0, "regular"
+        while passes < settings.most_passes and self._is_degenerate(particles):  # steps 12 and 13
+            particles, count, regime = self.resample_once(frame, particles, elapsed)
+            passes, replaced = passes + 1, replaced + count
+        cloud = particles.cloud
+        reported = cloud if settings.weighted_mean else Cloud.uniform(cloud.positions)
+        outcome = self._report(frame, reported, elapsed, left_image=left_image)  # step 21
+        best = float(1.0 - hellinger_distance(particles.coefficients.max()))
+        return replace(
+            outcome,
+            cloud=cloud,
+            regime=regime,
+            similarities={**outcome.similarities, "best": best},
+            resampling_passes=passes,
+            resampled_particles=replaced,
+        )
+
+    def weigh(self, positions: Array, coefficients: Array) -> WeighedParticles:
+        """Weigh particles by their Bhattacharyya coefficients, (N,)."""
+        weights = from_log(log_likelihood(coefficients, self._settings.likelihood))
+        return WeighedParticles(positions, coefficients, Cloud(positions, *weights))
+
+    def _is_degenerate(self, particles: WeighedParticles) -> bool:
+        limit = self._settings.criterion * len(particles.positions)
+        return effective_sample_size(particles.cloud.weights) < limit
+
+    def _scattered(self, frame: Frame, parents: Array, spread: float) -> Array:
+        """Jitter copies of `parents` by `spread` px, inside the image."""
+        return keep_inside(frame, parents + sample_normal(self._rng, len(parents), spread))
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,8 +45,7 @@ from vehicle_pf_tracker.image.similarity import (
     bhattacharyya_coefficient,
     hellinger_distance,
 )
-from vehicle_pf_tracker.image.window import keep_inside
-from vehicle_pf_tracker.image.window_feature import Histograms, WindowFeature
+from vehicle_pf_tracker.image.window import Histograms, WindowFeature, keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.papers.feature_weighting import (
     FeatureWeighting,

@@ -22,11 +22,11 @@ from typing import Any, TypeVar
 
 from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
-from vehicle_pf_tracker.image.window_feature import WindowFeature
+from vehicle_pf_tracker.image.window import WindowFeature
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.contract import ParticleParameters
-from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters
-from vehicle_pf_tracker.trackers.papers.shared_parameters import (
+from vehicle_pf_tracker.trackers.papers.likelihood import (
+    LikelihoodParameters,
     as_printed_switch,
     resampling_parameter,
 )

@@ -24,7 +24,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from vehicle_pf_tracker.image.colour import RgbMarginals
-from vehicle_pf_tracker.image.window_feature import WindowFeature
+from vehicle_pf_tracker.image.window import WindowFeature
 from vehicle_pf_tracker.parameters.table import group
 from vehicle_pf_tracker.trackers.papers.mfpf import FeatureFilter
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (

@@ -29,8 +29,12 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
-from vehicle_pf_tracker.trackers.traffic.overlaps import areas, intersections
+from vehicle_pf_tracker.trackers.traffic.detections import (
+    SHIPPED,
+    TrafficNumbers,
+    areas,
+    intersections,
+)
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
 

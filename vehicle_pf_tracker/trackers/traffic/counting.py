@@ -27,9 +27,14 @@ from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.line_watch import LineWatch, Place
-from vehicle_pf_tracker.trackers.traffic.passage_speed import PassageSpeed
-from vehicle_pf_tracker.trackers.traffic.zone_watch import ENTRY, EXIT, ZoneWatch
+from vehicle_pf_tracker.trackers.traffic.watches import (
+    ENTRY,
+    EXIT,
+    LineWatch,
+    PassageSpeed,
+    Place,
+    ZoneWatch,
+)
 
 _REMEMBERED_NS = 600 * 10**9
 """Time in ns that a vehicle which is not among the estimates is remembered: the longest that a

@@ -12,7 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Boxes that a detector found in a frame."""
+"""Boxes that a detector found in a frame.
+
+Overlaps of boxes that are given by their edges: left, top, right, bottom in px.
+
+Numbers of `traffic` that can be fitted but that no user turns.
+
+`laboratory/traffic_fit.py` fits them to synthetic scenes. The defaults were chosen by hand;
+laboratory/notes/traffic.md has the comparison.
+"""
 
 from __future__ import annotations
 
@@ -95,3 +103,85 @@ class Detections:
         _, first = np.unique(boxes[kept], axis=0, return_index=True)
         kept = kept[np.sort(first)][:MOST_DETECTIONS]
         return self.take(np.sort(kept))
+
+
+def intersections(edges: Array, others: Array) -> Array:
+    """Measure the common areas in px² of one box (4,) with others (N, 4)."""
+    width = np.minimum(edges[2], others[:, 2]) - np.maximum(edges[0], others[:, 0])
+    height = np.minimum(edges[3], others[:, 3]) - np.maximum(edges[1], others[:, 1])
+    return np.asarray(np.maximum(width, 0.0) * np.maximum(height, 0.0))
+
+
+def areas(edges: Array) -> Array:
+    """Measure the areas in px² of boxes (..., 4), at least one."""
+    sides = np.maximum(edges[..., 2:] - edges[..., :2], 0.0)
+    return np.asarray(np.maximum(sides[..., 0] * sides[..., 1], 1.0))
+
+
+def unions(edges: Array, others: Array) -> Array:
+    """Divide intersections of one box (4,) with others (N, 4) by their unions."""
+    common = intersections(edges, others)
+    return np.asarray(common / (areas(edges) + areas(others) - common))
+
+
+def inside_image(edges: Array, size: tuple[int, int]) -> float:
+    """Measure the share of a box (4,) that lies in an image of this width and height."""
+    image = np.array([[0.0, 0.0, *size]])
+    return float(intersections(edges, image)[0] / areas(edges))
+
+
+def clipped(edges: Array, size: tuple[int, int]) -> Array:
+    """Cut boxes (N, 4) at the borders of the image, at least one px wide and high."""
+    limits = np.array([*size, *size], dtype=np.float64)
+    low = np.clip(edges[:, :2], 0.0, limits[:2] - 1)
+    return np.hstack([low, np.maximum(np.clip(edges[:, 2:], 0.0, limits[2:]), low + 1)])
+
+
+@dataclass(frozen=True, slots=True)
+class TrafficNumbers:
+    """Weights and thresholds.
+
+    Attributes
+    ----------
+    agreement : float
+        Log odds that a detection adds by being where a track predicts it.
+    proven_by_scores : float
+        Sum of the log odds of scores from which on no drive is asked for.
+    missed_held, missed_hidden : float
+        Log odds that a detection missed in plain sight takes off a vehicle that its pixels hold,
+        and off one that may be hidden by something unknown.
+    partial : float
+        Cost of taking a detection for a part of the vehicle.
+    missing : float
+        Cost of all of the vehicle that the detection lacks.
+    held_fall : float
+        Fall of the colours' similarity below its usual value from which on pixels do not hold it.
+    held_caution : float
+        Factor on the deviations of pixels: errors of successive frames go the same way and add up.
+    colour_threshold : float
+        Sum of the differences of the three channels from which on a pixel has changed.
+    patience : float
+        Images for which what has changed is not learnt as background: four seconds, in which a slow
+        lorry passes.
+    shadow : float
+        Least brightness of a shadow, of the background's.
+    apart : float
+        Advantage in shape from which on a blob is taken for several vehicles.
+    """
+
+    agreement: float = 1.2
+    proven_by_scores: float = 4.0
+    missed_held: float = 0.3
+    missed_hidden: float = 0.12
+    partial: float = 3.0
+    missing: float = 12.0
+    held_fall: float = 0.15
+    held_caution: float = 1.5
+    colour_threshold: float = 32.0
+    patience: float = 100.0
+    shadow: float = 0.35
+    apart: float = 1.0
+
+
+SHIPPED = TrafficNumbers()
+"""Numbers in use."""

@@ -22,8 +22,9 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence, Sample
-from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
-from vehicle_pf_tracker.trackers.traffic.overlaps import (
+from vehicle_pf_tracker.trackers.traffic.detections import (
+    SHIPPED,
+    TrafficNumbers,
     areas,
     inside_image,
     intersections,

@@ -24,7 +24,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.association import INWARD
-from vehicle_pf_tracker.trackers.traffic.overlaps import areas, intersections
+from vehicle_pf_tracker.trackers.traffic.detections import areas, intersections
 from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 

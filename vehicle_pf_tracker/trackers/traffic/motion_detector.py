@@ -12,7 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Detection of moving vehicles before a standing camera."""
+"""Detection of moving vehicles before a standing camera.
+
+Model of what a standing camera sees without vehicles: a few earlier colours of every pixel.
+
+A pixel is background where two of its samples have its colour; samples are renewed at random where
+the background is seen, and some are given to a neighbour, so that leaves and uncovered road are
+learnt from their surroundings (Barnich and Van Droogenbroeck 2011). What has changed is not learnt
+until it has stayed for long: a lorry of one colour hides a place for seconds, and would melt in.
+"""
 
 from __future__ import annotations
 
@@ -24,11 +32,142 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, check_frame
-from vehicle_pf_tracker.trackers.traffic.background import Background
 from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, Detections, TrafficNumbers
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
+
+Colours = npt.NDArray[np.uint8]
+Pixels = npt.NDArray[np.bool_]
+
+_SAMPLES = 10
+"""Colours that are remembered of each pixel."""
+_BETWEEN = 2
+"""Images from one of the first samples to the next: most pixels are free in two of ten."""
+_AGREEING = 2
+"""Samples of the pixel's colour from which on it is background: one may be of a vehicle."""
+_RENEWED = 40
+"""Images after which a sample is renewed, on average: light and leaves change within a second."""
+_RECOVERY = 0.1
+"""Images of a change that are forgiven in an image without one: behind a vehicle in ten there is
+still a road, while leaves in the wind are learnt in the end."""
+_SHADE = 20.0
+"""Largest distance in colour of a shadow from the darkened background."""
+_COMPARED = 3
+"""Every this many of the samples make the background that shadows are told by: a mean is enough."""
+_SPARSE = (slice(None, None, 4), slice(None, None, 4))
+"""Pixels that the camera's gain is taken from."""
+_LIT = 60
+"""Sum of the channels from which on a pixel tells the gain."""
+_MOST_GAIN = 1.3
+"""Largest change of the camera's gain, either way; beyond it the light was switched."""
+_NEIGHBOURS = ((-1, 0), (1, 0), (0, -1), (0, 1))
+_AROUND = np.ones((7, 7), np.uint8)
+"""Surroundings of a change that are not learnt either: the rim of a vehicle that is not told from
+the road would be given on to its neighbours, and eat into it."""
+_SUM = np.ones((1, 3), np.float32)
+
+
+class Background:
+    """Samples of the colours of every pixel.
+
+    Parameters
+    ----------
+    shape : (int, ...)
+        Shape of the images.
+    seed : int
+        Seed of the choice of the samples.
+    numbers : TrafficNumbers
+        Thresholds.
+    """
+
+    def __init__(self, shape: tuple[int, ...], seed: int, numbers: TrafficNumbers) -> None:
+        self._numbers = numbers
+        self._rng = np.random.default_rng(seed)
+        # One image of noise, read from another place each time, is cheaper than new noise.
+        self._noise = self._rng.integers(0, 256, 2 * shape[0] * shape[1], dtype=np.uint8)
+        self._samples: list[Colours] = []
+        self._age = 0
+        self._exposure = np.zeros(shape[:2], dtype=np.float32)
+
+    @property
+    def is_known(self) -> bool:
+        """Tell whether there are as many samples as it takes."""
+        return len(self._samples) == _SAMPLES
+
+    def begin(self, image: Colours) -> None:
+        """Take one of the first images."""
+        if self._age % _BETWEEN == 0:
+            self._samples.append(image.copy())
+        self._age += 1
+
+    def compare(self, image: Colours) -> Pixels:
+        """Mark the pixels that have changed and are not just in a shadow."""
+        image = self._with_former_gain(image)
+        agreeing = np.zeros(image.shape[:2], np.uint8)
+        for sample in self._samples:
+            difference = cv2.transform(cv2.absdiff(image, sample), _SUM)
+            agreeing += difference < self._numbers.colour_threshold
+        changed = agreeing < _AGREEING
+        known = [sample[changed] for sample in self._samples[::_COMPARED]]
+        background = np.asarray(np.mean(known, axis=0), np.float64)
+        changed[changed] = ~self._is_shadow(image[changed].astype(np.float64), background)
+        return changed
+
+    def learn(self, image: Colours, changed: Pixels, held: Pixels) -> None:
+        """Renew samples, but where something has changed lately or is held."""
+        patience = self._numbers.patience
+        self._exposure += np.where(changed, np.float32(1), np.float32(-_RECOVERY))
+        np.clip(self._exposure, 0, 2 * patience, out=self._exposure)
+        near = cv2.dilate(changed.astype(np.uint8), _AROUND) > 0
+        learnt = ~(held | (near & (self._exposure < patience)))
+        self._age += 1
+        chosen = learnt & self._some(learnt.shape)
+        sample = self._samples[self._age % _SAMPLES]
+        sample[chosen] = image[chosen]
+        other = self._samples[int(self._rng.integers(_SAMPLES))]
+        _give(image, learnt & self._some(learnt.shape), other, self._rng)
+
+    def _with_former_gain(self, image: Colours) -> Colours:
+        """Undo a change of the camera's gain: something white that drives by lowers it."""
+        before = self._samples[0][_SPARSE].astype(np.float32).sum(axis=2)
+        lit = before > _LIT
+        if not lit.any():
+            return image
+        gain = float(np.median(image[_SPARSE].astype(np.float32).sum(axis=2)[lit] / before[lit]))
+        if not 1 / _MOST_GAIN < gain < _MOST_GAIN:
+            return image
+        return np.asarray(cv2.convertScaleAbs(image, alpha=1 / gain), np.uint8)
+
+    def _some(self, shape: tuple[int, ...]) -> Pixels:
+        """Choose as many pixels at random as are renewed in an image."""
+        size = shape[0] * shape[1]
+        start = int(self._rng.integers(size))
+        few = self._noise[start : start + size] < 256 * _SAMPLES // _RENEWED
+        return np.asarray(few.reshape(shape))
+
+    def _is_shadow(self, colours: Array, background: Array) -> Pixels:
+        """Find colours (N, 3) that are the background's, but darker."""
+        power = np.maximum((background * background).sum(axis=1), 1.0)
+        share = (colours * background).sum(axis=1) / power
+        apart = ((share[:, np.newaxis] * background - colours) ** 2).sum(axis=1)
+        dark = (share >= self._numbers.shadow) & (share <= 1)
+        return np.asarray(dark & (apart < (_SHADE * share) ** 2))
+
+
+def _give(image: Colours, chosen: Pixels, sample: Colours, rng: np.random.Generator) -> None:
+    """Give the colours of chosen pixels to the sample of their neighbours on one side."""
+    dy, dx = _NEIGHBOURS[int(rng.integers(len(_NEIGHBOURS)))]
+    height, width = chosen.shape
+    source = (
+        slice(max(-dy, 0), height - max(dy, 0)),
+        slice(max(-dx, 0), width - max(dx, 0)),
+    )
+    target = sample[
+        max(dy, 0) : height - max(-dy, 0),
+        max(dx, 0) : width - max(-dx, 0),
+    ]
+    target[chosen[source]] = image[source][chosen[source]]
+
 
 _WIDEST = 400
 """Width in px above which the image is halved: finer says nothing more about vehicles."""

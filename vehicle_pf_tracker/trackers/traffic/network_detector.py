@@ -12,11 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Detection by a network that somebody else has loaded, told apart by the form of its outputs."""
+"""Detection by a network that somebody else has loaded, told apart by the form of its outputs.
+
+Images fitted into the input of a network.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import cv2
@@ -26,10 +30,8 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.letterbox import PADDING, Fit, letterboxed, stretched
-from vehicle_pf_tracker.trackers.traffic import class_names
+from vehicle_pf_tracker.trackers.traffic import network_outputs
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.detector_parameters import DetectorParameters
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.network_outputs import (
     SSD,
@@ -40,6 +42,65 @@ from vehicle_pf_tracker.trackers.traffic.network_outputs import (
     decode,
     form_of,
 )
+from vehicle_pf_tracker.trackers.traffic.parameters import DetectorParameters
+
+PADDING = 114
+"""Grey of the borders, which YOLOX and YOLOv8 were trained with."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """Place of an image in the input of a network.
+
+    Attributes
+    ----------
+    scale : (float, float)
+        Pixels of the input per pixel of the image, across and down.
+    offset : (float, float)
+        Upper left corner of the image in the input, px.
+    """
+
+    scale: tuple[float, float]
+    offset: tuple[float, float]
+
+    def to_image(self, boxes: Array) -> Array:
+        """Map boxes (N, 4: left, top, width, height) in px of the input to px of the image."""
+        scale = np.array([*self.scale, *self.scale])
+        mapped: Array = (boxes - np.array([*self.offset, 0.0, 0.0])) / scale
+        return mapped
+
+
+def letterboxed(frame: Frame, width: int, height: int, *, centred: bool) -> tuple[Frame, Fit]:
+    """Fit an image into `width` x `height` px with its proportions, grey around it.
+
+    Parameters
+    ----------
+    frame : Frame
+        The image.
+    width, height : int
+        Size of the input in px.
+    centred : bool
+        Put it in the middle; else in the upper left corner.
+    """
+    across, down = frame_size(frame)
+    ratio = min(width / across, height / down)
+    size = max(1, round(across * ratio)), max(1, round(down * ratio))
+    left, top = ((width - size[0]) // 2, (height - size[1]) // 2) if centred else (0, 0)
+    picture: Frame = np.full((height, width, 3), PADDING, np.uint8)
+    picture[top : top + size[1], left : left + size[0]] = _resized(frame, *size)
+    return picture, Fit((size[0] / across, size[1] / down), (float(left), float(top)))
+
+
+def stretched(frame: Frame, width: int, height: int) -> tuple[Frame, Fit]:
+    """Resize an image to `width` x `height` px, whatever its proportions."""
+    across, down = frame_size(frame)
+    return _resized(frame, width, height), Fit((width / across, height / down), (0.0, 0.0))
+
+
+def _resized(frame: Frame, width: int, height: int) -> Frame:
+    resized: Frame = cv2.resize(frame, (width, height), interpolation=cv2.INTER_LINEAR)  # type: ignore[assignment]
+    return resized
+
 
 _TYPES: Mapping[str, Any] = {
     "tensor(float)": np.float32,
@@ -195,15 +256,15 @@ class NetworkDetector:
         if words:
             if count is not None and len(words) != count:
                 raise InputError(f"it has {count} classes, and detector.names {len(words)} names")
-            return class_names.numbered(tuple(words))
+            return network_outputs.numbered(tuple(words))
         metadata = self._network.get_modelmeta().custom_metadata_map
-        in_file = class_names.parse_metadata(metadata.get("names", ""))
+        in_file = network_outputs.parse_metadata(metadata.get("names", ""))
         if in_file:
             return in_file
         if self.form == SSD:
-            return class_names.coco_from_one()
-        if count == len(class_names.COCO):
-            return class_names.numbered(class_names.COCO)
+            return network_outputs.coco_from_one()
+        if count == len(network_outputs.COCO):
+            return network_outputs.numbered(network_outputs.COCO)
         if count == 1:
             return {0: ""}
         raise InputError(f"it has {count} classes without names; give them with detector.names")
@@ -216,7 +277,7 @@ class NetworkDetector:
         if words == DetectorParameters().classes:  # a network need not know all of these
             known = [word for word in words.split(",") if word in self._names.values()]
             words = ",".join(known) or words
-        return class_names.chosen(words, self._names)
+        return network_outputs.chosen(words, self._names)
 
     def _filtered(self, found: Found) -> tuple[Array, Array, npt.NDArray[np.int64]]:
         """Return boxes, scores and classes of usable boxes of the chosen classes, best first."""

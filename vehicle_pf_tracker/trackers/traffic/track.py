@@ -12,21 +12,82 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""One vehicle that is followed: its state, the evidence that it exists, and its looks."""
+"""One vehicle that is followed: its state, the evidence that it exists, and its looks.
+
+Occlusions among vehicles: the one whose lower edge is nearer on the road hides the other.
+
+Colour histograms of boxes, from an image whose colours are quantised once for all vehicles.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.colours import BINS
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import Sample
+from vehicle_pf_tracker.trackers.traffic.detections import areas, inside_image, intersections
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
+
+BINS = 64
+"""Four levels of each channel: enough to tell colours, few enough for a box of 100 px."""
+_INNER = 0.1
+"""Margin on each side, of the size, that is left out: background."""
+_WIDE = 48
+"""Width in px from which on every other row and column is enough."""
+
+
+class ColourBins:
+    """Frame as numbers of joint colour bins."""
+
+    def __init__(self, frame: Frame) -> None:
+        level = frame >> 6
+        bins = (level[..., 0] << 4) | (level[..., 1] << 2) | level[..., 2]
+        self._bins: npt.NDArray[np.uint8] = np.asarray(bins, np.uint8)
+
+    def histogram(self, edges: Array, covers: Array) -> Array:
+        """Count the colours of a box's inner part.
+
+        Parameters
+        ----------
+        edges : (4,) array
+            Of the box, px.
+        covers : (K, 4) array
+            Edges of boxes whose pixels are left out.
+
+        Returns
+        -------
+        (BINS,) array
+            Shares of the colours; zero where nothing of the box is in sight.
+        """
+        left, top, right, bottom = edges.tolist()
+        dx, dy = _INNER * (right - left), _INNER * (bottom - top)
+        x0, x1 = max(int(left + dx), 0), max(int(right - dx) + 1, 0)
+        y0, y1 = max(int(top + dy), 0), max(int(bottom - dy) + 1, 0)
+        part = self._bins[y0:y1, x0:x1]
+        if len(covers):
+            seen = np.ones(part.shape, dtype=bool)
+            for cover in np.maximum(covers - (x0, y0, x0, y0), 0.0).astype(int).tolist():
+                seen[cover[1] : cover[3], cover[0] : cover[2]] = False
+            part = part[seen]
+        elif x1 - x0 > _WIDE:
+            part = part[::2, ::2]
+        counts = np.bincount(part.ravel(), minlength=BINS)
+        return np.asarray(counts / max(int(counts.sum()), 1))
+
+
+def similarity(one: Array, other: Array) -> float:
+    """Bhattacharyya coefficient of two histograms, 0 to 1."""
+    return float(np.sqrt(one * other).sum())
+
 
 MOST_EVIDENCE = 8.0
 """Bound of the log odds that a vehicle exists: however long it was seen, some ten missed
@@ -191,3 +252,60 @@ class Track:
             age=self.age,
             hidden_by=(self.hidden_by or SCENE) if hidden else None,
         )
+
+
+_OCCLUDER_SEEN = 3.0
+"""Nominal periods since it was seen, up to which a vehicle can hide others."""
+_NAMED_SHARE = 0.3
+"""Share of a vehicle that another hides from which on it is named as its occluder."""
+
+
+def nearest_first(tracks: Sequence[Track], road: RoadPlane | None) -> list[Track]:
+    """Order vehicles by their distance from the camera.
+
+    Parameters
+    ----------
+    tracks : sequence of Track
+        Vehicles.
+    road : RoadPlane or None
+        Road that they stand on; None: the lower a vehicle stands in the image, the nearer it is.
+    """
+    edges = np.array([track.state.edges for track in tracks]).reshape(-1, 4)
+    feet = np.column_stack([(edges[:, 0] + edges[:, 2]) / 2, edges[:, 3]])
+    nearness = feet[:, 1] if road is None else road.homography.nearness(road.ideal(feet))
+    # What a lens cannot show is out of the image, and last.
+    distances = np.nan_to_num(-nearness, nan=np.inf).tolist()
+    order = sorted(zip(distances, tracks, strict=True), key=_by_distance)
+    return [track for _, track in order]
+
+
+def _by_distance(pair: tuple[float, Track]) -> tuple[float, int]:
+    return pair[0], pair[1].identity
+
+
+def cover(tracks: Sequence[Track], size: tuple[int, int], occlusions: bool) -> None:
+    """Note what of each vehicle is in sight.
+
+    Parameters
+    ----------
+    tracks : sequence of Track
+        Nearest first.
+    size : (int, int)
+        Width and height of the image.
+    occlusions : bool
+        False: no vehicle hides another.
+    """
+    nearer: list[Track] = []
+    edges = np.empty((0, 4))
+    for track in tracks:
+        own = track.state.edges
+        common = intersections(own, edges) / areas(own)
+        track.covers = edges[common > 0]
+        track.visible = max(1 - float(common.sum()), 0.0)
+        track.inside = inside_image(own, size)
+        track.hidden_by = None
+        if len(common) and common.max() > _NAMED_SHARE:
+            track.hidden_by = nearer[int(common.argmax())].identity
+        if occlusions and track.confirmed and track.unseen <= _OCCLUDER_SEEN and not track.lost:
+            nearer.append(track)
+            edges = np.vstack([edges, own])

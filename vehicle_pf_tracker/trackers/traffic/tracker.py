@@ -25,22 +25,37 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.association import GATE, assign, edge_costs
-from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
+from vehicle_pf_tracker.trackers.traffic.association import (
+    GATE,
+    Seen,
+    assign,
+    edge_costs,
+    former,
+    resume,
+)
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.detections import (
+    SHIPPED,
+    Detections,
+    TrafficNumbers,
+    areas,
+    clipped,
+    intersections,
+)
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
 from vehicle_pf_tracker.trackers.traffic.measuring import deviations, first_state, is_cut, measure
-from vehicle_pf_tracker.trackers.traffic.numbers import SHIPPED, TrafficNumbers
-from vehicle_pf_tracker.trackers.traffic.occlusion import cover, nearest_first
-from vehicle_pf_tracker.trackers.traffic.overlaps import areas, clipped, intersections
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
-from vehicle_pf_tracker.trackers.traffic.returning import former, resume
-from vehicle_pf_tracker.trackers.traffic.seen import Seen
-from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track
+from vehicle_pf_tracker.trackers.traffic.track import (
+    MOST_EVIDENCE,
+    ColourBins,
+    Track,
+    cover,
+    nearest_first,
+    similarity,
+)
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge
 
 DEFAULT_PERIOD = 1 / 30

@@ -16,9 +16,7 @@
 
 from __future__ import annotations
 
-from vehicle_pf_tracker.trackers.traffic.detector_parameters import (
-    TrafficRunParameters as TrafficParameters,
-)
+from vehicle_pf_tracker.trackers.traffic.parameters import TrafficRunParameters as TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 __all__ = ["TrafficParameters", "TrafficTracker"]

@@ -1,0 +1,55 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The command line of the laboratory: ``python -m laboratory stress REC… -o DIR``.
+
+The programs beside it that fit and score have command lines of their own:
+``python -m laboratory.fusion_fit --help``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from laboratory.stress import command as stress
+from vehicle_pf_tracker.cli.console import USAGE
+from vehicle_pf_tracker.cli.main import exit_status
+from vehicle_pf_tracker.cli.requests import add_options, request_of
+
+PROGRAM = "python -m laboratory"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line `argv`, that of the process if None, and return the exit status."""
+    words = sys.argv[1:] if argv is None else list(argv)
+    return exit_status(lambda: _run(words), PROGRAM)
+
+
+def _run(words: Sequence[str]) -> int:
+    parser = argparse.ArgumentParser(prog=PROGRAM, description="Experiments on the trackers.")
+    verbs = parser.add_subparsers(metavar="VERB", required=True)
+    verb = verbs.add_parser("stress", help="run systems over difficult cases made of recordings")
+    add_options(verb, stress.Request)
+    verb.set_defaults(command=[PROGRAM, *words])
+    try:
+        args = parser.parse_args(words)
+    except SystemExit as ended:  # argparse has said all there is to say
+        return ended.code if isinstance(ended.code, int) else USAGE
+    return stress.run(request_of(stress.Request, args))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

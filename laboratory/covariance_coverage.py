@@ -1,0 +1,229 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Fit and coverage of covariances over the runs that `laboratory.uncertainty` keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import astuple
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import minimize
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
+from vehicle_pf_tracker.trackers.uncertainty import CALIBRATIONS, Calibration, Spread
+
+COLUMNS = (
+    "stamp", "error_x", "error_y", "xx", "xy", "yy", "width", "height", "vx", "vy", "period",
+    "mode", "confidence", "occlusion",
+)  # fmt: skip
+"""Columns of a run: time in s, errors and sizes in px, velocity in px per frame period."""
+INSIDE = 5.991
+"""Square of the Mahalanobis distance that holds 95 % of a normal distribution in two dimensions."""
+_TAIL = 3.0
+"""Degrees of freedom of the Student distribution that is fitted: errors of trackers have far
+outliers, and these must not widen the ellipses of all the other frames."""
+_FIRST = ((1.0, 0.05, 0.15, 0.1, 0.4, 0.4), (1.0, 0.3, 0.4, 0.1, 1.0, 1.0))
+"""Numbers of a spread that the search starts from."""
+_PULL = 1e-4
+"""Weight of the squared logarithms beside the mean log-likelihood: numbers that the runs say
+nothing about stay near 1."""
+
+
+class Runs:
+    """Frames of all runs of a variant, but for the first of each, which is the truth itself.
+
+    Parameters
+    ----------
+    paths : list of Path
+        Files of its runs.
+    """
+
+    def __init__(self, paths: list[Path]) -> None:
+        tables = [_read(path) for path in paths]
+        self._values = np.concatenate([table[1:] for table in tables])
+        self.hidden_for = np.concatenate([_hidden_for(table)[1:] for table in tables])
+        self.change = np.concatenate([_change(table)[1:] for table in tables])
+
+    def __getitem__(self, name: str) -> Array:
+        column: Array = self._values[:, COLUMNS.index(name)]
+        return column
+
+    @property
+    def is_visible(self) -> Array:
+        """True where the tracker claims TRACKING."""
+        return np.asarray(self["mode"] == 0)
+
+    @property
+    def is_occluded(self) -> Array:
+        """True where the vehicle is truly out of sight."""
+        return np.asarray(self["occlusion"] == Occlusion.TOTAL)
+
+    def squares(self, spread: Spread) -> tuple[Array, Array]:
+        """Return squared Mahalanobis distances of the errors, and determinants, px⁴."""
+        doubt = spread.doubt * (1 - self["confidence"])
+        level = self["width"] * self["height"]
+        grown, changed = spread.growth * self.hidden_for, spread.change * self.change
+        level = level * (spread.size**2 + doubt**2 + changed**2 + grown**2)
+        way = spread.drift * self.hidden_for / self["period"]
+        vx, vy = way * self["vx"], way * self["vy"]
+        xx = spread.cloud**2 * self["xx"] + level + vx * vx
+        xy = spread.cloud**2 * self["xy"] + vx * vy
+        yy = spread.cloud**2 * self["yy"] + level + vy * vy
+        x, y = self["error_x"], self["error_y"]
+        # A cloud of one point, as mean shift has, and a size that the search takes to nothing.
+        area = np.maximum(xx * yy - xy * xy, 1e-12)
+        return (yy * x * x - 2 * xy * x * y + xx * y * y) / area, area
+
+    def calibrated(self, calibration: Calibration) -> tuple[Array, Array]:
+        """Return `squares` with the spread that belongs to each frame."""
+        pairs = zip(
+            self.squares(calibration.visible), self.squares(calibration.hidden), strict=True
+        )
+        first, second = (np.where(self.is_visible, *pair) for pair in pairs)
+        return first, second
+
+
+def _read(path: Path) -> Array:
+    try:
+        table: Array = np.load(path)[:, : len(COLUMNS)]
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot read the run {path}: {error}") from error
+    return table
+
+
+def _hidden_for(table: Array) -> Array:
+    """Return the time since the last claim of TRACKING, s."""
+    stamps, visible = table[:, 0], table[:, COLUMNS.index("mode")] == 0
+    seen = np.maximum.accumulate(np.where(visible, stamps, stamps[0]))
+    since: Array = stamps - seen
+    return since
+
+
+def _change(table: Array) -> Array:
+    """Return the logarithm of the side, in those of the first box."""
+    area = table[:, COLUMNS.index("width")] * table[:, COLUMNS.index("height")]
+    change: Array = np.log(area / area[0]) / 2
+    return change
+
+
+def runs_of(folder: Path) -> dict[str, list[Path]]:
+    """Return the files of runs by variant.
+
+    Raises
+    ------
+    InputError
+        If there are none.
+    """
+    found: dict[str, list[Path]] = {}
+    for path in sorted(folder.glob("*.npy")):
+        found.setdefault(path.name.partition(".")[0], []).append(path)
+    if not found:
+        raise InputError(f"{folder} has no runs; make them with `uncertainty run`")
+    return found
+
+
+def fit(runs: Runs) -> Calibration:
+    """Fit the spreads to runs: shape by likelihood, size by what holds 95 % of the frames."""
+    return Calibration(_fit(runs, runs.is_visible), _fit(runs, ~runs.is_visible))
+
+
+def _fit(runs: Runs, used: Array) -> Spread:
+    def cost(logarithms: Array) -> float:
+        squares, areas = runs.squares(Spread(*np.exp(logarithms).tolist()))
+        tail = (_TAIL + 2) / 2 * np.log1p(squares[used] / _TAIL)
+        likelihood = float(np.mean(np.log(areas[used]) / 2 + tail))
+        return likelihood + _PULL * float(logarithms @ logarithms)
+
+    options = {"maxiter": 4000, "xatol": 1e-3, "fatol": 1e-7}
+    found = min(
+        (minimize(cost, np.log(first), method="Nelder-Mead", options=options) for first in _FIRST),
+        key=lambda result: float(result.fun),
+    )
+    numbers = np.exp(found.x)
+    squares, _ = runs.squares(Spread(*numbers.tolist()))
+    factor = np.sqrt(np.quantile(squares[used], 0.95) / INSIDE)
+    if not runs.hidden_for[used].any():  # visible: nothing grows
+        numbers[4:] = 0
+    # Four digits, as the table has them.
+    return Spread(*(float(f"{number:.4g}") for number in factor * numbers))
+
+
+def fitted_table(folder: Path, licence: str) -> str:
+    """Write the module with the calibration of every variant, and of all together."""
+    paths = runs_of(folder)
+    everything = [path for group in paths.values() for path in group]
+    fits = {name: fit(Runs(group)) for name, group in [("*", everything), *paths.items()]}
+    lines = [
+        licence,
+        '"""Calibration of covariances, written by `python -m laboratory.uncertainty fit`."""',
+        "",
+        "from __future__ import annotations",
+        "",
+        "from collections.abc import Mapping",
+        "",
+        "from vehicle_pf_tracker.trackers.uncertainty import Calibration, Spread",
+        "",
+        "CALIBRATIONS: Mapping[str, Calibration] = {",
+    ]
+    for name, found in fits.items():
+        lines += [
+            f'    "{name}": Calibration(',
+            f"        {_source(found.visible)},",
+            f"        {_source(found.hidden)},",
+            "    ),",
+        ]
+    return "\n".join([*lines, "}", '"""By variant; `*` serves those that are not in it."""', ""])
+
+
+def _source(spread: Spread) -> str:
+    numbers = astuple(spread)
+    used = numbers if any(numbers[4:]) else numbers[:4]
+    return f"Spread({', '.join(f'{number:g}' for number in used)})"
+
+
+def report(folder: Path) -> str:
+    """Write the table of coverage by variant."""
+    runs = {name: Runs(paths) for name, paths in runs_of(folder).items()}
+    header = (
+        "variant", "all frames", "claimed visible", "claimed hidden", "truly out of sight",
+        "radius visible", "radius hidden",
+    )  # fmt: skip
+    return markdown(header, [_coverage_row(name, one, CALIBRATIONS) for name, one in runs.items()])
+
+
+def _coverage_row(
+    name: str, runs: Runs, calibrations: Mapping[str, Calibration]
+) -> tuple[str, ...]:
+    squares, areas = runs.calibrated(calibrations[name])
+    inside = squares <= INSIDE
+    radius = np.sqrt(INSIDE * np.sqrt(areas) / (runs["width"] * runs["height"]))
+    everything = np.ones(len(inside), bool)
+    groups = (everything, runs.is_visible, ~runs.is_visible, runs.is_occluded)
+    shares = (_percent(inside[group]) for group in groups)
+    radii = (_median(radius[group]) for group in (runs.is_visible, ~runs.is_visible))
+    return (f"`{name}`", *shares, *radii)
+
+
+def _percent(inside: Array) -> str:
+    return f"{100 * inside.mean():.1f} %" if len(inside) else NOTHING
+
+
+def _median(values: Array) -> str:
+    return f"{np.median(values):.2g}" if len(values) else NOTHING

@@ -1,0 +1,133 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What each part of `fusion` buys: one change each, on the same cases, with intervals over cameras.
+
+    python -m laboratory.fusion_ablation SEQUENCES -o results/fusion_ablation
+
+Every system is the default with one parameter changed. The table has its means and, as differences
+to the default, 95 % bootstrap intervals over cameras (`evaluation.stress.difference`).
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from laboratory.fusion_fit import listed_cases, report_progress
+from laboratory.stress import Case, Result, difference, run_battery
+from laboratory.stress.systems import variant_system
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.statistics import Summary
+from vehicle_pf_tracker.evaluation.tables import markdown
+from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.parameters.table import Value
+
+DEFAULT = "default"
+CHANGES: Mapping[str, Mapping[str, Value]] = {
+    DEFAULT: {},
+    "no camera motion": {"motion.camera": False},
+    "hidden before a moving camera as before a standing one": {"motion.camera_velocity_sigma": 0.0},
+    "no perspective while hidden": {"motion.perspective": False},
+    "no colour": {"filter.colour": False},
+    "no dated filters": {"filter.memory": 0},
+    "no points": {"visibility.points_slope": 0.0},
+    "no partial state": {"visibility.partial_slope": 0.0},
+    "no second look": {"visibility.second_look": False},
+    "no outlines in turns": {"motion.turns": False},
+    "first size kept": {"size.step": 0.0},
+    "first aspect kept": {"size.aspect_gain": 0.0},
+    "size without points": {"size.points_gain": 0.0},
+    "10 particles": {"num_particles": 10},
+    "30 particles": {"num_particles": 30},
+    "100 particles": {"num_particles": 100},
+    "200 particles": {"num_particles": 200},
+}
+FRAMES = 110
+"""Frames of a case at most: nearly four seconds, which hold an occlusion and what follows it."""
+KINDS = {"plain": 1, "shifted_box": 1, "wall": 1, "lorry": 1}
+"""Cases of each kind from a sequence."""
+MEASURES = ("on_target", "mean_iou", "recovered")
+
+
+def ablation_cases(options: argparse.Namespace) -> list[Case]:
+    """Plain sequences, shifted boxes and painted occluders."""
+    return [
+        case
+        for kind, count in KINDS.items()
+        for case in listed_cases(
+            options, f"ablation_{kind}", (kind,), per_sequence=count, max_frames=FRAMES
+        )
+    ]
+
+
+def row(name: str, results: Sequence[Result]) -> list[str]:
+    """Means of one system, and its differences to the default."""
+    scores = [result.score for result in results if result.system == name]
+    recovered, judged = sum(s.recovered for s in scores), sum(s.judged for s in scores)
+    cells = [
+        name, f"{statistics.fmean(s.on_target or 0.0 for s in scores):.3f}",
+        f"{statistics.fmean(s.mean_iou or 0.0 for s in scores):.3f}", f"{recovered} of {judged}",
+    ]  # fmt: skip
+    for measure in MEASURES:
+        found = difference(results, name, DEFAULT, measure) if name != DEFAULT else None
+        cells.append(_interval(found) if found else "–")
+    return cells
+
+
+def _interval(found: Summary) -> str:
+    if found.low is None:
+        return f"{found.mean:+.3f}"
+    return f"{found.mean:+.3f} ({found.low:+.3f} {found.high:+.3f})"
+
+
+def table(results: Sequence[Result]) -> str:
+    """Markdown table of all systems."""
+    header = ("change", "on target", "IoU", "recovered", "Δ on target", "Δ IoU", "Δ recovered")
+    names = dict.fromkeys(result.system for result in results)
+    return markdown(header, [row(name, results) for name in names])
+
+
+def main() -> int:
+    """Run all systems over all cases."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("sequences", type=Path, help="folder of recordings or frame folders")
+    parser.add_argument("--cameras", type=Path, default=Path("benchmarks/cameras.csv"))
+    parser.add_argument("--changes", nargs="+", default=list(CHANGES), choices=list(CHANGES))
+    parser.add_argument("--seed", type=int, default=0, help="seed of cases and trackers")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("-o", "--output", type=Path, required=True)
+    options = parser.parse_args()
+    options.output.mkdir(parents=True, exist_ok=True)
+    names = dict.fromkeys([DEFAULT, *options.changes])
+    systems = [variant_system("fusion", CHANGES[name], name) for name in names]
+    try:
+        results = run_battery(
+            ablation_cases(options), systems, seeds=(options.seed,), workers=options.workers,
+            store=options.output / "ablation.jsonl", on_progress=report_progress,
+        )  # fmt: skip
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 1
+    text = table(results)
+    write_text(options.output / "ablation.md", text)
+    print(text, end="")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,131 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The shipped values of `fusion` on recordings with truth, and how far its confidence is right.
+
+    python -m laboratory.fusion_reliability SEQUENCES -o results/fusion_reliability
+
+``shipped.md`` is the table that `laboratory.fusion_fit` has, for the defaults;
+``reliability.md`` the calibration error by kind of case; and ``reliability.png`` the reliability
+diagram: visible frames by reported confidence, against the share of them that are on target.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from laboratory.fusion_fit import JUDGED_KINDS, listed_cases, page, report_progress
+from laboratory.stress import Reliability, Result, run_battery, variant_system
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.plots import STYLES, save
+from vehicle_pf_tracker.evaluation.tables import markdown
+from vehicle_pf_tracker.offline.output_files import write_text
+
+
+def shipped_results(options: argparse.Namespace) -> list[Result]:
+    """Run the defaults over the cases that `laboratory.fusion_fit` judges settings on."""
+    plain = listed_cases(options, "plain_cases", ("plain",))
+    hard = listed_cases(options, "judged_cases", JUDGED_KINDS[1:], per_sequence=options.hard)
+    results: list[Result] = []
+    for cases, seeds in ((plain, range(options.seeds)), (hard, range(1))):
+        results += run_battery(
+            cases, [variant_system("fusion")], seeds=tuple(seeds), workers=options.workers,
+            store=options.output / "shipped.jsonl", on_progress=report_progress,
+        )  # fmt: skip
+    return results
+
+
+def pooled(results: Sequence[Result]) -> Reliability:
+    """Confidences of the visible frames of all runs."""
+    return Reliability.pooled(result.score.reliability_visible for result in results)
+
+
+def reliability_table(results: Sequence[Result]) -> str:
+    """Markdown table of the calibration error by kind of case, and without the worst sequence."""
+    rows = []
+    for kind in ("", *JUDGED_KINDS):
+        own = [result for result in results if not kind or result.case.kind == kind]
+        rows.append(_row(kind or "all", own))
+    worst = max(
+        dict.fromkeys(result.case.sequence for result in results),
+        key=lambda name: (
+            pooled([r for r in results if r.case.sequence == name]).calibration_error or 0.0
+        ),
+    )
+    rest = [result for result in results if result.case.sequence != worst]
+    rows.append(_row(f"all but {worst}", rest))
+    return markdown(("cases", "visible frames", "calibration error"), rows)
+
+
+def _row(name: str, results: Sequence[Result]) -> list[str]:
+    reliability = pooled(results)
+    error = reliability.calibration_error
+    return [name, f"{reliability.frames}", "–" if error is None else f"{error:.3f}"]
+
+
+def reliability_figure(results: Sequence[Result]) -> Figure:
+    """Draw share on target by confidence for plain and for harder cases, over their frames."""
+    figure = Figure(figsize=(6, 5.5), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    above.plot([0, 1], [0, 1], color="0.6", lw=0.8)
+    parts = {
+        "sequences": [result for result in results if result.case.kind == "plain"],
+        "shifted boxes, painted occluders": [r for r in results if r.case.kind != "plain"],
+    }
+    for (name, part), style in zip(parts.items(), STYLES, strict=False):
+        points = pooled(part).diagram()
+        confidence = [point["confidence"] for point in points]
+        on_target = [point["on_target"] for point in points]
+        frames = [point["frames"] for point in points]
+        looks = {"color": style.colour, "marker": style.marker, "linestyle": style.line}
+        above.plot(confidence, on_target, label=name, **looks)
+        below.plot(confidence, frames, **looks)
+    above.set(ylabel="share on target", ylim=(-0.02, 1.02))
+    above.legend(loc="lower right")
+    below.set(xlabel="reported confidence", ylabel="frames", yscale="log")
+    return figure
+
+
+def main() -> int:
+    """Run, and write tables and figure."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("sequences", type=Path, help="folder of recordings or frame folders")
+    parser.add_argument("--cameras", type=Path, default=Path("benchmarks/cameras.csv"))
+    parser.add_argument("--seeds", type=int, default=5, help="seeds of the plain sequences")
+    parser.add_argument("--hard", type=int, default=6, help="hard cases of each sequence")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the cases")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("-o", "--output", type=Path, required=True)
+    options = parser.parse_args()
+    options.output.mkdir(parents=True, exist_ok=True)
+    try:
+        results = shipped_results(options)
+        tables = {"shipped.md": page(results), "reliability.md": reliability_table(results)}
+        for name, text in tables.items():
+            write_text(options.output / name, text)
+            print(text)
+        save(reliability_figure(results), options.output / "reliability.png")
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,159 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`fusion` on synthetic scenes: the table of docs/fusion_scenes.md.
+
+    python -m laboratory.fusion_scenes --seeds 10 -o scenes.md
+
+A scene and the tracker on it have the same seed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+import cv2
+
+from laboratory.stress.scoring import Score, score_estimates
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
+from vehicle_pf_tracker.offline.driver import OfflineTracker
+from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.scenes.catalogue import make_scene
+from vehicle_pf_tracker.scenes.scene import SceneFrame
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+SCENES = (
+    "bar", "bars", "bus", "cross", "bridge", "shadows", "braking", "turn", "turn_occluded",
+    "clear", "illumination", "acceleration", "scale",
+)  # fmt: skip
+HEADER = (
+    "scene", "RMSE visible, median, px", "on target", "recovered", "runs with all", "hidden",
+    "clear", "false run",
+)  # fmt: skip
+
+
+def main() -> int:
+    """Measure; 1 where a scene is unknown, or a file cannot be read or written."""
+    args = _arguments()
+    cv2.setNumThreads(1)
+    try:
+        _measure(args)
+    except InputError as error:
+        print(f"fusion_scenes: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--scenes", nargs="+", default=SCENES, metavar="SCENE")
+    parser.add_argument("--seeds", type=int, default=10, help="number of seeds (default: 10)")
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument(
+        "--before", type=Path, metavar="FILE.md", help="earlier table to put beside"
+    )
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE.md")
+    return parser.parse_args()
+
+
+def _measure(args: argparse.Namespace) -> None:
+    before = _earlier_rows(args.before) if args.before else {}
+    rows: list[Sequence[str]] = []
+    for name in args.scenes:
+        scores = []
+        for seed in range(args.first_seed, args.first_seed + args.seeds):
+            scores.append(score_scene(name, seed))
+            print(f"{name}, seed {seed}: {_summary(scores[-1])}", file=sys.stderr, flush=True)
+        rows.append(_row(name, scores))
+        if name in before:
+            rows.append(["*before*", *before[name]])
+    table = markdown(HEADER, rows)
+    print(table, end="")
+    if args.output:
+        write_text(args.output, table)
+
+
+def score_scene(name: str, seed: int) -> Score:
+    """Score `fusion` on a scene, started on the first true box.
+
+    Raises
+    ------
+    InputError
+        If there is no such scene.
+    """
+    frames = list(make_scene(name, seed=seed).frames())
+    return score_estimates([each.truth for each in frames], track(frames, seed))
+
+
+def track(frames: Sequence[SceneFrame], seed: int) -> list[EstimateRow]:
+    """Track the target of a scene with default parameters; one row for each frame."""
+    variant = find_variant("fusion")
+    parameters = from_mapping(variant.parameters, {"seed": seed})
+    tracker = OfflineTracker(variant, parameters, first_truth=frames[0].truth)
+    return list(tracker.rows((each.truth.stamp_ns, each.frame) for each in frames))
+
+
+def _row(name: str, scores: Sequence[Score]) -> list[str]:
+    judged = [score for score in scores if score.judged]
+    return [
+        name,
+        _spread((s.rmse_visible_px for s in scores), statistics.median),
+        _spread(s.on_target for s in scores),
+        _ratio(sum(s.recovered for s in judged), sum(s.judged for s in judged)),
+        _ratio(sum(s.recovered == s.judged for s in judged), len(judged)),
+        _spread(None if s.claimed_hidden is None else 1 - s.claimed_hidden for s in scores),
+        _spread(s.doubted_in_full_view for s in scores),
+        str(max(s.longest_false_tracking for s in scores)),
+    ]
+
+
+def _spread(
+    values: Iterable[float | None], middle: Callable[[Sequence[float]], float] = statistics.fmean
+) -> str:
+    """Middle of the values, with the least and the largest where these differ when rounded."""
+    known = [value for value in values if value is not None]
+    if not known:
+        return NOTHING
+    text, low, high = (f"{one:.2f}" for one in (middle(known), min(known), max(known)))
+    return text if low == high else f"{text} ({low}-{high})"
+
+
+def _ratio(part: int, whole: int) -> str:
+    return f"{part} of {whole}" if whole else NOTHING
+
+
+def _summary(score: Score) -> str:
+    return ", ".join(f"{k} {v}" for k, v in zip(HEADER[1:], _row("", [score])[1:], strict=True))
+
+
+def _earlier_rows(page: Path) -> dict[str, list[str]]:
+    """Read the rows of an earlier table of these columns from a page, by scene."""
+    try:
+        lines = page.read_text(encoding="utf-8").splitlines()
+    except OSError as error:
+        raise InputError(f"cannot read {page}: {error.strerror}") from error
+    rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+    wide = (row for row in rows if len(row) == len(HEADER))
+    return {name: cells for name, *cells in wide if name in SCENES}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,107 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`python -m laboratory stress`: options and run of the stress battery."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from laboratory.stress import (
+    Case,
+    Result,
+    StressSystem,
+    find_sequences,
+    list_cases,
+    run_battery,
+)
+from laboratory.stress.battery import QUICK_FRAMES, QUICK_PER_SEQUENCE
+from laboratory.stress.report import MARKDOWN, table_rows, write_report
+from vehicle_pf_tracker.cli.console import print_rows, tell_notices
+from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.shared_options import positive
+from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest, chosen
+from vehicle_pf_tracker.cli.work_progress import telling
+
+STORE = "scores.jsonl"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request(EvaluationRequest):
+    """Request of the battery."""
+
+    battery: str = option(
+        choices=("quick", "full"), default="quick",
+        help="cases made of each recording or frame folder REC: quick (default), 8 short ones; "
+        "full, about 55; see laboratory/notes/stress.md",
+    )  # fmt: skip
+    kinds: str | None = option(metavar="NAME,…", help="only cases of these kinds")
+    per_sequence: int | None = option(
+        type=positive, metavar="N", help="at most N cases of each sequence, of all groups in turns"
+    )
+    limit: int | None = option(type=positive, metavar="N", help="at most N cases, evenly spread")
+    max_frames: int | None = option(
+        type=positive, metavar="N", help="at most N frames of each case"
+    )
+    cameras: Path | None = option(
+        type=Path, metavar="FILE",
+        help="table sequence,camera (default: cameras.csv in a folder REC; else each its own)",
+    )  # fmt: skip
+
+
+def run(request: Request) -> int:
+    """Run the missing cases of the battery, write its report, and print its tables."""
+    systems, cases = _systems(request), _cases(request)
+    count = request.seeds or FEW_SEEDS
+    seeds = range(request.first_seed, request.first_seed + count)
+    tell_notices([f"{len(cases)} cases of {len({case.sequence for case in cases})} sequences"])
+    with telling("stress") as on_progress:
+        results = run_battery(
+            cases, systems, seeds=seeds, workers=request.workers, store=request.output / STORE,
+            on_progress=on_progress,
+        )  # fmt: skip
+    found = write_report(results, request.output, _options(request, results))
+    for by in ("(all)", "kind"):
+        groups = [group for group in found if group.by == by]
+        print_rows(*table_rows(groups, intervals=False))
+    print(f"the report is {request.output / MARKDOWN}")
+    return 0
+
+
+def _systems(request: Request) -> list[StressSystem]:
+    systems, notes = chosen(request)
+    tell_notices(notes)
+    return [StressSystem.of(system) for system in systems]
+
+
+def _cases(request: Request) -> list[Case]:
+    is_quick = request.battery == "quick"
+    return list_cases(
+        find_sequences([Path(source) for source in request.sources], request.cameras),
+        kinds=request.kinds.split(",") if request.kinds else None,
+        per_sequence=request.per_sequence or (QUICK_PER_SEQUENCE if is_quick else None),
+        limit=request.limit,
+        max_frames=request.max_frames or (QUICK_FRAMES if is_quick else None),
+    )
+
+
+def _options(request: Request, results: Sequence[Result]) -> dict[str, object]:
+    return {
+        "command": request.command,
+        "battery": request.battery,
+        "runs": len(results),
+        "seeds": sorted({result.seed for result in results}),
+    }

@@ -1,0 +1,204 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The kinds of cases, and the cases of each that a sequence gives."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any
+
+from laboratory.stress import changes
+from laboratory.stress.cases import Case
+from laboratory.stress.changes import Change
+from laboratory.stress.footage import StressSource, open_footage
+from laboratory.stress.occlusion_cases import lorries, poles, walls
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts, start_frames
+
+LATER_STARTS = 20
+"""As in OTB's temporal robustness evaluation."""
+_LEAST_FRAMES = 20
+"""A case with fewer frames tells little."""
+_LEAST_SIDE = 8.0
+"""Side in px below which a reduced vehicle is a dot that no tracker here can learn."""
+_SHAKES = (0.01, 0.03)
+"""Amplitude in image widths: a mast in wind, a camera held by hand."""
+_DROPPED = 0.2
+"""Share of dropped frames: a radio link at the edge of its range."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A kind of cases.
+
+    Attributes
+    ----------
+    name : str
+        Its name in tables and options.
+    group : str
+        The group that small batteries draw from in turns.
+    summary : str
+        One line about it.
+    cases : callable
+        Makes the cases of a sequence for a seed.
+    """
+
+    name: str
+    group: str
+    summary: str
+    cases: Callable[[StressSource, int], Iterator[Case]]
+
+
+def case_seed(seed: int, *words: object) -> int:
+    """Derive the seed of a case from the battery's and the case's name."""
+    return zlib.crc32("/".join(map(str, (seed, *words))).encode())
+
+
+def _playing(origin: StressSource, kind: str, variation: str = "", **more: Any) -> Iterator[Case]:
+    """Yield the case of all frames from the first one with truth on."""
+    footage = open_footage(origin.source)
+    first = next((i for i, truth in enumerate(footage.truth) if truth is not None), 0)
+    count = len(footage.truth) - first
+    if count >= _LEAST_FRAMES:
+        yield Case(origin, kind, variation, first, count, **more)
+
+
+def _plain(origin: StressSource, seed: int) -> Iterator[Case]:
+    yield from _playing(origin, "plain", seed=seed)
+
+
+def _mirrored(origin: StressSource, seed: int) -> Iterator[Case]:
+    yield from _playing(origin, "mirrored", seed=seed, changes=(changes.Mirror(),))
+
+
+def _reversed(origin: StressSource, seed: int) -> Iterator[Case]:
+    truths = open_footage(origin.source).truth
+    last = _last_in_view(truths)
+    if last + 1 >= _LEAST_FRAMES:
+        yield Case(origin, "reversed", "", last, last + 1, -1, seed)
+
+
+def _last_in_view(truths: tuple[Truth | None, ...]) -> int:
+    """Index of the last frame in full view, else of the last that is not hidden; else -1."""
+    for accepted in ({Occlusion.NONE}, {Occlusion.NONE, Occlusion.PARTIAL}):
+        for index in range(len(truths) - 1, -1, -1):
+            truth = truths[index]
+            if truth is not None and truth.occlusion in accepted:
+                return index
+    return -1
+
+
+def _half_rate(origin: StressSource, seed: int) -> Iterator[Case]:
+    for case in _playing(origin, "half_rate", seed=seed):
+        yield replace(case, step=2, count=(case.count + 1) // 2)
+
+
+def _dropped(origin: StressSource, seed: int) -> Iterator[Case]:
+    yield from _playing(origin, "dropped_frames", seed=seed, dropped=_DROPPED)
+
+
+def _later_start(origin: StressSource, seed: int) -> Iterator[Case]:
+    truths = open_footage(origin.source).truth
+    known = [(index, truth) for index, truth in enumerate(truths) if truth is not None]
+    index_of = {truth.stamp_ns: index for index, truth in known}
+    for start in start_frames([truth for _, truth in known], LATER_STARTS):
+        assert start.stamp_ns is not None
+        first = index_of[start.stamp_ns]
+        if len(truths) - first >= _LEAST_FRAMES:
+            count = len(truths) - first
+            yield Case(origin, "later_start", f"{first + 1:06d}", first, count, 1, seed)
+
+
+def _shifted_box(origin: StressSource, seed: int) -> Iterator[Case]:
+    for start in shifted_starts():
+        yield from _playing(origin, "shifted_box", start.name, seed=seed, start=start)
+
+
+def _changed(kind: str, variations: Mapping[str, Change]) -> Callable[..., Iterator[Case]]:
+    def cases(origin: StressSource, seed: int) -> Iterator[Case]:
+        for variation, change in variations.items():
+            own = case_seed(seed, origin.name, kind, variation)
+            yield from _playing(origin, kind, variation, seed=own, changes=(change,))
+
+    return cases
+
+
+def _shake(origin: StressSource, seed: int) -> Iterator[Case]:
+    for share in _SHAKES:
+        amplitude = round(share * origin.source.width, 2)
+        variation = f"{share:g}"
+        own = case_seed(seed, origin.name, "shake", variation)
+        change = changes.Shake(amplitude)
+        yield from _playing(origin, "shake", variation, seed=own, changes=(change,))
+
+
+def _reduced(origin: StressSource, seed: int) -> Iterator[Case]:
+    for factor in (0.75, 0.5):
+        change = (changes.Reduction(factor),)
+        for case in _playing(origin, "reduced", f"{factor:g}", seed=seed, changes=change):
+            box = case.start_box()
+            if min(box.width, box.height) >= _LEAST_SIDE:
+                yield case
+
+
+def _kinds() -> Iterator[Kind]:
+    yield Kind("plain", "view", "the sequence as it is", _plain)
+    yield Kind("mirrored", "view", "left and right swapped", _mirrored)
+    yield Kind("reversed", "view", "played backwards from the last frame in view", _reversed)
+    yield Kind("half_rate", "view", "every second frame, at half the frame rate", _half_rate)
+    yield Kind("dropped_frames", "view", "a fifth of the frames missing, at random", _dropped)
+    yield Kind(
+        "later_start", "start", "20 first frames over the sequence, vehicle in full view (TRE)",
+        _later_start,
+    )  # fmt: skip
+    yield Kind(
+        "shifted_box", "start", "8 first boxes shifted by a tenth, 4 scaled 0.8 to 1.2 (SRE)",
+        _shifted_box,
+    )  # fmt: skip
+    yield Kind(
+        "brightness", "image", "all levels times 0.6 or 1.4",
+        _changed("brightness", {f"{g:g}": changes.Brightness(g) for g in (0.6, 1.4)}),
+    )  # fmt: skip
+    yield Kind(
+        "gamma", "image", "all levels to the power 0.6 or 1.7",
+        _changed("gamma", {f"{g:g}": changes.Gamma(g) for g in (0.6, 1.7)}),
+    )  # fmt: skip
+    yield Kind(
+        "noise", "image", "Gaussian noise of 8 or 20 grey levels",
+        _changed("noise", {f"{d:g}": changes.Noise(d) for d in (8.0, 20.0)}),
+    )  # fmt: skip
+    yield Kind(
+        "jpeg", "image", "JPEG of quality 30 or 10",
+        _changed("jpeg", {f"{q}": changes.Jpeg(q) for q in (30, 10)}),
+    )  # fmt: skip
+    yield Kind(
+        "blur", "image", "Gaussian blur of 1 or 2 px",
+        _changed("blur", {f"{d:g}": changes.Blur(d) for d in (1.0, 2.0)}),
+    )  # fmt: skip
+    yield Kind("shake", "camera", "the camera sways by 1 % or 3 % of the width", _shake)
+    yield Kind("reduced", "camera", "images reduced to 3/4 or 1/2 of their sides", _reduced)
+    yield Kind(
+        "wall", "occluder", "a standing wall hides the vehicle for 5, 10, 20 or 40 frames", walls
+    )
+    yield Kind("pole", "occluder", "a standing post hides part of the vehicle", poles)
+    yield Kind(
+        "lorry", "occluder", "a lorry drives across, fast or slow, 5 to 40 frames hidden", lorries
+    )
+
+
+KINDS: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in _kinds()})

@@ -1,0 +1,173 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Trackers under test: variants, baselines, and whatever else starts and steps."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.evaluation.baselines.client import Baseline, BaselineAnswer
+from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, System, VariantSystem
+from vehicle_pf_tracker.evaluation.result_store import variant_modules
+from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.parameters.table import Value, from_mapping, to_mapping
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+from vehicle_pf_tracker.trackers.registry import find_variant
+
+_BASELINES = "vehicle_pf_tracker.evaluation.baselines."
+
+
+class Follower(Protocol):
+    """A tracker under test: any of the package, or anything with the same two methods."""
+
+    def start(self, frame: Frame, box: Box) -> Estimate | EstimateRow:
+        """Learn the target in the first frame."""
+        ...
+
+    def step(self, frame: Frame, elapsed: float = 1.0) -> Estimate | EstimateRow:
+        """Find it in the next one."""
+        ...
+
+
+@dataclass(frozen=True)
+class StressSystem:
+    """A tracker under test.
+
+    Attributes
+    ----------
+    label : str
+        Its name in all tables.
+    make : callable
+        Makes a new tracker for a seed. For several processes it has to be picklable: a function or
+        a class of a module, or a `functools.partial` of one.
+    facts : mapping
+        Plain values that decide about its estimates besides `make`: parameters, a version.
+    modules : tuple of str
+        Modules of this package that it begins in; a change of their code, or of what they import
+        from the package, invalidates kept scores. Of code elsewhere only the file that defines
+        `make` does: put a version into `facts`.
+    is_deterministic : bool
+        The seed has no effect: it runs once.
+    """
+
+    label: str
+    make: Callable[[int], Follower]
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    modules: tuple[str, ...] = ()
+    is_deterministic: bool = False
+
+    @classmethod
+    def of(cls, system: System) -> StressSystem:
+        """Put a variant with its parameters, or a baseline, to the test."""
+        if isinstance(system, BaselineSystem):
+            facts = {name: value for name, value in system.facts(0).items() if name != "seed"}
+            code = (f"{_BASELINES}client", f"{_BASELINES}worker", __name__)
+            make = functools.partial(BaselineFollower, system)
+            return cls(system.label, make, facts, code, is_deterministic=True)
+        facts = {"variant": system.variant, "parameters": dict(system.parameters)}
+        modules = tuple(sorted(variant_modules(find_variant(system.variant))))
+        make_variant = functools.partial(_make_variant, system)
+        return cls(system.label, make_variant, facts, modules, system.is_deterministic)
+
+    def identity(self) -> dict[str, Any]:
+        """Return what decides about its estimates, besides the seed and `modules`."""
+        make = self.make.func if isinstance(self.make, functools.partial) else self.make
+        if make in {_make_variant, BaselineFollower}:
+            return dict(self.facts)
+        try:
+            code = Path(inspect.getfile(make)).read_bytes()
+        except (OSError, TypeError):  # made at a prompt, or of C
+            code = b""
+        name = f"{getattr(make, '__module__', '')}.{getattr(make, '__qualname__', repr(make))}"
+        return {
+            "label": self.label,
+            "make": name,
+            "code": hashlib.sha256(code).hexdigest(),
+            "facts": dict(self.facts),
+        }
+
+
+class BaselineFollower:
+    """A baseline in a process of its own, which `close` ends.
+
+    Parameters
+    ----------
+    system : BaselineSystem
+        Which one.
+    seed : int
+        Without effect.
+    """
+
+    def __init__(self, system: BaselineSystem, seed: int = 0) -> None:
+        del seed
+        python = Path(system.python) if system.python else None
+        self._baseline = Baseline(system.baseline, python, system.model_files())
+
+    def start(self, frame: Frame, box: Box) -> EstimateRow:
+        """Start it; see `Follower`."""
+        return _row(self._baseline.start(frame, box))
+
+    def step(self, frame: Frame, _elapsed: float = 1.0) -> EstimateRow:
+        """Step it; these trackers know no time."""
+        return _row(self._baseline.step(frame))
+
+    def close(self) -> None:
+        """End its process."""
+        self._baseline.close()
+
+
+def _row(answer: BaselineAnswer) -> EstimateRow:
+    x, y = answer.box.centre
+    mode = Mode.TRACKING if answer.found else Mode.LOST
+    size = answer.box.width, answer.box.height
+    return EstimateRow(0, 0, x, y, *size, mode.value, None, None, None)
+
+
+def variant_system(
+    name: str, parameters: Mapping[str, Value] | None = None, label: str | None = None
+) -> StressSystem:
+    """Make the system of a variant from its registry name.
+
+    Parameters
+    ----------
+    name : str
+        As in the registry.
+    parameters : mapping of str to Value or None
+        Those that differ from the defaults, by their dotted names.
+    label : str or None
+        Its name in tables; None takes `name`.
+
+    Raises
+    ------
+    InputError
+        If there is no such variant, or a parameter does not fit.
+    """
+    kind = find_variant(name).parameters
+    values = to_mapping(from_mapping(kind, dict(parameters or {})))
+    values.pop("seed")
+    overrides = tuple(sorted((parameters or {}).items()))
+    return StressSystem.of(VariantSystem(label or name, name, "", overrides, tuple(values.items())))
+
+
+def _make_variant(system: VariantSystem, seed: int) -> Follower:
+    return find_variant(system.variant).tracker(system.tracker_parameters(seed))

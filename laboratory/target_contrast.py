@@ -1,0 +1,69 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Contrast of true boxes and of boxes thrown into their images, for doubts about targets.
+
+python laboratory/target_contrast.py ../shared/sequences
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import frame_size
+from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.image.target_pixels import LEAST_CONTRAST, contrast
+from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
+
+EVERY = 10
+"""Frames from one that is measured to the next: a vehicle changes little in between."""
+THROWN = 5
+"""Boxes of the true size thrown into each image, below its upper two fifths."""
+
+
+def measured(folder: Path) -> tuple[list[float], list[float]]:
+    """Return the contrasts of true boxes and of thrown ones in a sequence."""
+    rng = np.random.default_rng(0)
+    true, thrown = [], []
+    for index, picture in enumerate(FrameFolder(folder).pictures()):
+        truth = picture.truth
+        if index % EVERY or truth is None or truth.occlusion is Occlusion.TOTAL:
+            continue
+        box, (width, height) = truth.box, frame_size(picture.frame)
+        true.append(contrast(picture.frame, box))
+        top = min(0.4 * height, height - box.height)
+        for _ in range(THROWN):
+            x, y = rng.uniform(0, width - box.width), rng.uniform(top, height - box.height)
+            thrown.append(contrast(picture.frame, Box(x, y, box.width, box.height)))
+    return true, thrown
+
+
+def main() -> None:
+    """Print a row for each sequence."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("sequences", type=Path)
+    print("| sequence | true boxes, least | median | thrown boxes below the limit |")
+    print("| --- | ---: | ---: | ---: |")
+    for path in sorted(parser.parse_args().sequences.glob("*/*/sequence.json")):
+        true, thrown = measured(path.parent)
+        share = float(np.mean(np.array(thrown) < LEAST_CONTRAST))
+        print(f"| {path.parent.name} | {min(true):.1f} | {np.median(true):.1f} | {share:.2f} |")
+
+
+if __name__ == "__main__":
+    main()

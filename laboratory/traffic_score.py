@@ -1,0 +1,66 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Score files of tracks against folders with truth, beside baselines on the same detections.
+
+    python -m laboratory.traffic_score FOLDER TRACKS.txt
+    python -m laboratory.traffic_score FOLDER... --baselines
+
+Files are in MOTChallenge's layout; a row of scores for each is printed. The interpreter of the
+baselines is found as `evaluate --baselines` finds it.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from vehicle_pf_tracker.evaluation.baselines.traffic_client import TRAFFIC_BASELINES, TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence, read_table
+
+COLUMNS = ("HOTA", "DetA", "AssA", "IDF1", "MOTA", "IDSW", "Frag", "FP", "FN")
+
+
+def main() -> None:
+    """Print one row for each file or baseline."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("paths", nargs="+", type=Path, help="folders, then files of tracks")
+    parser.add_argument("--baselines", action="store_true", help="run the baselines on det/*.txt")
+    args = parser.parse_args()
+    folders = [path for path in args.paths if path.is_dir()]
+    with TrafficWorker() as worker:
+        print("| scene | tracks |", " | ".join(COLUMNS), "|")
+        print("|---|---|" + "---:|" * len(COLUMNS))
+        for folder in folders:
+            sequence = read_sequence(folder)
+            for path in args.paths:
+                if path.is_file():
+                    row(sequence.name, str(path), worker.score(sequence, read_table(path, 6)))
+            for detector, boxes in sequence.detections.items() if args.baselines else ():
+                for name in TRAFFIC_BASELINES:
+                    tracks, _ = worker.track(name, sequence, boxes)
+                    row(sequence.name, f"{detector}, {name}", worker.score(sequence, tracks))
+
+
+def row(scene: str, label: str, scores: dict[str, float]) -> None:
+    """Print one row."""
+    cells = [
+        f"{scores[name]:.1f}" if isinstance(scores[name], float) else str(scores[name])
+        for name in COLUMNS
+    ]
+    print(f"| {scene} | {label} |", " | ".join(cells), "|", flush=True)
+
+
+if __name__ == "__main__":
+    main()

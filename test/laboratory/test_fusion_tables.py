@@ -1,0 +1,99 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Tables of fusion's ablation and reliability, from scores counted by hand."""
+
+from collections import namedtuple
+from dataclasses import replace
+
+import pytest
+
+from laboratory import fusion_ablation, fusion_reliability
+from laboratory.fusion_fit import fitted, objective
+from laboratory.stress import Reliability, Result, Score
+
+Made = namedtuple("Made", "name kind sequence camera")
+
+
+def score(on_target, recovered=0, judged=0, pairs=()):
+    return Score(
+        frames=10, visible=10, hidden=0, on_target=on_target, mean_iou=0.5, rmse_visible_px=1.0,
+        lost=on_target < 0.9, recovered=recovered, judged=judged, occlusions=(), doubted=0.0,
+        doubted_in_full_view=0.0, claimed_hidden=None, longest_false_tracking=0,
+        reliability_visible=Reliability.of(list(pairs)), reliability_hidden=Reliability(),
+        estimates="",
+    )  # fmt: skip
+
+
+def result(camera, on_target, system="default", kind="plain", **values):
+    case = Made(f"{camera} {kind}", kind, f"{camera}/one", camera)
+    return Result(case, system, 0, score(on_target, **values))
+
+
+def test_a_change_is_compared_with_the_default_camera_by_camera():
+    results = [
+        result("a", 0.8, recovered=1, judged=1), result("b", 1.0),
+        result("a", 0.6, "less", recovered=0, judged=1), result("b", 1.0, "less"),
+    ]  # fmt: skip
+    default, less = (fusion_ablation.row(name, results) for name in ("default", "less"))
+    assert default == ["default", "0.900", "0.500", "1 of 1", "–", "–", "–"]
+    assert less[:4] == ["less", "0.800", "0.500", "0 of 1"]
+    assert less[4].startswith("-0.100 (-0.200 +0.000")
+    assert less[5].startswith("+0.000")
+    assert less[6].startswith("-1.000")
+
+
+def test_every_change_of_the_ablation_is_a_parameter():
+    for change in fusion_ablation.CHANGES.values():
+        fusion_ablation.variant_system("fusion", change).make(0)
+
+
+def test_the_calibration_error_is_pooled_over_frames_and_names_the_worst_sequence():
+    """Nine right frames at 1.0 and one wrong at 0.8: gap 0.08; of the second sequence 0.8."""
+    results = [
+        result("a", 1.0, pairs=[(1.0, True)] * 9),
+        result("b", 0.0, kind="wall", pairs=[(0.8, False)]),
+    ]
+    table = fusion_reliability.reliability_table(results)
+    assert "| all | 10 | 0.080 |" in table
+    assert "| plain | 9 | 0.000 |" in table
+    assert "| wall | 1 | 0.800 |" in table
+    assert "| all but b/one | 9 | 0.000 |" in table
+
+
+def test_the_figure_has_a_line_for_plain_and_one_for_harder_cases(tmp_path):
+    results = [
+        result("a", 1.0, pairs=[(0.95, True), (0.95, False), (0.25, False)]),
+        result("b", 0.0, kind="wall", pairs=[(0.85, False)]),
+    ]
+    above = fusion_reliability.reliability_figure(results).axes[0]
+    ideal, plain, hard = (line.get_xydata().tolist() for line in above.lines)
+    assert ideal == [[0, 0], [1, 1]]
+    assert plain == [[0.25, 0], [pytest.approx(0.95), 0.5]]
+    assert hard == [[0.85, 0]]
+
+
+def test_a_camera_has_no_part_in_the_fit_that_is_judged_on_it():
+    """Setting 1 is best on camera a only; without a, setting 0 is."""
+    settings = [{"x": 1.0}, {"x": 4.0}]
+    by_camera = [{"a": 0.0, "b": 2.0}, {"a": 9.0, "b": 1.0}]
+    assert fitted(settings, by_camera) == {"x": 4.0}
+    assert fitted(settings, by_camera, "a") == {"x": 1.0}
+
+
+def test_the_objective_by_hand():
+    assert objective(score(0.8, recovered=1, judged=2)) == pytest.approx(0.8 + 0.5 + 0.5)
+    assert objective(score(0.8)) == pytest.approx(0.8 + 0.5 + 1.0)
+    doubts = replace(score(0.8), doubted=0.1, claimed_hidden=0.2)
+    assert objective(doubts) == pytest.approx(0.8 + 0.5 + 1.0 - 0.3)

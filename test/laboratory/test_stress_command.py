@@ -1,0 +1,92 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+import csv
+import json
+import sys
+from pathlib import Path
+
+import pytest
+from small_recordings import frame_folder, record
+
+from laboratory.__main__ import main
+from laboratory.stress import KINDS
+from vehicle_pf_tracker.cli import main as command_line
+from vehicle_pf_tracker.evaluation.grid.cells import BASELINE
+
+PAGE = Path(__file__).parents[2] / "laboratory" / "notes" / "stress.md"
+BASE = ["--variants", "ms", "--workers", "1"]
+
+
+def evaluate(out, *words):
+    return main(["stress", *map(str, words), *BASE, "-o", str(out)])
+
+
+@pytest.fixture
+def footage(tmp_path):
+    """A recording and a frame folder, of thirty frames each."""
+    record(tmp_path / "footage" / "recorded", count=30, truths=range(30))
+    frame_folder(tmp_path / "footage" / "folder", count=30)
+    return tmp_path / "footage"
+
+
+def test_a_battery_is_run_and_resumed(footage, tmp_path, capsys):
+    out = tmp_path / "out"
+    words = [footage, "--kinds", "plain,mirrored,jpeg"]
+    assert evaluate(out, *words) == 0
+    told = capsys.readouterr()
+    assert "8 cases of 2 sequences" in told.err
+    assert f"the report is {out / 'stress.md'}" in told.out
+    scores = (out / "scores.jsonl").read_text()
+    assert len(scores.splitlines()) == 8
+    document = json.loads((out / "stress.json").read_text())
+    assert {entry["sequence"] for entry in document["results"]} == {"recorded", "folder"}
+    assert {entry["kind"] for entry in document["results"]} == {"plain", "mirrored", "jpeg"}
+    with (out / "stress.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    (plain,) = [r for r in rows if (r["name"], r["measure"]) == ("plain", "on_target")]
+    assert plain["count"] == "2"
+    assert "## Cameras" in (out / "stress.md").read_text()
+    before = (out / "stress.md").read_bytes()
+    assert evaluate(out, *words) == 0
+    assert (out / "scores.jsonl").read_text() == scores
+    assert (out / "stress.md").read_bytes() == before
+
+
+def test_the_former_option_of_evaluate_names_the_new_command(footage, tmp_path, capsys):
+    words = ["evaluate", str(footage), "--stress", "quick", "-o", str(tmp_path / "out")]
+    assert command_line.main(words) == 2
+    assert "python -m laboratory stress" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_baselines_are_run_too(footage, tmp_path):
+    words = ["--kinds", "mirrored,plain", "--baselines-python", sys.executable]
+    args = ["stress", str(footage), *words, "--variants", f"{BASELINE}mil", "--workers", "1"]
+    assert main([*args, "-o", str(tmp_path / "out")]) == 0
+    results = json.loads((tmp_path / "out" / "stress.json").read_text())["results"]
+    assert [entry["system"] for entry in results] == [f"{BASELINE}mil"] * 4
+    assert min(entry["mean_iou"] for entry in results) > 0.2
+    assert {entry["fault"] for entry in results} == {""}
+
+
+def test_an_unknown_kind_is_named(footage, tmp_path, capsys):
+    assert evaluate(tmp_path / "out", footage, "--battery", "full", "--kinds", "rain") == 1
+    assert "there is no kind 'rain'" in capsys.readouterr().err
+
+
+def test_the_page_lists_every_kind():
+    text = PAGE.read_text()
+    for kind in KINDS.values():
+        assert f"| `{kind.name}` | {kind.group} | {kind.summary} |" in text

@@ -1,0 +1,115 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Vehicles and counts drawn into images."""
+
+import numpy as np
+import pytest
+from traffic_samples import vehicle
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.offline.drawing import draw_box
+from vehicle_pf_tracker.offline.traffic_drawing import (
+    NEUTRAL,
+    annotated,
+    draw_counts,
+    draw_vehicle,
+    identity_colour,
+)
+from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, CountingZone
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
+
+BLACK = np.zeros((240, 320, 3), np.uint8)
+# The box of `vehicle(…, 160, 200, size=(100, 80))`: 110 to 210 across, 120 to 200 down.
+
+
+def drawn(mode, identity=3):
+    picture = BLACK.copy()
+    draw_vehicle(picture, vehicle(identity, 160, 200, mode, size=(100, 80)))
+    return picture
+
+
+def share_of_lower_edge(picture, colour):
+    return (picture[200, 110:211] == colour).all(axis=1).mean()
+
+
+def test_a_tracked_vehicle_has_a_closed_box_in_its_own_colour():
+    assert share_of_lower_edge(drawn(TrackMode.TRACKING), identity_colour(3)) == 1.0
+    assert share_of_lower_edge(drawn(TrackMode.TRACKING, 4), identity_colour(3)) == 0.0
+
+
+def test_an_occluded_vehicle_is_dashed():
+    share = share_of_lower_edge(drawn(TrackMode.OCCLUDED), identity_colour(3))
+    assert 0.4 < share < 0.8
+
+
+def test_a_tentative_vehicle_is_grey_and_has_no_number():
+    picture = drawn(TrackMode.TENTATIVE)
+    assert share_of_lower_edge(picture, NEUTRAL) == 1.0
+    assert not picture[:119].any()
+
+
+def test_a_lost_vehicle_is_not_drawn():
+    assert not drawn(TrackMode.LOST).any()
+
+
+def test_numbers_stand_above_the_box():
+    assert drawn(TrackMode.TRACKING)[105:118, 108:150].any()
+
+
+@pytest.mark.parametrize(
+    "box", [(-500.0, -500.0, 20.0, 20.0), (1e9, 1e9, 1e9, 1e9), (-1e12, 5.0, 2e12, 9.0)]
+)
+@pytest.mark.parametrize("dashed", [True, False])
+def test_boxes_far_outside_are_no_trouble(box, dashed):
+    draw_box(BLACK.copy(), Box(*box), (255, 255, 255), 1, dashed=dashed)
+
+
+def test_colours_of_neighbouring_numbers_differ():
+    colours = np.array([identity_colour(identity) for identity in range(1, 201)], float)
+    steps = np.abs(np.diff(colours, axis=0)).sum(axis=1)
+    assert steps.min() > 100
+    assert colours.max(axis=1).min() == 255  # bright enough for a dark road
+
+
+def test_the_frame_stays_as_it_was():
+    frame = BLACK.copy()
+    picture = annotated(frame, "0:00.0", [vehicle(1, 160, 200)])
+    assert picture.any()
+    assert not frame.any()
+
+
+def test_lines_and_zones_are_drawn_with_their_counts():
+    plan = CountingPlan(
+        (CountingLine("exit", (0.0, 150.0), (320.0, 150.0)),),
+        (CountingZone("yard", ((10.0, 200.0), (90.0, 200.0), (90.0, 230.0), (10.0, 230.0))),),
+    )
+    picture, other = BLACK.copy(), BLACK.copy()
+    counter = Counter(plan)
+    draw_counts(picture, counter)
+    assert picture[150, 5:315].all()
+    assert picture[200:230, 10].all()
+    for index, bottom in enumerate([120, 180]):
+        counter.update([vehicle(1, 200, bottom)], index)
+    draw_counts(other, counter)
+    assert (picture != other).any()  # 1 in
+
+
+def test_a_larger_picture_has_lines_at_their_places():
+    plan = CountingPlan((CountingLine("exit", (0.0, 50.0), (100.0, 50.0)),))
+    picture = BLACK.copy()
+    draw_counts(picture, Counter(plan), 3.0)
+    assert picture[150, 5:295].all()
+    assert not picture[50].any()

@@ -1,0 +1,119 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Summary and picture of a run over many vehicles."""
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, identity_colour
+from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary, limited
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+
+MODES = {
+    "t": TrackMode.TENTATIVE,
+    "T": TrackMode.TRACKING,
+    "O": TrackMode.OCCLUDED,
+    "L": TrackMode.LOST,
+}
+
+
+def estimate(identity, mode, box=None, label=""):
+    return TrackEstimate(
+        identity, box or Box(0, 0, 9, 9), (0, 0), MODES[mode], 0.9, label, 0.5, 1.0, None
+    )
+
+
+def summed(*lives):
+    """Add the lives of vehicles 1, 2, ...: a letter per frame, - where it is not followed."""
+    summary = TrafficSummary()
+    for index, modes in enumerate(zip(*lives, strict=True)):
+        found = [estimate(k, mode) for k, mode in enumerate(modes, start=1) if mode != "-"]
+        summary.add(index + 1, index * 100_000_000, found, {})
+    return summary
+
+
+def test_occlusions_survived_are_counted():
+    summary = summed("TTOOTTOLTT", "TTTTTOOOLL", "--tttTTTTT")
+    assert summary.survived == 2
+    assert summary.ended_hidden == 1
+    assert len(summary.vehicles) == 3
+    assert summary.most_at_once == 3
+
+
+def test_a_vehicle_that_is_never_confirmed_is_none():
+    summary = summed("ttttt-----")
+    assert summary.vehicles == {}
+    assert summary.sentences() == ["no vehicle was found in 10 frames"]
+    assert summary.to_json()["vehicles"] == 0
+
+
+def test_the_longest_is_by_what_was_seen():
+    summary = summed("TTOOOOOOOO", "-TTTTTTTT-")
+    assert "longest: vehicle 2, for 0:00.7 (frames 2 to 9)" in summary.sentences()
+
+
+def test_a_late_class_counts():
+    summary = TrafficSummary()
+    summary.add(1, 0, [estimate(1, "T")], {})
+    summary.add(2, 1, [estimate(1, "T", label="bus")], {})
+    assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences()
+
+
+def test_many_notices_are_cut_short():
+    assert limited(["a"] * 3, 2) == ["a", "a", "and 1 more notices"]
+    assert limited(["a"] * 2, 2) == ["a", "a"]
+
+
+def drive(picture, count=30, width=320):
+    frame = np.zeros((240, width, 3), np.uint8)
+    for index in range(count):
+        boxes = [Box(20 + 8 * index, 60 * k, 20, 20) for k in range(1, 4)]
+        modes = "T" * 2 + ("O" if 10 <= index < 20 else "T")
+        picture.add(frame, [estimate(k + 1, mode, boxes[k]) for k, mode in enumerate(modes)])
+
+
+def test_the_picture_has_every_path_in_its_colour(tmp_path):
+    picture = PathPicture()
+    drive(picture)
+    assert picture.write(tmp_path / "paths.png")
+    image = cv2.imread(str(tmp_path / "paths.png"))[:, :, ::-1]
+    assert image.shape == (480, 640, 3)
+    for k in range(3):
+        row = image[2 * (60 * (k + 1) + 10)]
+        colour = np.array(identity_colour(k + 1))
+        share = (row[70:500] == colour).all(axis=1).mean()
+        assert share > (0.9 if k < 2 else 0.5)
+    hidden = image[2 * 190, 2 * (20 + 8 * 15 + 10)]
+    assert 0 < hidden.max() < 150  # the path under the occluder is darker
+
+
+def test_no_frame_no_picture(tmp_path):
+    assert not PathPicture().write(tmp_path / "paths.png")
+    assert not (tmp_path / "paths.png").exists()
+
+
+def test_frames_of_another_size_begin_the_picture_anew(tmp_path):
+    picture = PathPicture()
+    drive(picture, width=160)
+    drive(picture, width=320)
+    assert picture.write(tmp_path / "paths.png")
+    assert cv2.imread(str(tmp_path / "paths.png")).shape == (480, 640, 3)
+
+
+def test_memory_of_a_path_does_not_grow_with_its_length():
+    picture = PathPicture()
+    drive(picture, count=500)
+    assert all(len(path.places) <= 16 for path in picture.paths.values())

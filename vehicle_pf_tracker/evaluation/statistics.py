@@ -1,0 +1,312 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Mean, spread and a bootstrap interval of a few numbers.
+
+The value of one metric in every run of every system.
+
+Ranks over recordings, with ties of systems that do not differ significantly.
+
+Every recording ranks the systems; Friedman's test decides whether their mean ranks differ at all,
+and Nemenyi's critical difference which of them do. It corrects for the number of pairs with far
+more power than pairwise tests have on few recordings.
+
+Source: Demsar 2006, "Statistical comparisons of classifiers over multiple data sets", section 3.2.
+"""
+
+from __future__ import annotations
+
+import inspect
+import itertools
+import math
+import statistics
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+CONFIDENCE = 0.95
+RESAMPLES = 9999
+_GENERATOR = "rng" if "rng" in inspect.signature(stats.bootstrap).parameters else "random_state"
+"""Name of SciPy's argument: it changed in 1.15."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Mean and spread of independent values.
+
+    Attributes
+    ----------
+    count : int
+        Number of values.
+    mean : float
+        Mean of the values.
+    spread : float or None
+        Sample standard deviation; None for a single value.
+    low, high : float or None
+        Percentile bootstrap interval of the mean, of confidence `CONFIDENCE`; None for a single
+        value. Of five values or fewer it is too narrow, and shows the scale only.
+    """
+
+    count: int
+    mean: float
+    spread: float | None
+    low: float | None
+    high: float | None
+
+
+def summarise(values: Sequence[float | None], seed: int = 0) -> Summary | None:
+    """Summarise the values that are not None; None if there are none.
+
+    The same values and seed give the same interval.
+    """
+    known = [float(value) for value in values if value is not None]
+    if not known:
+        return None
+    mean = statistics.fmean(known)
+    if len(known) == 1:
+        return Summary(1, mean, None, None, None)
+    low, high = _interval(known, seed)
+    return Summary(len(known), mean, statistics.stdev(known), low, high)
+
+
+def _interval(values: Sequence[float], seed: int) -> tuple[float, float]:
+    if min(values) == max(values):
+        return values[0], values[0]
+    result = stats.bootstrap(
+        (np.asarray(values),),
+        np.mean,
+        n_resamples=RESAMPLES,
+        confidence_level=CONFIDENCE,
+        method="percentile",
+        **{_GENERATOR: np.random.default_rng(seed)},
+    )
+    return float(result.confidence_interval.low), float(result.confidence_interval.high)
+
+
+class RunKey(NamedTuple):
+    """Identity of a system's run."""
+
+    recording: str
+    seed: int
+
+
+Runs: TypeAlias = Mapping[str, Mapping[RunKey, float]]
+"""Values by system and run; runs without a value are missing."""
+
+
+def recording_means(runs: Mapping[RunKey, float]) -> dict[str, float]:
+    """Return the mean over the seeds, by recording.
+
+    Runs on one recording share its difficulties, so that only recordings count as independent.
+    """
+    by_recording: dict[str, list[float]] = {}
+    for key, value in runs.items():
+        by_recording.setdefault(key.recording, []).append(value)
+    return {recording: statistics.fmean(values) for recording, values in by_recording.items()}
+
+
+def paired_differences(
+    first: Mapping[RunKey, float], second: Mapping[RunKey, float]
+) -> dict[str, float]:
+    """Return the mean of first minus second over the seeds that both have, by recording.
+
+    A deterministic system, with one run on a recording, is compared with all runs of the other.
+    """
+    differences = {}
+    for recording in dict.fromkeys(key.recording for key in first):
+        one, other = _on(first, recording), _on(second, recording)
+        if min(len(one), len(other)) > 1:
+            common = one.keys() & other.keys()
+            one, other = ({seed: runs[seed] for seed in common} for runs in (one, other))
+        if one and other:
+            differences[recording] = statistics.fmean(one.values()) - statistics.fmean(
+                other.values()
+            )
+    return differences
+
+
+def _on(runs: Mapping[RunKey, float], recording: str) -> dict[int, float]:
+    return {key.seed: value for key, value in runs.items() if key.recording == recording}
+
+
+ALPHA = 0.05
+FEWEST_RECORDINGS = 6
+"""Fewest differences that are tested: a clean sweep of 5 has p = 2 / 2^5, above `ALPHA`."""
+
+
+@dataclass(frozen=True, slots=True)
+class PairedTest:
+    """Comparison of two systems.
+
+    Attributes
+    ----------
+    first, second : str
+        Labels of the systems.
+    difference : Summary or None
+        Difference of first minus second, over the recordings that both have runs on.
+    p_value, adjusted_p : float or None
+        Two-sided Wilcoxon signed-rank test, alone and among all pairs; None where fewer
+        than `FEWEST_RECORDINGS` recordings show a difference.
+    """
+
+    first: str
+    second: str
+    difference: Summary | None
+    p_value: float | None
+    adjusted_p: float | None = None
+
+    @property
+    def significant(self) -> bool:
+        """True if the two differ at the level `ALPHA` among all pairs."""
+        return self.adjusted_p is not None and self.adjusted_p < ALPHA
+
+
+def compare_pairs(runs: Runs) -> list[PairedTest]:
+    """Test every pair of systems, in their order."""
+    tests = [_test(runs, first, second) for first, second in itertools.combinations(runs, 2)]
+    tested = [test.p_value for test in tests if test.p_value is not None]
+    adjusted = iter(holm(tested))
+    return [
+        test if test.p_value is None else replace(test, adjusted_p=next(adjusted)) for test in tests
+    ]
+
+
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Adjust p values for their number (Holm 1979), in their order."""
+    if not p_values:
+        return []
+    values = np.asarray(p_values, dtype=np.float64)
+    order = np.argsort(values, kind="stable")
+    steps = values[order] * np.arange(len(values), 0, -1)
+    adjusted = np.empty_like(values)
+    adjusted[order] = np.minimum(np.maximum.accumulate(steps), 1.0)
+    return [float(value) for value in adjusted]
+
+
+def smallest_adjusted_p(recordings: int, pairs: int) -> float:
+    """Return the least adjusted p value that can come of so many recordings and pairs."""
+    return min(1.0, float(pairs) * 2.0 ** (1 - recordings))
+
+
+def _test(runs: Runs, first: str, second: str) -> PairedTest:
+    differences = list(paired_differences(runs[first], runs[second]).values())
+    changed = [difference for difference in differences if difference]
+    p_value = None
+    if len(changed) >= FEWEST_RECORDINGS:
+        p_value = float(stats.wilcoxon(changed).pvalue)
+    return PairedTest(first, second, summarise(differences), p_value)
+
+
+@dataclass(frozen=True, slots=True)
+class Rank:
+    """The rank of one system.
+
+    Attributes
+    ----------
+    system : str
+        Label of the system.
+    mean_rank : float
+        Mean of its ranks on the recordings; 1 is best, ties share theirs.
+    place : int
+        Place: 1 plus the number of significantly better systems.
+    tied : tuple of str
+        Systems that do not differ from it significantly.
+    """
+
+    system: str
+    mean_rank: float
+    place: int
+    tied: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Ranking:
+    """Ranking of all systems, the least mean rank first.
+
+    Attributes
+    ----------
+    ranks : tuple of Rank
+        Rank of each system.
+    recordings : int
+        Number of recordings they were ranked on.
+    friedman_p : float or None
+        The p value of Friedman's test; None of fewer than three systems, or of too few recordings.
+    critical_difference : float or None
+        Mean ranks further apart than this differ significantly; None where nothing can.
+    """
+
+    ranks: tuple[Rank, ...]
+    recordings: int
+    friedman_p: float | None
+    critical_difference: float | None
+
+
+def rank_systems(
+    values: Mapping[str, Mapping[str, float]], *, higher_is_better: bool
+) -> Ranking | None:
+    """Rank systems by their value on each recording.
+
+    A system without a value on a recording is last there. Recordings and systems without any value
+    are left out; None if nothing is left.
+
+    Parameters
+    ----------
+    values : mapping of str to mapping of str to float
+        Values by system and recording, see `recording_means`.
+    higher_is_better : bool
+        True if large values are best.
+    """
+    systems = [system for system, by_recording in values.items() if by_recording]
+    recordings = sorted({name for system in systems for name in values[system]})
+    if not systems:
+        return None
+    sign = -1.0 if higher_is_better else 1.0
+    table = [[sign * values[s].get(name, sign * math.inf) for s in systems] for name in recordings]
+    ranks = stats.rankdata(np.array(table), axis=1)
+    friedman_p = _friedman(ranks)
+    limit = _critical_difference(*ranks.shape)
+    differ = limit is not None and (friedman_p is None or friedman_p < ALPHA)
+    means = dict(zip(systems, map(float, ranks.mean(axis=0)), strict=True))
+    rows = [_rank(system, means, limit if differ else None) for system in systems]
+    ordered = tuple(sorted(rows, key=lambda row: row.mean_rank))
+    return Ranking(ordered, len(recordings), friedman_p, limit)
+
+
+def _rank(system: str, means: Mapping[str, float], limit: float | None) -> Rank:
+    own = means[system]
+    reach = math.inf if limit is None else limit
+    better = sum(own - mean > reach for mean in means.values())
+    tied = tuple(s for s, mean in means.items() if s != system and abs(mean - own) <= reach)
+    return Rank(system, own, 1 + better, tied)
+
+
+def _friedman(ranks: NDArray[np.float64]) -> float | None:
+    recordings, systems = ranks.shape
+    if systems < 3 or recordings < FEWEST_RECORDINGS:
+        return None
+    if not np.ptp(ranks, axis=1).any():  # all systems are equal on every recording
+        return 1.0
+    return float(stats.friedmanchisquare(*ranks.T).pvalue)
+
+
+def _critical_difference(recordings: int, systems: int) -> float | None:
+    """Return Nemenyi's critical difference of mean ranks (Demsar 2006, section 3.2.2)."""
+    if systems < 2 or recordings < FEWEST_RECORDINGS:
+        return None
+    quantile = float(stats.studentized_range.ppf(1 - ALPHA, systems, np.inf)) / math.sqrt(2)
+    return quantile * math.sqrt(systems * (systems + 1) / (6 * recordings))

@@ -1,0 +1,252 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Estimates drawn over the images of a run: box, path and mode of each target.
+
+Words written into images.
+
+Outlines drawn into images.
+
+Pictures to read points of the road off an image, and to check a calibration with.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.offline.contact_sheet import clock_words
+from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+
+
+def line_width(picture: Frame) -> int:
+    """Return the width of lines that suits the picture's size, px."""
+    return line_width_of(frame_size(picture))
+
+
+def line_width_of(size: tuple[int, int]) -> int:
+    """Return the width of lines that suits pictures of a width and height, px."""
+    return max(1, round(min(size) / 300))
+
+
+def write_words(
+    picture: Frame,
+    words: str,
+    corner: tuple[int, int],
+    colour: tuple[int, int, int],
+    width: int = 1,
+) -> None:
+    """Write words with a dark edge.
+
+    Parameters
+    ----------
+    picture : Frame
+        Written to.
+    words : str
+        One line.
+    corner : (int, int)
+        Lower left corner of the words, px.
+    colour : (int, int, int)
+        Red, green, blue.
+    width : int
+        Width of the strokes, px; the letters grow with it.
+    """
+    font, scale, smooth = cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, cv2.LINE_AA
+    x, y = corner
+    # Not by a thicker stroke: in OpenCV 5 that makes the letters wider.
+    for across, down in ((-width, 0), (width, 0), (0, -width), (0, width)):
+        cv2.putText(picture, words, (x + across, y + down), font, scale, (0, 0, 0), width, smooth)
+    cv2.putText(picture, words, corner, font, scale, colour, width, smooth)
+
+
+Colour = tuple[int, int, int]
+"""Red, green, blue."""
+
+_DASH = 6
+"""Length of a dash and of a gap, in line widths."""
+_FAR = 20_000
+"""Pixels beyond which OpenCV's coordinates, of 16 bits and a fraction, overflow."""
+
+
+def pixels_at(points: Array) -> list[tuple[int, int]]:
+    """Return the pixel that each continuous position (N, 2) lies in."""
+    return [(int(x), int(y)) for x, y in np.floor(np.clip(points, -_FAR, _FAR))]
+
+
+def draw_box(picture: Frame, box: Box, colour: Colour, width: int, *, dashed: bool = False) -> None:
+    """Draw a box of px into `picture`, its lines `width` px wide."""
+    corners = pixels_at(np.asarray(box.corners))
+    if not dashed:
+        cv2.rectangle(picture, corners[0], corners[2], colour, width)
+        return
+    for start, end in pairwise((*corners, corners[0])):
+        _draw_dashes(picture, np.array(start, float), np.array(end, float), colour, width)
+
+
+def _draw_dashes(picture: Frame, start: Array, end: Array, colour: Colour, width: int) -> None:
+    length = float(np.hypot(*(end - start)))
+    for along in np.arange(0.0, length, 2 * _DASH * width):
+        ends = start + (end - start) / length * np.array([[along], [along + _DASH * width]])
+        a, b = pixels_at(ends)
+        cv2.line(picture, a, b, colour, width)
+
+
+COLOURS: dict[str, Colour] = {
+    Mode.TRACKING.value: (64, 220, 64),
+    Mode.OCCLUDED.value: (255, 176, 0),
+    Mode.LOST.value: (255, 48, 48),
+}
+"""Colour of each mode, (red, green, blue); `NEUTRAL` for frames without an estimate."""
+NEUTRAL: Colour = (200, 200, 200)
+_PARTICLE: Colour = (96, 160, 255)
+_PATH_LENGTH = 300
+"""Positions shown of a path: ten seconds of video, longer ones hide the road."""
+
+
+class Annotator:
+    """Draws one target; keeps its path.
+
+    Parameters
+    ----------
+    name : str
+        Name of the target; empty where there is only one.
+    particles : bool
+        Draw the particles too.
+    """
+
+    def __init__(self, name: str = "", *, particles: bool = False) -> None:
+        self._name = name
+        self._shows_particles = particles
+        self._path: deque[tuple[float, float]] = deque(maxlen=_PATH_LENGTH)
+
+    def follow(self, estimate: Estimate | None) -> None:
+        """Continue the path; a lost target ends it."""
+        if estimate is None or estimate.mode is Mode.LOST:
+            self._path.clear()
+        else:
+            self._path.append(estimate.position)
+
+    def draw(self, picture: Frame, estimate: Estimate | None) -> None:
+        """Draw a frame's estimate into `picture`.
+
+        A predicted position, under an occluder, is dashed; a lost target has neither box nor path.
+        """
+        if estimate is None or estimate.mode is Mode.LOST:
+            return
+        colour, width = COLOURS[estimate.mode.value], line_width(picture)
+        if self._shows_particles:
+            for centre in pixels_at(estimate.particles):
+                cv2.circle(picture, centre, width, _PARTICLE, -1)
+        path = np.array(pixels_at(np.asarray(self._path).reshape(-1, 2)), np.int32).reshape(
+            -1, 1, 2
+        )
+        cv2.polylines(picture, [path], False, colour, width, cv2.LINE_AA)
+        is_predicted = estimate.mode is Mode.OCCLUDED
+        draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
+        if self._name:
+            x, y = pixels_at(np.asarray(estimate.box.corners))[0]
+            write_words(picture, self._name, (x, max(y - 3 * width, 14 * width)), colour, width)
+
+    def words(self, row: EstimateRow) -> str:
+        """Return the target's name, mode and confidence in one line."""
+        confidence = "" if row.confidence is None else f" {row.confidence:.2f}"
+        return f"{self._name} {row.mode}{confidence}".lstrip()
+
+
+def annotated(
+    frame: Frame,
+    elapsed_ns: int,
+    states: Iterable[tuple[Annotator, EstimateRow, Estimate | None]],
+) -> Frame:
+    """Return a copy of `frame` with all targets, and a line for the time and for each of them."""
+    picture: Frame = np.array(frame, order="C")
+    number, lines = 0, []
+    for annotator, row, estimate in states:
+        annotator.draw(picture, estimate)
+        lines.append((annotator.words(row), COLOURS.get(row.mode, NEUTRAL)))
+        number = row.frame
+    width = line_width(picture)
+    head = (f"{clock_words(elapsed_ns)}  frame {number}", NEUTRAL)
+    for index, (words, colour) in enumerate([head, *lines], start=1):
+        write_words(picture, words, (5 * width, 16 * width * index), colour, width)
+    return picture
+
+
+_LINE, _TEXT = (255, 240, 80), (255, 255, 255)
+_POINT, _ROAD = (255, 60, 60), (80, 220, 255)
+_STEPS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""Distances of lines, px or m."""
+_LINES = 12
+"""Lines across the image, about: enough to read a point to a fifth of their distance."""
+_PIECES = 60
+"""Pieces that a line of the road is drawn in, which the lens may bend."""
+
+
+def draw_pixel_grid(frame: Frame) -> Frame:
+    """Draw lines with their pixel coordinates over a copy of `frame`."""
+    picture = np.array(frame, order="C")
+    width, height = frame_size(frame)
+    step = _step(max(width, height) / _LINES)
+    for x in range(step, width, step):
+        cv2.line(picture, (x, 0), (x, height - 1), _LINE, 1)
+        write_words(picture, str(x), (x + 2, 11), _TEXT)
+    for y in range(step, height, step):
+        cv2.line(picture, (0, y), (width - 1, y), _LINE, 1)
+        write_words(picture, str(y), (2, y - 3), _TEXT)
+    return picture
+
+
+def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Frame:
+    """Draw lines of the road with their metres, and the pairs, over a copy of `frame`."""
+    picture = np.array(frame, order="C")
+    points = np.array([pair.road for pair in pairs])
+    low, high = points.min(axis=0), points.max(axis=0)
+    for axis in (0, 1):
+        step = _step(float(high[axis] - low[axis]) / _LINES)
+        first, last = np.ceil(low[axis] / step), np.floor(high[axis] / step)
+        for number in np.arange(first, last + 1) * step:
+            _draw_line(picture, plane, axis, float(number), (low, high))
+    for pair in pairs:
+        u, v = np.floor(pair.pixel).astype(int).tolist()
+        cv2.drawMarker(picture, (u, v), _POINT, cv2.MARKER_CROSS, 11, 1)
+        words = f"{pair.road[0]:g},{pair.road[1]:g}"
+        write_words(picture, words, (u + 6, v - 4), _TEXT)
+    return picture
+
+
+def _draw_line(
+    picture: Frame, plane: RoadPlane, axis: int, number: float, bounds: tuple[Array, Array]
+) -> None:
+    """Draw the line of the road where the coordinate `axis` is `number`."""
+    low, high = bounds
+    line = np.empty((_PIECES, 2))
+    line[:, axis] = number
+    line[:, 1 - axis] = np.linspace(low[1 - axis], high[1 - axis], _PIECES)
+    pixels = np.clip(np.floor(plane.to_image(line)), -(2**14), 2**14).astype(np.int32)
+    cv2.polylines(picture, [pixels.reshape(-1, 1, 2)], False, _ROAD, 1, cv2.LINE_AA)
+    u, v = pixels[0].tolist()
+    write_words(picture, f"{'xy'[axis]}={number:g}", (u + 2, v + 12), _TEXT)
+
+
+def _step(least: float) -> int:
+    return next((step for step in _STEPS if step >= least), _STEPS[-1])

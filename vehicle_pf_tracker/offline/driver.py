@@ -1,0 +1,199 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Tracking without ROS: frames in, one row per frame out."""
+
+from __future__ import annotations
+
+import itertools
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
+from vehicle_pf_tracker.trackers.continuity import StrayImageError
+from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.failures import TrackerError
+from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS, Localisation
+from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.trackers.session import Session
+
+
+class OfflineTracker:
+    """One variant on one stream of frames, as its node would do it.
+
+    Parameters
+    ----------
+    variant : Variant
+        Entry of the registry.
+    parameters : Any
+        An instance of `variant.parameters`.
+    settings : SessionParameters
+        A target in them is started on in the first frame.
+    first_truth : Truth or None
+        Start without such a target: its box, in the frame that its stamp belongs to;
+        the frames before are waited through.
+    targets : mapping of int to Box
+        Boxes to start on, or to start again on, by the numbers of their frames.
+    max_diff : float
+        Largest difference of stamps that belong together, in s.
+
+    Attributes
+    ----------
+    session : Session
+        Drives the tracker; it knows the seed in use.
+    start_frame : int or None
+        Number of the frame that the target was first set in; None until then.
+    notices : list of str
+        Irregularities, a sentence each.
+    estimate : Estimate or None
+        That of the last frame; None where it has none.
+    """
+
+    def __init__(
+        self,
+        variant: Variant,
+        parameters: Any,
+        settings: SessionParameters | None = None,
+        *,
+        first_truth: Truth | None = None,
+        targets: Mapping[int, Box] = MappingProxyType({}),
+        max_diff: float = MAX_DIFF,
+    ) -> None:
+        self.session = Session(variant, parameters, settings)
+        self.start_frame: int | None = None
+        self.notices = list(self.session.tracker.kernels.notices)
+        self._first_truth = first_truth if self.session.waiting else None
+        self._limit_ns = max_diff_ns(max_diff)
+        self._localisation = _localisation(self.session)
+        self._on_road: list[Mapping[str, float]] = []
+        self._off_road: Counter[str] = Counter()
+        self._targets = targets
+        self.estimate: Estimate | None = None
+
+    def rows(
+        self, frames: Iterable[tuple[int, Frame | None]], first: int = 1
+    ) -> Iterator[EstimateRow]:
+        """Track through (stamp in ns, frame) pairs, numbered from `first`; give a row for each.
+
+        An image that could not be read has no frame, and is rejected as the node would reject it.
+
+        Raises
+        ------
+        InputError
+            If the target is invalid in the first frame, or no frame belongs to the first truth.
+        """
+        stamped = itertools.chain(frames, [None])
+        for number, (current, following) in enumerate(itertools.pairwise(stamped), start=first):
+            assert current is not None
+            self._on_road.append({})
+            if self._is_start(current[0], following[0] if following else None):
+                self._set_target()
+            if number in self._targets:
+                self.session.set_target(self._targets[number])
+            yield self._row(number, *current)
+        if self._first_truth is not None:
+            raise InputError(
+                f"no image is within {self._limit_ns / 1e9:g} s of the first truth, "
+                f"at {self._first_truth.stamp_ns / 1e9:.3f} s; give a target with --target x,y,w,h"
+            )
+
+    @property
+    def road_columns(self) -> dict[str, list[float | None]]:
+        """Places and speeds on the road of all frames so far, by name; none without a road."""
+        if self._localisation is None:
+            return {}
+        return {name: [one.get(name) for one in self._on_road] for name in ROAD_COLUMNS}
+
+    @property
+    def road_notices(self) -> list[str]:
+        """Reasons why frames have no place on the road, a sentence each."""
+        return [
+            f"no place on the road in {count} frame{'s' * (count > 1)}: {reason}"
+            for reason, count in self._off_road.items()
+        ]
+
+    def _is_start(self, stamp_ns: int, next_ns: int | None) -> bool:
+        """Return whether the image at `stamp_ns` is the one nearest to the first truth."""
+        if self._first_truth is None:
+            return False
+        distance = abs(stamp_ns - self._first_truth.stamp_ns)
+        is_nearest = next_ns is None or abs(next_ns - self._first_truth.stamp_ns) >= distance
+        return distance <= self._limit_ns and is_nearest
+
+    def _set_target(self) -> None:
+        """Configure the first truth's box, so that a recording that loops starts on it again."""
+        assert self._first_truth is not None
+        settings = with_target(self.session.settings, self._first_truth.box)
+        self.session.reconfigure(self.session.tracker.parameters, settings)
+        self._first_truth = None
+
+    def _row(self, number: int, stamp_ns: int, frame: Frame | None) -> EstimateRow:
+        self.estimate = None
+        if frame is None:
+            return EstimateRow.without(number, stamp_ns, REJECTED)
+        try:
+            self.estimate = estimate = self.session.feed(frame, stamp_ns)
+        except (InputError, TrackerError) as error:
+            if self._ends_run(error):
+                raise
+            self.notices.append(f"frame {number} was rejected: {error}")
+            return EstimateRow.without(number, stamp_ns, REJECTED)
+        self.notices += [f"frame {number}: {event}" for event in self.session.events]
+        if estimate is None:
+            return EstimateRow.without(number, stamp_ns, WAITING)
+        if self.start_frame is None:
+            self.start_frame = number
+        self._locate(estimate, stamp_ns)
+        return EstimateRow.from_scalars(number, stamp_ns, estimate.scalars())
+
+    def _ends_run(self, error: InputError | TrackerError) -> bool:
+        if isinstance(error, TrackerError):
+            return error.persists
+        return self.start_frame is None and not isinstance(error, StrayImageError)
+
+    def _locate(self, estimate: Estimate, stamp_ns: int) -> None:
+        if self._localisation is None:
+            return
+        self._localisation.follow(estimate, stamp_ns, self.session.tracker.frame_period)
+        if self._localisation.road is not None:
+            self._on_road[-1] = self._localisation.road.scalars()
+        else:
+            self._off_road[self._localisation.objection] += 1
+
+
+def _localisation(session: Session) -> Localisation | None:
+    """Make the localisation where a road is set; its lens and pose cannot come from topics here."""
+    road = session.settings.road
+    if not road.is_set:
+        return None
+    if road.from_camera_info or road.from_tf:
+        raise InputError(
+            "road.from_camera_info and road.from_tf are for nodes; offline, give road.intrinsics, "
+            "road.distortion and road.camera_pose"
+        )
+    return Localisation(session.variant.name, road)
+
+
+def with_target(settings: SessionParameters, box: Box) -> SessionParameters:
+    """Return `settings` with the target `box`."""
+    return replace(settings, target=TargetParameters(box.x, box.y, box.width, box.height))

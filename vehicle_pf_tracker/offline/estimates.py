@@ -1,0 +1,240 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`estimates.csv`: one row per frame of a recording, with every digit kept."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import astuple, dataclass, fields
+from itertools import pairwise
+from pathlib import Path
+from types import MappingProxyType
+from typing import TypeAlias
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.trackers.estimate import Mode
+
+WAITING = "WAITING"
+"""Mode of a frame before there is a target; all numbers are empty."""
+REJECTED = "REJECTED"
+"""Mode of a frame that the tracker could not use; all numbers are empty."""
+
+
+@dataclass(frozen=True, slots=True)
+class EstimateRow:
+    """The estimate of one frame.
+
+    Attributes
+    ----------
+    frame : int
+        Number of the frame in its recording, from 1.
+    stamp_ns : int
+        Stamp of its image in ns.
+    x, y : float or None
+        Centre of the vehicle in px; None, as all numbers, where there is no estimate.
+    width, height : float or None
+        Size of its box in px.
+    mode : str
+        ``TRACKING``, ``OCCLUDED``, ``LOST``, or `WAITING` or `REJECTED`.
+    confidence : float or None
+        Confidence of the estimate, 0 to 1.
+    n_eff : float or None
+        Effective sample size of the particles.
+    step_ms : float or None
+        Time that the step took, in ms.
+    """
+
+    frame: int
+    stamp_ns: int
+    x: float | None
+    y: float | None
+    width: float | None
+    height: float | None
+    mode: str
+    confidence: float | None
+    n_eff: float | None
+    step_ms: float | None
+
+    @classmethod
+    def from_scalars(
+        cls, frame: int, stamp_ns: int, scalars: Mapping[str, float | int | str]
+    ) -> EstimateRow:
+        """Make a row from the scalars of an `Estimate`, or from their text in `~/mode`.
+
+        Scalars that are missing or empty are None; those that have no column are left out.
+
+        Raises
+        ------
+        InputError
+            If there is no mode, or the text of a number is not one.
+        """
+        if "mode" not in scalars:
+            raise InputError(f"the estimate of frame {frame} has no mode")
+        numbers = {name: _number(name, scalars.get(name, "")) for name in _NUMBERS}
+        return cls(frame=frame, stamp_ns=stamp_ns, mode=str(scalars["mode"]), **numbers)
+
+    @classmethod
+    def without(cls, frame: int, stamp_ns: int, mode: str) -> EstimateRow:
+        """Make the row of a frame without an estimate."""
+        return cls.from_scalars(frame, stamp_ns, {"mode": mode})
+
+    @property
+    def position(self) -> tuple[float, float] | None:
+        """Centre (x, y) in px; None where there is no estimate."""
+        return None if self.x is None or self.y is None else (self.x, self.y)
+
+    @property
+    def box(self) -> Box | None:
+        """Box in px; None where there is no estimate."""
+        if self.position is None or self.width is None or self.height is None:
+            return None
+        return Box.around(self.position, self.width, self.height)
+
+
+COLUMNS = tuple(field.name for field in fields(EstimateRow))
+_NUMBERS = ("x", "y", "width", "height", "confidence", "n_eff", "step_ms")
+
+
+def write_estimates(
+    path: Path,
+    rows: Iterable[EstimateRow],
+    extra: Mapping[str, Sequence[float | None]] = MappingProxyType({}),
+) -> None:
+    """Write `rows` to the file `path`, with the columns `extra` after their own.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([*COLUMNS, *extra])
+    for row, *more in zip(rows, *extra.values(), strict=True):
+        writer.writerow([_text(value) for value in (*astuple(row), *more)])
+    write_text(path, text.getvalue())
+
+
+def write_tracks(path: Path, rows: Mapping[str, Sequence[EstimateRow]]) -> None:
+    """Write the rows of several targets to one file: ``target`` and the columns of estimates.
+
+    Frames follow each other, and in each of them the targets in their order.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["target", *COLUMNS])
+    for of_frame in zip(*rows.values(), strict=True):
+        for name, row in zip(rows, of_frame, strict=True):
+            writer.writerow([name, *map(_text, astuple(row))])
+    write_text(path, text.getvalue())
+
+
+def read_estimates(path: Path) -> list[EstimateRow]:
+    """Read the rows of the file `path`; columns after those of `EstimateRow` are ignored.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or a line of it is not as `write_estimates` writes it.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not text"
+        raise InputError(f"cannot read the estimates {path}: {reason}") from error
+    header, *lines = list(csv.reader(io.StringIO(text))) or [[]]
+    if tuple(header[: len(COLUMNS)]) != COLUMNS:
+        raise InputError(f"the estimates {path} must begin with the line {','.join(COLUMNS)}")
+    return [_read_row(path, number, header, line) for number, line in enumerate(lines, start=2)]
+
+
+def _read_row(path: Path, number: int, header: list[str], line: list[str]) -> EstimateRow:
+    try:
+        named = dict(zip(header, line, strict=True))
+        named = {name: named[name] for name in COLUMNS}
+        return EstimateRow.from_scalars(int(named["frame"]), int(named["stamp_ns"]), named)
+    except ValueError as error:
+        raise InputError(f"line {number} of the estimates {path} is broken: {error}") from error
+
+
+def _number(name: str, value: float | str) -> float | None:
+    if isinstance(value, str) and not value:
+        return None
+    try:
+        return float(value)
+    except ValueError:
+        raise InputError(f"{name} is not a number: {value!r}") from None
+
+
+def _text(value: float | str | None) -> str:
+    if value is None:
+        return ""
+    return value if isinstance(value, str) else repr(value)
+
+
+Point: TypeAlias = tuple[float, float]
+
+
+def interpolate_occlusions(rows: Sequence[EstimateRow]) -> list[Point | None]:
+    """Replace the positions of every stretch without TRACKING by a straight line.
+
+    Parameters
+    ----------
+    rows : sequence of EstimateRow
+        Estimates in the order of the recording.
+
+    Returns
+    -------
+    list of (float, float) or None
+        One per row, px. Frames in TRACKING keep their position. In between, time (the stamps)
+        divides the line from the last one before to the first one after. None where there is no
+        such pair, or time went back between the two.
+    """
+    points: list[Point | None] = [
+        row.position if row.mode == Mode.TRACKING else None for row in rows
+    ]
+    known = [index for index, point in enumerate(points) if point is not None]
+    for begin, end in pairwise(known):
+        for index in range(begin + 1, end):
+            points[index] = _between(rows[begin], rows[end], rows[index].stamp_ns)
+    return points
+
+
+def interpolated_columns(rows: Sequence[EstimateRow]) -> dict[str, list[float | None]]:
+    """Give the path of `interpolate_occlusions` as columns for `estimates.csv`, by name."""
+    points = interpolate_occlusions(rows)
+    return {
+        "x_interpolated": [None if point is None else point[0] for point in points],
+        "y_interpolated": [None if point is None else point[1] for point in points],
+    }
+
+
+def _between(first: EstimateRow, last: EstimateRow, stamp_ns: int) -> Point | None:
+    if not first.stamp_ns < last.stamp_ns or not first.stamp_ns <= stamp_ns <= last.stamp_ns:
+        return None
+    start, end = first.position, last.position
+    assert start is not None
+    assert end is not None
+    gone = (stamp_ns - first.stamp_ns) / (last.stamp_ns - first.stamp_ns)
+    return start[0] + gone * (end[0] - start[0]), start[1] + gone * (end[1] - start[1])

@@ -1,0 +1,177 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The folder with the results of one run: `estimates.csv`, `metrics.json` and `run.json`."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from importlib import metadata
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker import __version__
+from vehicle_pf_tracker.core.outputs import output_errors
+from vehicle_pf_tracker.offline.estimates import EstimateRow, write_estimates
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json
+from vehicle_pf_tracker.parameters.table import to_mapping
+from vehicle_pf_tracker.trackers.session import Session
+
+
+@dataclass(frozen=True, slots=True)
+class RunInfo:
+    """Provenance of a run.
+
+    Attributes
+    ----------
+    command : sequence of str
+        Command line; empty where there was none.
+    recording, image_topic : str
+        Source of the images; the topic is empty where frames came from memory.
+    start_frame : int or None
+        Number of the frame that the target was first set in.
+    notices : sequence of str
+        Irregularities, a sentence each.
+    """
+
+    command: Sequence[str]
+    recording: str
+    image_topic: str
+    start_frame: int | None
+    notices: Sequence[str]
+
+
+def describe_run(info: RunInfo, session: Session) -> dict[str, Any]:
+    """Make the content of `run.json`.
+
+    `seed` is the one in use: the drawn one where the parameter `seed` is -1; `kernels` likewise
+    those that `auto` chose.
+    """
+    box = session.settings.target.box
+    return {
+        "command": list(info.command),
+        "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "recording": info.recording,
+        "image_topic": info.image_topic,
+        "variant": session.variant.name,
+        "seed": session.tracker.seed,
+        "kernels": session.tracker.kernels.name,
+        "target": None if box is None else [box.x, box.y, box.width, box.height],
+        "start_frame": info.start_frame,
+        "parameters": {**to_mapping(session.tracker.parameters), **to_mapping(session.settings)},
+        "versions": versions(),
+        "notices": list(info.notices),
+    }
+
+
+def versions() -> dict[str, str | None]:
+    """Return the versions that determine the numbers; None for packages not installed."""
+    return {
+        "vehicle_pf_tracker": __version__,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "opencv": cv2.__version__,
+        "numba": _installed("numba"),
+        "platform": platform.platform(),
+    }
+
+
+def _installed(name: str) -> str | None:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+ESTIMATES, METRICS, RUN = "estimates.csv", "metrics.json", "run.json"
+DIGESTS = "digests.json"
+"""File with the SHA-256 of every other file of a sealed folder, by name."""
+
+
+class RunFolder:
+    """Writes the results of one run; those of an earlier run are never left beside them.
+
+    Parameters
+    ----------
+    path : Path
+        The folder; made where it is missing.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written there; also from every method.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = make_folder(path)
+
+    def write_run(
+        self,
+        rows: Sequence[EstimateRow],
+        description: Mapping[str, Any],
+        extra: Mapping[str, Sequence[float | None]] = MappingProxyType({}),
+    ) -> None:
+        """Write `estimates.csv` with the columns `extra`, and the description to `run.json`."""
+        for name in (ESTIMATES, METRICS, RUN):
+            with output_errors(self.path / name):
+                (self.path / name).unlink(missing_ok=True)
+        write_estimates(self.path / ESTIMATES, rows, extra)
+        write_json(self.path / RUN, description)
+
+    def write_metrics(self, metrics: Mapping[str, object]) -> None:
+        """Write `metrics.json`: the numbers of the estimates against truth, by name."""
+        write_json(self.path / METRICS, metrics)
+
+
+def seal(folder: Path) -> None:
+    """Write the digests of the files in `folder`, so that `damage` can check them later.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    with output_errors(folder):
+        digests = {path.name: _digest(path) for path in sorted(folder.iterdir()) if path.is_file()}
+    write_json(folder / DIGESTS, digests)
+
+
+def damage(folder: Path) -> str:
+    """Check a sealed folder; returns the first fault as a clause, empty if there is none."""
+    try:
+        digests = json.loads((folder / DIGESTS).read_text(encoding="utf-8"))
+        for name in (ESTIMATES, METRICS, RUN):
+            if not isinstance(digests[name], str):
+                return f"{DIGESTS} has no digest of {name}"
+        for name, digest in digests.items():
+            if _digest(folder / name) != digest:
+                return f"{name} was changed"
+    except OSError as error:
+        return f"{Path(error.filename).name} cannot be read ({error.strerror})"
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return f"{DIGESTS} is broken"
+    return ""
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

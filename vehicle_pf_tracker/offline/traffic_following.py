@@ -1,0 +1,194 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""All vehicles followed through a source, written and drawn as they go."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from types import MappingProxyType
+from typing import TypeAlias
+
+from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.offline.contact_sheet import clock_words
+from vehicle_pf_tracker.offline.following import RATE_FRAMES, Pictures, frame_rate_of
+from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, annotated
+from vehicle_pf_tracker.offline.traffic_files import TrackFiles
+from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
+from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.trackers.failures import TrackerError
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
+
+Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
+
+_MOST_NOTICES = 200
+"""Notices kept: a camera without a clock gives one per frame, for hours."""
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Vehicle given by hand: its name, "" without one, and its box in px."""
+
+    name: str
+    box: Box
+
+
+class TrafficRun:
+    """One pass over a source.
+
+    Parameters
+    ----------
+    session : TrafficSession
+        Drives the tracker.
+    counter : Counter or None
+        Counts at lines and in zones.
+    detections_of : callable or None
+        Gives the detections of a frame by its number, from 1; None leaves them to the session.
+    targets : mapping of int to sequence of Target
+        Vehicles given by hand, by the numbers of their frames.
+
+    Attributes
+    ----------
+    summary : TrafficSummary
+        Vehicles and occlusions.
+    paths : PathPicture
+        Picture of all paths.
+    """
+
+    def __init__(
+        self,
+        session: TrafficSession,
+        counter: Counter | None = None,
+        *,
+        detections_of: Callable[[int], Detections] | None = None,
+        targets: Mapping[int, Sequence[Target]] = MappingProxyType({}),
+    ) -> None:
+        self.session = session
+        self.counter = counter
+        self.summary = TrafficSummary()
+        self.paths = PathPicture()
+        self._notices: list[str] = []
+        self._more_notices = 0
+        self._last_events: list[str] = []
+        self._detections_of = detections_of
+        self._targets = targets
+        self._by_name: dict[str, int] = {}
+        self._restarts = 0
+
+    @property
+    def notices(self) -> list[str]:
+        """Irregularities, a sentence each; of very many only the first."""
+        more = self._more_notices
+        return [*self._notices, *([f"and {more} more notices"] if more else [])]
+
+    def _note(self, sentence: str) -> None:
+        if len(self._notices) < _MOST_NOTICES:
+            self._notices.append(sentence)
+        else:
+            self._more_notices += 1
+
+    def follow(self, frames: Numbered, files: TrackFiles, pictures: Pictures | None = None) -> None:
+        """Follow all vehicles through `frames`, which have their numbers in the source.
+
+        Raises
+        ------
+        InputError
+            If a target is invalid in its frame, or something cannot be written.
+        """
+        pictures = pictures or Pictures()
+        # The video's rate is that of the first second, so this much is read ahead of it.
+        ahead = list(itertools.islice(frames, RATE_FRAMES if pictures.video else 1))
+        if not ahead:
+            return
+        start_ns = ahead[0][1].stamp_ns
+        with pictures.drawing(frame_rate_of(ahead)) as take:
+            for number, found in itertools.chain(ahead, frames):
+                estimates = self._step(number, found)
+                if found.frame is None or estimates is None:
+                    continue
+                self._write(number, found.stamp_ns, estimates, files)
+                self.paths.add(found.frame, estimates)
+                words = _words(number, found.stamp_ns - start_ns, estimates)
+                draw = partial(annotated, found.frame, words, estimates, self.counter)
+                if not take((), draw, found.frame):
+                    break
+
+    def _step(self, number: int, found: StampedFrame) -> tuple[TrackEstimate, ...] | None:
+        """Take a frame; None where it is rejected, so that nothing is known of its time."""
+        if found.frame is None:
+            self._note(f"frame {number} was rejected: it cannot be read")
+            return None
+        detections = self._detections_of(number) if self._detections_of is not None else None
+        try:
+            estimates = self.session.feed(found.frame, found.stamp_ns, detections)
+        except (InputError, TrackerError) as error:
+            if isinstance(error, TrackerError) and error.persists:
+                raise
+            self._note(f"frame {number} was rejected: {error}")
+            return None
+        for event in self.session.events:
+            if event not in self._last_events:  # one that lasts is told once
+                self._note(f"frame {number}: {event}")
+        self._last_events = list(self.session.events)
+        if self.session.restarts != self._restarts:
+            self._begin_anew()
+        for target in self._targets.get(number, ()):
+            self._add(target, found.frame, number)
+        return estimates
+
+    def _begin_anew(self) -> None:
+        """Note that the session has discarded all vehicles but those that it kept."""
+        self._restarts, kept = self.session.restarts, self.session.successors
+        self._by_name = {name: kept[old] for name, old in self._by_name.items() if old in kept}
+        if self.counter is not None:
+            self.counter.forget_vehicles()
+
+    def _add(self, target: Target, frame: Frame, number: int) -> None:
+        """Follow a vehicle from this frame on; a name that comes again replaces the one before."""
+        try:
+            check_target(target.box, *frame_size(frame))
+        except InputError as error:
+            raise InputError(f"in frame {number}, {error}") from None
+        if target.name in self._by_name:
+            self.session.remove(self._by_name[target.name])
+        label = "" if target.name.isdecimal() else target.name
+        self._by_name[target.name] = self.session.add(target.box, label)
+
+    def _write(
+        self,
+        number: int,
+        stamp_ns: int,
+        estimates: Sequence[TrackEstimate],
+        files: TrackFiles,
+    ) -> None:
+        crossings = self.counter.update(estimates, stamp_ns) if self.counter is not None else ()
+        files.write(number, stamp_ns, estimates, crossings)
+        occupancy = self.counter.occupancy if self.counter is not None else {}
+        self.summary.add(number, stamp_ns, estimates, occupancy)
+
+
+def _words(number: int, elapsed_ns: int, estimates: Sequence[TrackEstimate]) -> str:
+    """Return the line of words over a frame."""
+    confirmed = sum(one.mode in CONFIRMED for one in estimates)
+    hidden = sum(one.mode is TrackMode.OCCLUDED for one in estimates)
+    occluded = f", {hidden} occluded" if hidden else ""
+    return f"{clock_words(elapsed_ns)}  frame {number}  {confirmed} vehicles{occluded}"

@@ -1,0 +1,262 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Distortion of a lens, by the models of sensor_msgs/CameraInfo, and its removal.
+
+Rigid transforms and the tree that TF makes of them, without ROS.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.errors import InputError
+
+FIRST_PIXEL = 0.5
+"""Centre of the first pixel in this package; in CameraInfo, as in OpenCV, it is 0."""
+_MODELS: Mapping[str, tuple[int, ...]] = {
+    "none": (0,),
+    "plumb_bob": (4, 5),
+    "rational_polynomial": (8,),
+    "equidistant": (4,),
+}
+"""Numbers of coefficients that each model may have."""
+MODELS = tuple(_MODELS)
+_ROUNDS = 30
+"""Newton steps of the removal; four to eight settle it where the model can be inverted."""
+_TOLERANCE = 1e-9
+"""Distance of a removal's result, distorted again, from where it came from, in focal lengths: above
+it the point is beyond the fold of the polynomial, where no ray belongs to it."""
+_SETTLED = 1e-13
+"""Error at which the steps end, in focal lengths: some roundings."""
+_STEP = 1e-6
+"""Step of numerical derivatives, in focal lengths: some square roots of the rounding error."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lens:
+    """Pinhole camera with distortion; pixels in, ideal pixels of the same pinhole out.
+
+    Attributes
+    ----------
+    focal : (float, float)
+        Focal lengths fx, fy in px.
+    centre : (float, float)
+        Principal point cx, cy in px, as in CameraInfo.
+    model : str
+        One of `MODELS`, the names of CameraInfo.
+    coefficients : tuple of float
+        In the order of CameraInfo.
+    """
+
+    focal: tuple[float, float]
+    centre: tuple[float, float]
+    model: str = "none"
+    coefficients: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        numbers = (*self.focal, *self.centre, *self.coefficients)
+        if not all(map(np.isfinite, numbers)) or min(self.focal) <= 0:
+            raise InputError("the camera's focal lengths must be above 0, and all numbers finite")
+        if self.model not in _MODELS:
+            raise InputError(
+                f"the distortion model {self.model!r} is not known; use one of {', '.join(MODELS)}"
+            )
+        counts = _MODELS[self.model]
+        if len(self.coefficients) not in counts:
+            wanted = " or ".join(map(str, counts))
+            raise InputError(
+                f"the distortion model {self.model} has {wanted} coefficients, "
+                f"got {len(self.coefficients)}"
+            )
+
+    @property
+    def matrix(self) -> Array:
+        """Camera matrix (3, 3) for pixels of this package."""
+        (fx, fy), (cx, cy) = self.focal, self.centre
+        return np.array([[fx, 0, cx + FIRST_PIXEL], [0, fy, cy + FIRST_PIXEL], [0, 0, 1]])
+
+    def to_ideal(self, points: Array) -> Array:
+        """Remove the distortion from pixels (…, 2); nan where no ray belongs to a pixel."""
+        if not any(self.coefficients) and self.model != "equidistant":
+            return points
+        return self._pixels(self._undistorted(self._rays(points)))
+
+    def to_pixels(self, points: Array) -> Array:
+        """Distort ideal pixels (…, 2), as the lens does."""
+        return self._pixels(self._distorted(self._rays(points)))
+
+    def _rays(self, points: Array) -> Array:
+        rays: Array = (points - self.matrix[:2, 2]) / self.focal
+        return rays
+
+    def _pixels(self, rays: Array) -> Array:
+        pixels: Array = rays * self.focal + self.matrix[:2, 2]
+        return pixels
+
+    def _distorted(self, rays: Array) -> Array:
+        if self.model == "equidistant":
+            return _fisheye(rays, self.coefficients)
+        return _polynomial(rays, (*self.coefficients, *(0.0,) * (8 - len(self.coefficients))))
+
+    def _undistorted(self, distorted: Array) -> Array:
+        """Invert the distortion by Newton's method, with derivatives by differences."""
+        rays = np.array(distorted)
+        with np.errstate(all="ignore"):
+            for _ in range(_ROUNDS):
+                error = self._distorted(rays) - distorted
+                if not (np.abs(error) > _SETTLED).any():
+                    break
+                columns = [
+                    (self._distorted(rays + step) - self._distorted(rays - step)) / (2 * _STEP)
+                    for step in np.eye(2) * _STEP
+                ]
+                (a, c), (b, d) = (np.moveaxis(column, -1, 0) for column in columns)
+                x, y = np.moveaxis(error, -1, 0)
+                move = np.stack([d * x - b * y, a * y - c * x], axis=-1)
+                rays = rays - move / (a * d - b * c)[..., np.newaxis]
+            off = np.linalg.norm(self._distorted(rays) - distorted, axis=-1)
+            # Beyond the fold a polynomial has rays on the other side of the axis.
+            turned = (rays * distorted).sum(axis=-1) < -_TOLERANCE
+        rays[~(off < _TOLERANCE) | turned] = np.nan
+        return rays
+
+
+def _polynomial(rays: Array, coefficients: tuple[float, ...]) -> Array:
+    """Distort by the radial ratio (k1 k2 k3 over k4 k5 k6) and the tangential p1 p2."""
+    k1, k2, p1, p2, k3, k4, k5, k6 = coefficients
+    x, y = np.moveaxis(rays, -1, 0)
+    r2 = x * x + y * y
+    radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))
+    return np.stack(
+        [
+            x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+            y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y,
+        ],
+        axis=-1,
+    )
+
+
+def _fisheye(rays: Array, coefficients: tuple[float, ...]) -> Array:
+    """Distort by the angle from the axis: its polynomial is the distance in the image."""
+    k1, k2, k3, k4 = coefficients
+    radius = np.linalg.norm(rays, axis=-1, keepdims=True)
+    angle = np.arctan(radius)
+    a2 = angle * angle
+    bent = angle * (1 + a2 * (k1 + a2 * (k2 + a2 * (k3 + a2 * k4))))
+    # Towards the axis the ratio tends to 1.
+    ratio = np.divide(bent, radius, out=np.ones_like(radius), where=radius > 0)
+    return np.asarray(rays * ratio)
+
+
+_UNIT = 1e-2
+"""Deviation of a quaternion's length from 1 that is taken as rounding of printed numbers."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pose:
+    """Pose of a child frame in its parent: ``p_parent = rotation @ p_child + position``.
+
+    Attributes
+    ----------
+    rotation : (3, 3) array
+        Its columns are the child's axes in the parent.
+    position : (3,) array
+        The child's origin in the parent, m.
+    """
+
+    rotation: Array
+    position: Array
+
+    @classmethod
+    def of(cls, position: tuple[float, ...], quaternion: tuple[float, ...]) -> Pose:
+        """Make the pose of a position (x, y, z; m) and a quaternion (x, y, z, w).
+
+        Raises
+        ------
+        InputError
+            If a number is not finite, or the quaternion is not of length 1.
+        """
+        length = float(np.linalg.norm(quaternion))
+        if not np.isfinite([*position, length]).all() or abs(length - 1) > _UNIT:
+            raise InputError(
+                f"the pose {position}, {quaternion} needs finite numbers and a quaternion x,y,z,w "
+                "of length 1"
+            )
+        x, y, z, w = (number / length for number in quaternion)
+        rotation = np.array(
+            [
+                [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+            ]
+        )
+        return cls(rotation, np.asarray(position, np.float64))
+
+    def __matmul__(self, other: Pose) -> Pose:
+        return Pose(self.rotation @ other.rotation, self.rotation @ other.position + self.position)
+
+    def equals(self, other: Pose | None) -> bool:
+        """Return whether `other` is the same to the last digit."""
+        return (
+            other is not None
+            and np.array_equal(self.rotation, other.rotation)
+            and np.array_equal(self.position, other.position)
+        )
+
+    @property
+    def inverse(self) -> Pose:
+        """Pose of the parent in the child."""
+        return Pose(self.rotation.T, -self.rotation.T @ self.position)
+
+
+class PoseTree:
+    """The newest pose of every frame in its parent, and of any frame in any other."""
+
+    def __init__(self) -> None:
+        self._parents: dict[str, tuple[str, Pose]] = {}
+
+    def put(self, parent: str, child: str, pose: Pose) -> None:
+        """Keep the pose of `child` in `parent`, over an earlier one."""
+        self._parents[child.lstrip("/")] = parent.lstrip("/"), pose
+
+    def find(self, frame: str, reference: str) -> Pose:
+        """Return the pose of `frame` in `reference`.
+
+        Raises
+        ------
+        InputError
+            If the two are not connected.
+        """
+        below, above = self._chain(frame.lstrip("/")), self._chain(reference.lstrip("/"))
+        common = next((name for name in below if name in above), None)
+        if common is None:
+            raise InputError(f"TF does not connect the frames {frame!r} and {reference!r}")
+        return above[common].inverse @ below[common]
+
+    def _chain(self, frame: str) -> dict[str, Pose]:
+        """Return the pose of `frame` in itself and in each frame above it, upwards."""
+        pose = Pose(np.eye(3), np.zeros(3))
+        chain = {frame: pose}
+        while frame in self._parents:
+            frame, step = self._parents[frame]
+            if frame in chain:  # a loop, which TF forbids
+                break
+            pose = step @ pose
+            chain[frame] = pose
+        return chain

@@ -1,0 +1,320 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Messages about all vehicles of an image.
+
+Messages about lines and zones.
+
+Detections of all vehicles as messages, in and out, where vision_msgs is installed.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import Point
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import PointCloud2, PointField
+from std_msgs.msg import Header
+from visualization_msgs.msg import Marker, MarkerArray
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.offline.traffic_drawing import NEUTRAL, identity_colour
+from vehicle_pf_tracker.ros.messages import (
+    CLASS,
+    LEVELS,
+    detection_message,
+    detections_type,
+    key_values,
+    packed,
+)
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.watches import ENTRY, EXIT
+
+CODES: Mapping[TrackMode, int] = MappingProxyType(
+    {mode: code for code, mode in enumerate(TrackMode)}
+)
+"""Modes in `~/tracks`: 0 TENTATIVE, 1 TRACKING, 2 OCCLUDED, 3 LOST."""
+
+_FLOATS = ("x", "y", "width", "height", "vx", "vy")
+_TRACK = np.dtype(
+    {
+        "names": ["id", *_FLOATS, "mode", "confidence"],
+        "formats": ["<u4", *["<f4"] * len(_FLOATS), "u1", "<f4"],
+        "offsets": [0, 4, 8, 12, 16, 20, 24, 28, 32],
+        "itemsize": 36,
+    }
+)
+_DATATYPES = {"<u4": PointField.UINT32, "|u1": PointField.UINT8, "<f4": PointField.FLOAT32}
+
+
+def _field(name: str) -> PointField:
+    assert _TRACK.fields is not None
+    kind, offset = _TRACK.fields[name][:2]
+    return PointField(name=name, offset=offset, datatype=_DATATYPES[kind.str], count=1)
+
+
+_FIELDS = [_field(name) for name in _TRACK.names or ()]
+_LINE_WIDTH = 2.0
+"""Width of the lines of boxes in px."""
+_LETTERS = 14.0
+"""Height of numbers in px."""
+
+
+def tracks_message(
+    header: Header, estimates: Sequence[TrackEstimate], frame_period: float
+) -> PointCloud2:
+    """Make the cloud with a point for each vehicle: centre and size in px, velocity in px/s."""
+    points = np.zeros(len(estimates), _TRACK)
+    for point, one in zip(points, estimates, strict=True):
+        vx, vy = one.velocity[0] / frame_period, one.velocity[1] / frame_period
+        point["id"], point["mode"] = one.identity, CODES[one.mode]
+        point["confidence"] = one.confidence
+        values = (*one.position, one.box.width, one.box.height, vx, vy)
+        for name, value in zip(_FLOATS, values, strict=True):
+            point[name] = value
+    return PointCloud2(
+        header=header,
+        height=1,
+        width=len(points),
+        fields=_FIELDS,
+        is_bigendian=False,
+        point_step=_TRACK.itemsize,
+        row_step=_TRACK.itemsize * len(points),
+        data=packed(points.view(np.uint8)),
+        is_dense=True,
+    )
+
+
+def scalars(estimate: TrackEstimate) -> dict[str, object]:
+    """Return every scalar of an estimate by the name that `~/mode` and `~/modes` use."""
+    return {
+        "mode": estimate.mode.value,
+        "id": estimate.identity,
+        "x": estimate.position[0],
+        "y": estimate.position[1],
+        "width": estimate.box.width,
+        "height": estimate.box.height,
+        "velocity_x": estimate.velocity[0],
+        "velocity_y": estimate.velocity[1],
+        "confidence": estimate.confidence,
+        "label": estimate.label,
+        "score": estimate.score,
+        "age": estimate.age,
+        "hidden_by": "" if estimate.hidden_by is None else estimate.hidden_by,
+    }
+
+
+def modes_message(
+    header: Header, node: str, hardware_id: str, estimates: Iterable[TrackEstimate]
+) -> DiagnosticArray:
+    """Make the status of each vehicle, with every scalar of its estimate."""
+    status = [
+        DiagnosticStatus(
+            level=LEVELS[one.mode.value],
+            name=f"{node}: vehicle {one.identity}",
+            message=one.mode.value,
+            hardware_id=hardware_id,
+            values=key_values(scalars(one)),
+        )
+        for one in estimates
+    ]
+    return DiagnosticArray(header=header, status=status)
+
+
+def markers_message(header: Header, estimates: Iterable[TrackEstimate]) -> MarkerArray:
+    """Make box and number of each vehicle that is not lost, px as m; those before are deleted."""
+    markers = [Marker(header=header, action=Marker.DELETEALL)]
+    for one in estimates:
+        if one.mode is not TrackMode.LOST:
+            markers += [_outline(header, one), _number(header, one)]
+    return MarkerArray(markers=markers)
+
+
+def _outline(header: Header, estimate: TrackEstimate) -> Marker:
+    marker = _marker(header, estimate, "box", Marker.LINE_STRIP)
+    corners = estimate.box.corners
+    marker.points = [Point(x=float(x), y=float(y)) for x, y in (*corners, corners[0])]
+    marker.scale.x = _LINE_WIDTH
+    return marker
+
+
+def _number(header: Header, estimate: TrackEstimate) -> Marker:
+    marker = _marker(header, estimate, "number", Marker.TEXT_VIEW_FACING)
+    marker.pose.position.x = float(estimate.position[0])
+    marker.pose.position.y = float(estimate.box.y)
+    marker.scale.z = _LETTERS
+    hidden = f" {estimate.mode.value}" if estimate.mode is TrackMode.OCCLUDED else ""
+    marker.text = f"{estimate.identity} {estimate.label}".rstrip() + hidden
+    return marker
+
+
+def _marker(header: Header, estimate: TrackEstimate, namespace: str, kind: int) -> Marker:
+    marker = Marker(header=header, ns=namespace, id=estimate.identity, type=kind, action=Marker.ADD)
+    is_sure = estimate.mode is not TrackMode.TENTATIVE
+    colour = identity_colour(estimate.identity) if is_sure else NEUTRAL
+    marker.color.r, marker.color.g, marker.color.b = (part / 255 for part in colour)
+    # Predicted boxes are faint.
+    marker.color.a = 0.4 if estimate.mode is TrackMode.OCCLUDED else 1.0
+    marker.pose.orientation.w = 1.0
+    return marker
+
+
+def counts_message(
+    header: Header,
+    node: str,
+    hardware_id: str,
+    counter: Counter,
+    latest: Mapping[str, Crossing],
+) -> DiagnosticArray:
+    """Make the status of each line and zone.
+
+    Parameters
+    ----------
+    header : Header
+        The image's.
+    node, hardware_id : str
+        Node, and topic of its images.
+    counter : Counter
+        What was counted.
+    latest : mapping of str to Crossing
+        The last crossing of each place, by the place's name.
+    """
+    directions = {
+        **{line.name: line.directions for line in counter.plan.lines},
+        **{zone.name: (ENTRY, EXIT) for zone in counter.plan.zones},
+    }
+    status = [
+        DiagnosticStatus(
+            level=DiagnosticStatus.OK,
+            name=f"{node}: {place}",
+            message=_words(counter, place, names),
+            hardware_id=hardware_id,
+            values=key_values(_values(counter, place, names, latest.get(place))),
+        )
+        for place, names in directions.items()
+    ]
+    return DiagnosticArray(header=header, status=status)
+
+
+def _words(counter: Counter, place: str, directions: tuple[str, str]) -> str:
+    counts = ", ".join(f"{name} {counter.count(place, name)}" for name in directions)
+    there = counter.occupancy.get(place)
+    return counts if there is None else f"{there} inside, {counts}"
+
+
+def _values(
+    counter: Counter, place: str, directions: tuple[str, str], last: Crossing | None
+) -> dict[str, object]:
+    values: dict[str, object] = {name: counter.count(place, name) for name in directions}
+    for (at, direction, label), number in sorted(counter.totals.items()):
+        if at == place and label:
+            values[f"{direction} {label}"] = number
+    if place in counter.occupancy:
+        values["occupancy"] = counter.occupancy[place]
+    if last is not None:
+        values["last id"], values["last direction"] = last.identity, last.direction
+        values["last stamp (ns)"] = last.stamp_ns
+        speeds = {"last speed (px/s)": last.speed_px, "last speed (km/h)": last.speed_kmh}
+        values |= {name: speed for name, speed in speeds.items() if speed is not None}
+    return values
+
+
+_BODY = 4
+"""Bytes before the message."""
+_LONGEST = 1_000_000
+"""Longest message in bytes that is read: 2300 detections, which take rclpy 0.3 s. Ten thousand
+would take 1.5 s, in which no image is answered."""
+
+
+def detections_message(header: Header, estimates: Iterable[TrackEstimate]) -> Any:
+    """Make the detections of the vehicles that are seen or predicted, with their numbers."""
+    found = [
+        detection_message(header, one, str(one.identity), one.label or CLASS)
+        for one in estimates
+        if one.mode in CONFIRMED
+    ]
+    return detections_type()(header=header, detections=found)
+
+
+def read_stamp(message: bytes) -> int:
+    """Return the stamp in ns at the head of a serialized message.
+
+    Raises
+    ------
+    InputError
+        If it is cut off.
+    """
+    try:
+        order = "<" if message[1] & 1 else ">"
+        seconds, nanoseconds = struct.unpack_from(f"{order}iI", message, _BODY)
+    except (struct.error, IndexError):
+        raise InputError("a message of detections is cut off before its stamp") from None
+    return int(seconds) * 1_000_000_000 + int(nanoseconds)
+
+
+def read_serialized_detections(message: bytes) -> Detections:
+    """Read a vision_msgs/Detection2DArray in CDR, its encapsulation header included.
+
+    Raises
+    ------
+    InputError
+        If it is too long to be read in time.
+    """
+    if len(message) > _LONGEST:
+        raise InputError(
+            f"a message of detections has {len(message) / 1e6:.1f} MB, more than the "
+            f"{_LONGEST / 1e6:g} MB that are read; is the detector in order?"
+        )
+    return read_detections(deserialize_message(message, detections_type()))
+
+
+def read_detections(message: Any) -> Detections:
+    """Read a vision_msgs/Detection2DArray.
+
+    A turned box becomes the upright one around it. Score and class are those of the hypothesis with
+    the highest score; a detection without one has the score 1 and no class.
+    """
+    rows = [_row(one.bbox) for one in message.detections]
+    best = [_best(one.results) for one in message.detections]
+    boxes = np.array(rows, dtype=np.float64).reshape(-1, 5)
+    with np.errstate(invalid="ignore", over="ignore"):
+        x, y, width, height, theta = boxes.T
+        cosine, sine = np.abs(np.cos(theta)), np.abs(np.sin(theta))
+        # Negative sizes stay so: they are to be refused, and a turn could make them positive.
+        is_turned = (theta != 0) & (width > 0) & (height > 0)
+        across = np.where(is_turned, width * cosine + height * sine, width)
+        down = np.where(is_turned, width * sine + height * cosine, height)
+        upright = np.stack([x - across / 2, y - down / 2, across, down], axis=1)
+    return Detections.make(upright, [score for score, _ in best], [label for _, label in best])
+
+
+def _row(box: Any) -> tuple[float, float, float, float, float]:
+    centre = box.center
+    at = centre.position
+    return at.x, at.y, box.size_x, box.size_y, centre.theta
+
+
+def _best(results: Any) -> tuple[float, str]:
+    if not results:
+        return 1.0, ""
+    best = max((one.hypothesis for one in results), key=lambda one: float(one.score))
+    return float(best.score), str(best.class_id)
