@@ -12,14 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`docs/performance.md` and its figures from `bench.json`.
-
-python -m benchmarks.bench.performance_page results/bench/bench.json docs
-"""
+"""`docs/performance.md` and its figures from the results of a run."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -75,9 +71,8 @@ with the OpenCV kernels, and `cold` (nothing compiled before) with `warm`.
 """
 
 
-def main(source: Path, folder: Path) -> None:
+def write(results: Results, folder: Path) -> None:
     """Write the page and its figures below `folder`."""
-    results = Results.load(source)
     images = folder / IMAGES
     images.mkdir(parents=True, exist_ok=True)
     save(kernels_figure(results), images / "kernels.svg")
@@ -182,7 +177,3 @@ def _memory(results: Results) -> str:
         "same with one,\nand the node against the floor:\n\n"
     )
     return words + table(("memory", "ours, MB", "baseline, MB"), rows)
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
