@@ -14,7 +14,7 @@
 
 """Measure what the dearest compressed images cost that are still decoded.
 
-    python benchmarks/hostile_images.py
+    python -m benchmarks.hostile_images
 
 Each kind of file is made as large as it may be; every one is decoded in a process of its own.
 """

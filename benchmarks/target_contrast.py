@@ -14,7 +14,7 @@
 
 """Contrast of true boxes and of boxes thrown into their images, for doubts about targets.
 
-python benchmarks/target_contrast.py ../shared/sequences
+python -m benchmarks.target_contrast SEQUENCES
 """
 
 from __future__ import annotations
