@@ -70,11 +70,11 @@ colcon: .venv/colcon
 baselines: .venv-baselines/locked
 
 # Writes results/bench/bench.json and docs/performance.md, and with SEQUENCES=FOLDER the cost of fusion on
-# them, results/fusion_cost; wants a machine with nothing else to do.
+# them, results/fusion_cost; wants a machine with nothing else to do. With BENCH_ARGS=--toy some cases of
+# every part run once, in less than a minute, and results/bench_toy has all that is written.
 bench: .venv/installed .venv-baselines/locked
 	$(if $(SEQUENCES),$(BIN)/python -m benchmarks.fusion_cost $(SEQUENCES) --resampled car_a silver_estate S1301 -o results/fusion_cost)
-	$(BIN)/python -m benchmarks.bench $(BENCH_ARGS)
-	$(BIN)/python -m benchmarks.bench.performance_page results/bench/bench.json $(PAGES)
+	$(BIN)/python -m benchmarks.bench --docs $(PAGES) $(BENCH_ARGS)
 
 # The papers' experiments; what was run before is not run again.
 reproduce: .venv/installed

@@ -14,7 +14,7 @@
 
 """Measure how long a node takes from its start to its first answered service.
 
-    python benchmarks/cold_start.py
+    python -m benchmarks.cold_start
 
 With an empty cache of compiled kernels, with a filled one, without numba's kernels, and, for what
 ROS itself takes, an rclpy node that does nothing. Wall-clock time; discovery is part of it. The
@@ -30,7 +30,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -107,12 +107,14 @@ def _command(kind: str, variant: str) -> list[str]:
     return [*words, "-p", f"kernels:={'opencv' if kind == 'opencv' else 'auto'}"]
 
 
-def measure(asker: Asker, variant: str, repeats: int) -> Mapping[str, list[float]]:
+def measure(
+    asker: Asker, variant: str, kinds: Sequence[str], repeats: int
+) -> Mapping[str, list[float]]:
     """Return the times of each kind in s."""
     asker.first_answer("warm", variant)  # leaves what it read in the system's cache
-    times: dict[str, list[float]] = {kind: [] for kind in _KINDS}
+    times: dict[str, list[float]] = {kind: [] for kind in kinds}
     for _ in range(repeats):
-        for kind in _KINDS:
+        for kind in kinds:
             asker.forget()
             times[kind].append(asker.first_answer(kind, variant))
     return times
@@ -122,6 +124,7 @@ def main() -> None:
     """Measure as asked and print a table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("variants", nargs="*", default=["apf", "fusion"])
+    parser.add_argument("--kinds", nargs="+", default=_KINDS, choices=_KINDS)
     parser.add_argument("--repeats", type=int, default=10)
     args = parser.parse_args()
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
@@ -130,7 +133,7 @@ def main() -> None:
     print("| --- | --- | ---: | ---: | ---: | ---: |")
     for variant in args.variants:
         load = os.getloadavg()[0]
-        for kind, times in measure(asker, variant, args.repeats).items():
+        for kind, times in measure(asker, variant, args.kinds, args.repeats).items():
             numbers = " | ".join(f"{f(times):.2f}" for f in (np.min, np.median, np.max))
             print(f"| `{variant}` | {kind} | {len(times)} | {numbers} |", flush=True)
         print(f"load {load:.1f} to {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")

@@ -14,7 +14,7 @@
 
 """Measure every variant's steps on 4K images with a target of half the image.
 
-    python benchmarks/large_targets.py
+    python -m benchmarks.large_targets
 
 CPU time of the process, threads of libraries included, so that other work on the machine does not
 count; on an idle core a step takes no longer.

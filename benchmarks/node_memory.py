@@ -145,8 +145,8 @@ def measure(
             viewer.show(frames, boxes[:0] if MOTION in options else boxes, is_heard=bool(variant))
             sizes = fields(node.pid)
     heard = viewer.answers
-    if variant and len(heard) < IMAGES / 2:
-        raise SystemExit(f"{words}: only {len(heard)} answers to {IMAGES} images")
+    if variant and len(heard) < len(frames) / 2:
+        raise SystemExit(f"{words}: only {len(heard)} answers to {len(frames)} images")
     counts = [
         int(pair.value)
         for answer in heard
@@ -161,10 +161,12 @@ def main() -> None:
     """Print both tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--only", default="", help="nodes with this in their row")
-    only = parser.parse_args().only
+    parser.add_argument("--images", type=int, default=IMAGES, help="images that each node gets")
+    args = parser.parse_args()
+    only = args.only
     with tempfile.TemporaryDirectory() as folder:
-        scene = made(VEHICLES, Path(folder, "scene"))
-        frames = [frame.copy() for frame in scene.frames()][:IMAGES]
+        scene = made(VEHICLES, Path(folder, "scene"), args.images)
+        frames = [frame.copy() for frame in scene.frames()]
         rows = scene.detections["good"]
         boxes = rows[rows[:, 0] == 1][:, 1:5]
     viewer = Viewer(frames[0].nbytes)

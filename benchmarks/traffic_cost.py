@@ -64,6 +64,10 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--counts", type=int, nargs="+", default=COUNTS, help="vehicles at once")
+    parser.add_argument(
+        "--frames", type=int, default=FRAMES, help=f"images of a scene, more than {SETTLED}"
+    )
     parser.add_argument("--resident", type=Path, help=argparse.SUPPRESS)
     args = parser.parse_args()
     cv2.setNumThreads(1)
@@ -71,21 +75,22 @@ def main() -> None:
         resident(read_sequence(args.resident))
         return
     with tempfile.TemporaryDirectory() as folder, TrafficWorker() as worker:
-        sequences = {count: made(count, Path(folder, str(count))) for count in COUNTS}
+        counts, frames = args.counts, args.frames
+        sequences = {count: made(count, Path(folder, str(count)), frames) for count in counts}
         print(
             "| vehicles | traffic, boxes given | traffic, motion | bytetrack | ocsort | followed |"
         )
         print("|---:|---:|---:|---:|---:|---:|")
-        means = {count: row(count, sequences[count], worker, args.rounds) for count in COUNTS}
-        span = COUNTS[-1] - COUNTS[0]
-        slopes = np.subtract(means[COUNTS[-1]][:2], means[COUNTS[0]][:2]) / span
+        means = {count: row(count, sequences[count], worker, args.rounds) for count in counts}
+        span = counts[-1] - counts[0]
+        slopes = np.subtract(means[counts[-1]][:2], means[counts[0]][:2]) / span
         print(f"\nper further vehicle: {slopes[0]:.2f} ms, with motion {slopes[1]:.2f} ms\n")
         sys.stdout.flush()
         command = [sys.executable, "-m", "benchmarks.traffic_cost", "--resident"]
-        subprocess.run([*command, str(sequences[COUNTS[-1]].folder)], check=True)
+        subprocess.run([*command, str(sequences[counts[-1]].folder)], check=True)
 
 
-def made(count: int, folder: Path) -> TrafficSequence:
+def made(count: int, folder: Path, frames: int = FRAMES) -> TrafficSequence:
     """Render a scene that shows about `count` vehicles all the time, and read it again."""
     roads = (
         Carriageway(60, 4, 7.0, rightward=True),
@@ -108,7 +113,7 @@ def made(count: int, folder: Path) -> TrafficSequence:
         width=WIDTH,
         height=HEIGHT,
         frame_rate=30.0,
-        frame_count=FRAMES,
+        frame_count=frames,
         backdrop=lambda: countryside((HEIGHT, WIDTH), roads, stream(0, "backdrop")),
         vehicles=tuple(vehicles),
         obstacles=(),
@@ -163,9 +168,7 @@ def resident(sequence: TrafficSequence) -> None:
     """Print the memory of this process before and after following what moves."""
     before = resident_mb()
     ours(sequence, motion=True)
-    print(
-        f"memory with {COUNTS[-1]} vehicles: {resident_mb():.0f} MB, of which imports {before:.0f}"
-    )
+    print(f"memory with most vehicles: {resident_mb():.0f} MB, of which imports {before:.0f}")
 
 
 def resident_mb() -> float:

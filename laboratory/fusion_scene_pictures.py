@@ -82,16 +82,19 @@ def main() -> int:
     """Draw all pictures; 1 where the folder cannot be written."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("folder", type=Path)
+    names = [picture.name for picture in PICTURES]
+    parser.add_argument("--only", nargs="+", default=names, choices=names, metavar="PICTURE")
+    args = parser.parse_args()
     cv2.setNumThreads(1)
     try:
-        draw_pictures(parser.parse_args().folder)
+        draw_pictures(args.folder, [one for one in PICTURES if one.name in args.only])
     except InputError as error:
         print(f"fusion_scene_pictures: {error}", file=sys.stderr)
         return 1
     return 0
 
 
-def draw_pictures(folder: Path) -> None:
+def draw_pictures(folder: Path, pictures: Sequence[Picture]) -> None:
     """Run `fusion` for every picture and write them as WebP.
 
     Raises
@@ -100,7 +103,7 @@ def draw_pictures(folder: Path) -> None:
         If the folder cannot be written.
     """
     make_folder(folder)
-    for picture in PICTURES:
+    for picture in pictures:
         frames = list(make_scene(picture.scene, seed=picture.seed).frames())
         figure = _figure(picture, frames, track(frames, picture.seed))
         with replacing(folder / f"{picture.name}.webp") as partial:

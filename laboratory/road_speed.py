@@ -79,12 +79,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--speeds", type=float, nargs="+", default=SPEEDS, metavar="KM/H")
     parser.add_argument("--variant", default="fusion")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE.md")
     args = parser.parse_args()
     cv2.setNumThreads(1)
     try:
-        table = _measure(args.variant, range(args.first_seed, args.first_seed + args.seeds))
+        seeds = range(args.first_seed, args.first_seed + args.seeds)
+        table = _measure(args.variant, args.speeds, seeds)
         print(table, end="")
         if args.output:
             write_text(args.output, table)
@@ -94,10 +96,10 @@ def main() -> int:
     return 0
 
 
-def _measure(variant: str, seeds: Sequence[int]) -> str:
+def _measure(variant: str, speeds: Sequence[float], seeds: Sequence[int]) -> str:
     rows: list[Sequence[str]] = []
     every: dict[str, list[Judged]] = {}
-    for number, speed in enumerate(SPEEDS):
+    for number, speed in enumerate(speeds):
         found: dict[str, list[Judged]] = {}
         for seed in seeds:
             settings = settings_of(speed, 5 * seed + number)

@@ -67,7 +67,7 @@ def main() -> int:
         if args.action == "run":
             _run(args)
         elif args.action == "fit":
-            write_text(TABLE, fitted_table(args.folder, _licence()))
+            write_text(args.table, fitted_table(args.folder, _licence()))
         else:
             print(report(args.folder), end="")
             if args.docs is not None:
@@ -85,6 +85,8 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--variants", nargs="+", default=list(VARIANTS), metavar="VARIANT")
+    parser.add_argument("--scenes", nargs="+", default=list(SCENES), choices=list(SCENES))
+    parser.add_argument("--table", type=Path, default=TABLE, help="file that `fit` writes")
     parser.add_argument("--docs", type=Path, help="folder for images/uncertainty.png")
     return parser.parse_args()
 
@@ -97,7 +99,7 @@ def _licence() -> str:
 def _run(args: argparse.Namespace) -> None:
     args.folder.mkdir(parents=True, exist_ok=True)
     for seed in range(args.first_seed, args.first_seed + args.seeds):
-        for name, addition, settings in _scenes():
+        for name, addition, settings in _scenes(args.scenes):
             left = [
                 (VARIANTS[one], args.folder / f"{one}.{name}{addition}.{seed}.npy")
                 for one in args.variants
@@ -110,9 +112,9 @@ def _run(args: argparse.Namespace) -> None:
                 print(f"{name}{addition}, seed {seed}", file=sys.stderr, flush=True)
 
 
-def _scenes() -> Iterator[tuple[str, str, dict[str, object]]]:
-    for name, kind in SCENES.items():
-        known = specs(kind.parameters)
+def _scenes(names: Sequence[str]) -> Iterator[tuple[str, str, dict[str, object]]]:
+    for name in names:
+        known = specs(SCENES[name].parameters)
         for addition, settings in CAMERAS.items():
             if not settings or all(
                 key in known and value in known[key].choices for key, value in settings.items()

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Measure everything, and write `bench.json`: `python -m benchmarks.bench [--quick]`."""
+"""Measure everything, and write `bench.json`: `python -m benchmarks.bench [--quick | --toy]`."""
 
 from __future__ import annotations
 
@@ -26,14 +26,16 @@ from pathlib import Path
 
 import cv2
 
-from benchmarks.bench import costs, kernels, memory, steps
+from benchmarks.bench import costs, kernels, memory, performance_page, steps
 from benchmarks.bench.case import Case
-from benchmarks.bench.effort import FULL, QUICK, Effort
+from benchmarks.bench.effort import FULL, QUICK, TOY, Effort
 from benchmarks.bench.environment import describe
 from benchmarks.bench.results import Results
+from benchmarks.bench.slower_steps import slower_steps
 from vehicle_pf_tracker.core.errors import InputError
 
 OUTPUT = Path("results/bench/bench.json")
+TOY_FOLDER = Path("results/bench_toy")
 
 
 def main() -> int:
@@ -42,20 +44,31 @@ def main() -> int:
     cv2.setNumThreads(1)
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
-    effort = QUICK if args.quick else FULL
-    commands = [
-        " ".join(["python -m benchmarks.bench", *sys.argv[1:]]),
-        f"python -m benchmarks.bench.performance_page {args.output} docs",
-    ]
-    results = Results(describe(), commands)
+    effort = TOY if args.toy else QUICK if args.quick else FULL
+    patterns = args.only or effort.cases
+    command = " ".join(["python -m benchmarks.bench", *sys.argv[1:]])
+    results = Results(describe(), [command])
     try:
-        _measure(results, lambda name: any(fnmatch(name, one) for one in args.only), effort, args)
+        _measure(results, lambda name: any(fnmatch(name, one) for one in patterns), effort, args)
     except InputError as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1
     results.save(args.output)
+    performance_page.write_targets(results, args.output.parent)
     print(f"wrote {args.output}")
+    if args.docs is not None:
+        _write_page(results, args.docs)
     return 0
+
+
+def _write_page(results: Results, folder: Path) -> None:
+    """Write the page after a comparison with the figures that it replaces."""
+    page = folder / performance_page.PAGE
+    last = page.read_text(encoding="utf-8") if page.exists() else ""
+    for sentence in slower_steps(results, last):
+        print(f"bench: {sentence}", file=sys.stderr)
+    performance_page.write(results, folder)
+    print(f"wrote {page}")
 
 
 def _measure(
@@ -100,7 +113,16 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.bench", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="rough numbers in about a minute")
     parser.add_argument(
-        "--only", nargs="+", default=["*"], metavar="PATTERN", help="cases by name, as step/*/csrt"
+        "--toy",
+        type=Path,
+        nargs="?",
+        const=TOY_FOLDER,
+        metavar="DIR",
+        help="run some cases of every part once, and write into this folder only "
+        f"(default: {TOY_FOLDER})",
+    )
+    parser.add_argument(
+        "--only", nargs="+", metavar="PATTERN", help="cases by name, as step/*/csrt"
     )
     parser.add_argument(
         "--baselines",
@@ -108,7 +130,17 @@ def _arguments() -> argparse.Namespace:
         help="interpreter with OpenCV's contrib trackers; see `make baselines`",
     )
     parser.add_argument("-o", "--output", type=Path, default=OUTPUT)
-    return parser.parse_args()
+    parser.add_argument(
+        "--docs",
+        type=Path,
+        metavar="DIR",
+        help=f"also write {performance_page.PAGE} and its figures into this folder, and name steps "
+        "that became slower than its figures",
+    )
+    args = parser.parse_args()
+    if args.toy is not None:
+        args.output, args.docs = args.toy / OUTPUT.name, args.toy
+    return args
 
 
 if __name__ == "__main__":

@@ -35,8 +35,12 @@ class Effort:
         Times that each kind of process is started.
     batches, batch_frames : int
         Turns of each node, and images that it gets in one.
+    fleet_nodes : int
+        Nodes that run at once.
     fleet_seconds : float
-        Time that many nodes at once are watched, s.
+        Time that these are watched, s.
+    cases : tuple of str
+        Patterns of the cases that are measured unless others are named.
     """
 
     case_seconds: float
@@ -45,7 +49,9 @@ class Effort:
     starts: int
     batches: int
     batch_frames: int
+    fleet_nodes: int
     fleet_seconds: float
+    cases: tuple[str, ...] = ("*",)
 
 
 FULL = Effort(
@@ -55,6 +61,7 @@ FULL = Effort(
     starts=5,
     batches=9,
     batch_frames=60,
+    fleet_nodes=8,
     fleet_seconds=30.0,
 )
 QUICK = Effort(
@@ -64,5 +71,29 @@ QUICK = Effort(
     starts=2,
     batches=3,
     batch_frames=30,
+    fleet_nodes=8,
     fleet_seconds=5.0,
 )
+TOY = Effort(
+    case_seconds=0.0,
+    frames=21,
+    passes=1,
+    starts=1,
+    batches=1,
+    batch_frames=5,
+    fleet_nodes=2,
+    fleet_seconds=0.5,
+    cases=(
+        "kernel*/joint512/41x31/vga/n50",
+        "kernel/three_features/*",
+        "step/*/csrt",
+        "cost/particles/apf/n50",
+        "cost/trackers/apf/4",
+        "memory/trackers/apf/*",
+        "startup/apf/warm",
+        "node/apf/with*_step",
+        "memory/node/apf",
+        "fleet/*",
+    ),
+)
+"""Some cases of every part, to see that all of them run; its figures mean nothing."""

@@ -32,7 +32,6 @@ from benchmarks.bench.memory import MemoryCase
 from benchmarks.bench.processes import NodeProcess, StepMeter, floor_words, tracker_words
 
 RATE = 30.0
-FLEET = 8
 FLEET_RATE = 15.0
 _OUTPUTS = MappingProxyType(
     {"mode": DiagnosticArray, "box": PolygonStamped, "velocity": Vector3Stamped}
@@ -95,19 +94,19 @@ def _alternate(
 
 
 def fleet(wanted: Callable[[str], bool], effort: Effort) -> list[Delivery]:
-    """Let `FLEET` nodes of ``apf`` follow at once, each with a camera of its own; reliable, 10.
+    """Let some nodes of ``apf`` follow at once, each with a camera of its own; reliable, 10.
 
     Raises
     ------
     InputError
         If a node does not start or answer.
     """
-    name = f"fleet/apf/{FLEET}x640x480"
+    name = f"fleet/apf/{effort.fleet_nodes}x640x480"
     if not wanted(name):
         return []
     with contextlib.ExitStack() as stack:
         topics, nodes = {}, []
-        for number in range(FLEET):
+        for number in range(effort.fleet_nodes):
             image, own = f"/bench/camera_{number}", f"tracker_{number}"
             words = tracker_words("apf", image, queue_depth=10)
             words += ["-r", f"__node:={own}"]
@@ -122,4 +121,4 @@ def fleet(wanted: Callable[[str], bool], effort: Effort) -> list[Delivery]:
         cpu = sum(node.cpu_seconds for node in nodes) - before
         total = sum(camera.sent.values()) - sum(sent.values())
         lost = total - (sum(camera.answered.values()) - sum(answered.values()))
-    return [Delivery(name, FLEET, FLEET_RATE, total, lost, cpu / total * 1e3)]
+    return [Delivery(name, effort.fleet_nodes, FLEET_RATE, total, lost, cpu / total * 1e3)]

@@ -12,14 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`docs/performance.md` and its figures from `bench.json`.
-
-python -m benchmarks.bench.performance_page results/bench/bench.json docs
-"""
+"""`docs/performance.md` and its figures from the results of a run."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeAlias
@@ -75,15 +71,18 @@ longer than above. Start-up lasts until the node is ready. Its baselines are the
 """
 
 
-def main(source: Path, folder: Path) -> None:
-    """Write the page and its figures below `folder`, and the targets beside `source`."""
-    results = Results.load(source)
+def write_targets(results: Results, folder: Path) -> None:
+    """Write the table of the speed targets into `folder`."""
+    (folder / TARGETS_TABLE).write_text(targets_table(results, TARGETS), encoding="utf-8")
+
+
+def write(results: Results, folder: Path) -> None:
+    """Write the page and its figures below `folder`."""
     images = folder / IMAGES
     images.mkdir(parents=True, exist_ok=True)
     save(kernels_figure(results), images / "kernels.svg")
     save(steps_figure(results), images / "steps.svg")
     (folder / PAGE).write_text(page(results), encoding="utf-8")
-    (source.parent / TARGETS_TABLE).write_text(targets_table(results, TARGETS), encoding="utf-8")
 
 
 def page(results: Results) -> str:
@@ -237,7 +236,3 @@ def _memory(results: Results) -> str:
         "Resident memory, against one tracker in the process, and against the baseline node:\n\n"
     )
     return words + table(("memory", "ours, MB", "baseline, MB"), rows)
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))

@@ -135,8 +135,8 @@ def tracker_words(
     variant: str, image: str, meter: StepMeter | None = None, **parameters: object
 ) -> list[str]:
     """Words that run the node of `variant` on the drive's vehicle; `__` in a name is a dot."""
-    script = f"import sys; from vehicle_pf_tracker.ros.executables import {variant}_tracker as run;"
-    words = ["-c", f"{script} sys.exit(run())"]
+    code = "from vehicle_pf_tracker.ros.executables import main"
+    words = ["-c", f"{code}; raise SystemExit(main({variant!r}))"]
     if meter is not None:
         words = ["-m", "benchmarks.bench.metered_node", meter.path, variant]
     box = drive().boxes[0]

@@ -17,7 +17,7 @@
 import pytest
 from bench_samples import results
 
-from benchmarks.bench.performance_page import main, page, targets_table
+from benchmarks.bench.performance_page import page, targets_table, write, write_targets
 from benchmarks.bench.targets import TARGETS
 
 
@@ -84,15 +84,18 @@ def test_environment_and_commands_are_told(text):
     assert "\n    python -m benchmarks.bench\n" in text
 
 
+def test_the_table_of_targets_is_a_file_of_its_own(tmp_path):
+    write_targets(results(), tmp_path)
+    assert "`startup/apf/warm`" in (tmp_path / "targets.md").read_text(encoding="utf-8")
+
+
 def test_page_and_figures_are_written_and_the_same_each_time(tmp_path):
-    results().save(tmp_path / "bench.json")
     contents = []
     for _ in range(2):
-        main(tmp_path / "bench.json", tmp_path / "docs")
+        write(results(), tmp_path / "docs")
         files = sorted((tmp_path / "docs").rglob("*.*"))
         contents.append({path.name: path.read_bytes() for path in files})
     assert contents[0] == contents[1]
     assert set(contents[0]) == {"performance.md", "kernels.svg", "steps.svg"}
-    assert "`startup/apf/warm`" in (tmp_path / "targets.md").read_text(encoding="utf-8")
     for name in ("kernels.svg", "steps.svg"):
         assert f"images/performance/{name}".encode() in contents[0]["performance.md"]

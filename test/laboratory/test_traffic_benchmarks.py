@@ -67,9 +67,8 @@ def test_vehicles_come_again_on_the_other_side():
     assert place(box, 10.0, -2.0, 10) == Box(675, 10, 30, 15)
 
 
-def test_the_timed_scene_has_as_many_vehicles_as_said(tmp_path, monkeypatch):
-    monkeypatch.setattr("benchmarks.traffic_cost.FRAMES", 3)
-    sequence = made(20, tmp_path / "cost")
+def test_the_timed_scene_has_as_many_vehicles_as_said(tmp_path):
+    sequence = made(20, tmp_path / "cost", frames=3)
     shown = [np.count_nonzero(sequence.truth[:, 0] == frame) for frame in (1, 2, 3)]
     assert all(18 <= count <= 22 for count in shown)
 

@@ -58,7 +58,6 @@ from vehicle_pf_tracker.trackers.traffic.track import (
 )
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge
 
-DEFAULT_PERIOD = 1 / 30
 """Nominal frame period in s until it is known: that of common cameras."""
 _VEHICLE_WIDTH = 1.8
 """Width of a car in m, by which speeds and accelerations become widths."""

@@ -1,0 +1,212 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Every program outside of the package runs on a toy input, and writes what it is there for."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import cv2
+import pytest
+
+from reproduction.catalogue import EXPERIMENTS
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.baselines.client import VARIABLE, baseline_python
+from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
+from vehicle_pf_tracker.scenes.catalogue import make_scene
+from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
+from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).resolve().parents[1]
+PATIENCE = 600
+"""Seconds until a program hangs; each takes a few on a quiet core."""
+FRAMES = 60
+"""Frames of a toy sequence: painted occluders need a second before them and one after."""
+PICTURE = "fusion_turn"
+
+
+class Program(NamedTuple):
+    """Words after the module's name, what it writes into `{out}`, what it prints, what it needs."""
+
+    words: str
+    files: tuple[str, ...] = ()
+    printed: str = ""
+    needs: tuple[str, ...] = ()
+
+
+BATTERY = "{toy}/sequences --workers 1 -o {out}"
+ONE_CASE = "--seeds 1 --hard 1"
+PROGRAMS = {
+    "benchmarks.bench": Program(
+        "--toy {out}", ("bench.json", "performance.md"), "step/apf/csrt", ("baselines", "rclpy")
+    ),
+    "benchmarks.cold_start": Program(
+        "pf --repeats 1 --kinds warm empty", printed="| `pf` | empty | 1 |", needs=("rclpy",)
+    ),
+    "laboratory.fusion_ablation": Program(
+        f"{BATTERY} --changes no_colour", ("ablation.md", "ablation.jsonl"), "| no colour |"
+    ),
+    "benchmarks.fusion_cost": Program(
+        "{toy}/sequences --frames 12 --resampled one -o {out}",
+        ("cost.md", "cost.json"),
+        needs=("baselines",),
+    ),
+    "laboratory.fusion_fit": Program(
+        f"{BATTERY} {ONE_CASE} --budget 2 --cases 1", ("fit.json", "leave_one_camera_out.md")
+    ),
+    "laboratory.fusion_reliability": Program(
+        f"{BATTERY} {ONE_CASE}", ("shipped.md", "reliability.md", "reliability.png")
+    ),
+    "laboratory.fusion_scene_pictures": Program(f"{{out}} --only {PICTURE}", (f"{PICTURE}.webp",)),
+    "laboratory.fusion_scenes": Program("--scenes bridge --seeds 1 -o {out}/a.md", ("a.md",)),
+    "laboratory.hostile_images": Program("--side 64", printed="| PNG, interlaced | 64x36 |"),
+    "benchmarks.large_targets": Program("pf --size 64 48 --frames 2", printed="| `pf` |"),
+    "benchmarks.node_memory": Program(
+        "--only OpenCV --images 4", printed="| `apf`, OpenCV's kernels |", needs=("rclpy",)
+    ),
+    "laboratory.road_speed": Program(
+        "--seeds 1 --speeds 130 --variant apf -o {out}/a.md", ("a.md",), "| all | pairs |"
+    ),
+    "laboratory.target_contrast": Program("{toy}/sequences", printed="| one |"),
+    "laboratory.traffic_clips": Program(
+        "{toy}/clip.mp4 0 {toy}/clip/groundtruth.csv --seeds 1", printed="| clip | 0 |"
+    ),
+    "benchmarks.traffic_cost": Program(
+        "--rounds 1 --counts 1 3 --frames 62",
+        printed="per further vehicle",
+        needs=("baselines",),
+    ),
+    "laboratory.traffic_fit": Program(
+        "{toy}/traffic --budget 1 --frames 30 --judged 30 --runs 1 --detections good -o {out}",
+        ("fit.json",),
+        "good, fitted",
+        ("baselines",),
+    ),
+    "laboratory.traffic_occluders": Program("{toy}/traffic", printed="traffic: "),
+    "laboratory.traffic_score": Program(
+        "{toy}/traffic --baselines", printed="bytetrack", needs=("baselines",)
+    ),
+    "laboratory.traffic_spread": Program(
+        "{toy}/traffic --runs 1 --frames 40", printed="| traffic", needs=("baselines",)
+    ),
+}
+LIBRARIES = {
+    "laboratory.__init__", "laboratory.__main__", "laboratory.covariance_coverage",
+    "laboratory.coverage_picture",
+}  # fmt: skip
+"""Modules beside the programs that these import."""
+
+
+def write_sequence(folder, seed, frames=FRAMES):
+    """Write the beginning of a scene as a frame folder."""
+    (folder / "img").mkdir(parents=True)
+    lines = ["frame,x,y,w,h,visible,occ"]
+    for number, each in enumerate(make_scene("bridge", seed=seed).frames(), start=1):
+        if number > frames:
+            break
+        box = each.truth.box
+        occlusion = int(each.truth.occlusion)
+        cv2.imwrite(str(folder / "img" / f"{number:04d}.png"), each.frame[..., ::-1])
+        lines.append(
+            f"{number},{box.x},{box.y},{box.width},{box.height},{int(occlusion < 2)},{occlusion}"
+        )
+    (folder / "groundtruth.csv").write_text("\n".join(lines) + "\n")
+    (folder / "sequence.json").write_text(json.dumps({"fps": 15.0}))
+
+
+@pytest.fixture(scope="module")
+def toy(tmp_path_factory):
+    """Folder of two sequences, a clip with truth and a traffic scene."""
+    folder = tmp_path_factory.mktemp("toy")
+    for seed, name in enumerate(("one", "two")):
+        write_sequence(folder / "sequences" / "toy" / name, seed)
+    write_sequence(folder / "clip", 0, frames=90)  # with the whole occlusion, which is judged
+    images = [cv2.imread(str(path)) for path in sorted((folder / "clip" / "img").iterdir())]
+    size = images[0].shape[1::-1]
+    writer = cv2.VideoWriter(str(folder / "clip.mp4"), cv2.VideoWriter.fourcc(*"mp4v"), 15.0, size)
+    for image in images:
+        writer.write(image)
+    writer.release()
+    scene = make_traffic_scene("traffic-pair", settings={"frames": 50})
+    write_mot_folder(scene, folder / "traffic", 0)
+    assert read_sequence(folder / "traffic").frame_count == 50
+    return folder
+
+
+def run(module, *words):
+    done = subprocess.run(
+        [sys.executable, "-m", module, *words],
+        cwd=ROOT,
+        env={**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "MPLBACKEND": "Agg"},
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr[-3000:]
+    return done.stdout
+
+
+def skip_without(needs):
+    if "rclpy" in needs:
+        pytest.importorskip("rclpy", reason="ROS is not installed")
+    if "baselines" in needs:
+        try:
+            baseline_python(None)
+        except InputError:
+            pytest.skip(f"no baselines: `make baselines`, or set {VARIABLE}")
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_program_writes_its_output(name, toy, tmp_path):
+    program = PROGRAMS[name]
+    skip_without(program.needs)
+    words = [
+        word.format(toy=toy, out=tmp_path).replace("no_colour", "no colour")
+        for word in program.words.split()
+    ]
+    printed = run(name, *words)
+    assert program.printed in printed
+    for file in program.files:
+        assert (tmp_path / file).stat().st_size > 0
+
+
+def test_covariances_are_fitted_and_reported(tmp_path):
+    runs = str(tmp_path / "runs")
+    (tmp_path / "images").mkdir()
+    options = "--seeds", "1", "--scenes", "bridge", "--variants", "apf", "fusion"
+    run("laboratory.uncertainty", "run", runs, *options)
+    table = tmp_path / "table.py"
+    run("laboratory.uncertainty", "fit", runs, "--table", str(table))
+    assert "CALIBRATIONS" in table.read_text()
+    assert "| `apf` |" in run("laboratory.uncertainty", "report", runs, "--docs", str(tmp_path))
+    assert (tmp_path / "images" / "uncertainty.png").stat().st_size > 0
+
+
+def test_every_program_is_tried():
+    folders = "benchmarks", "laboratory"
+    there = {f"{one}.{path.stem}" for one in folders for path in (ROOT / one).glob("*.py")}
+    assert {*PROGRAMS, "laboratory.uncertainty"} == there - LIBRARIES | {"benchmarks.bench"}
+
+
+def test_every_experiment_is_reproduced(tmp_path):
+    run("reproduction", "all", "--quick", "--seeds", "1", "-o", str(tmp_path))
+    for name in EXPERIMENTS:
+        assert any((tmp_path / name).iterdir())
