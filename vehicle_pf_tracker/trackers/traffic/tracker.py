@@ -22,7 +22,8 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD, check_target
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.association import (
@@ -58,7 +59,6 @@ from vehicle_pf_tracker.trackers.traffic.track import (
 )
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge
 
-"""Nominal frame period in s until it is known: that of common cameras."""
 _VEHICLE_WIDTH = 1.8
 """Width of a car in m, by which speeds and accelerations become widths."""
 _FOCAL = 1.2
