@@ -202,7 +202,7 @@ def test_a_dumped_node_can_be_made_again(bench, tmp_path, monkeypatch, variant):
     before, configuration = values(node), node.table.configuration
     bench.remove(node)
     warnings = []
-    monkeypatch.setattr(TrackerNode, "_warn_of", lambda _, sentences: warnings.extend(sentences))
+    monkeypatch.setattr(TrackerNode, "warn_of", lambda _, sentences: warnings.extend(sentences))
     again = bench.add(
         TrackerNode(
             chosen,
