@@ -290,15 +290,15 @@ def test_other_threads_leave_the_signals_alone():
 def test_what_was_tracked_until_a_signal_is_kept_and_said(
     run, video, tmp_path, monkeypatch, capsys, number
 ):
-    doubting = run_verb._doubting
+    numbered = run_verb.numbered_frames
 
-    def interrupted(frames, targets):
-        for frame, found in doubting(frames, targets):
+    def interrupted(*values):
+        for frame, found in numbered(*values):
             if frame == 6:
                 os.kill(os.getpid(), number)
             yield frame, found
 
-    monkeypatch.setattr(run_verb, "_doubting", interrupted)
+    monkeypatch.setattr(run_verb, "numbered_frames", interrupted)
     made = tmp_path / "made.mp4"
     assert run(video, "--target", TARGET, "--video", made) == 128 + number
     rows = estimates(tmp_path / "out")

@@ -19,6 +19,7 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped
 from rclpy.parameter import Parameter
@@ -28,7 +29,7 @@ from std_msgs.msg import Header
 
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
-from vehicle_pf_tracker.trackers.registry import find_variant
+from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 WIDTH, HEIGHT = 160, 120
 TARGET = (20, 50, 24, 18)
@@ -36,6 +37,11 @@ SPEED = 2
 FIRST_NS = 1_000_000_000
 PERIOD_NS = 40_000_000
 QUEUE = QoSProfile(depth=50)
+SOME_FAST = [
+    pytest.param(name, marks=() if name in {"apf", "ms", "mfpf", "fusion"} else pytest.mark.slow)
+    for name in VARIANTS
+]
+"""Every variant; those whose nodes differ from the others' by nothing but their table are slow."""
 
 
 def road(count: int, width: int = WIDTH, height: int = HEIGHT) -> list[np.ndarray]:

@@ -87,6 +87,7 @@ def test_every_system_has_a_panel(figures):
     assert panels == len(VARIANTS)
 
 
+@pytest.mark.slow
 def test_the_same_folder_gives_the_same_files(figures, made_evaluation, tmp_path):
     folder = tmp_path / "evaluation"
     shutil.copytree(made_evaluation, folder)

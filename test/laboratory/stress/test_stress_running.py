@@ -77,6 +77,7 @@ def few(battery):
     return [case for case in battery if case.kind in kinds][:3]
 
 
+@pytest.mark.slow
 def test_results_do_not_depend_on_workers_and_resume(few, tmp_path):
     systems = [variant_system("ms"), variant_system("pf", {"num_particles": 30}, "pf30")]
     store = tmp_path / "scores.jsonl"
@@ -162,6 +163,7 @@ def test_a_fault_of_a_tracker_is_told_and_costs_only_its_case(few):
     assert "out of order" in results[0].score.fault
 
 
+@pytest.mark.slow
 def test_the_documented_example_runs(drive, tmp_path, monkeypatch, capsys):
     text = (Path(__file__).parents[3] / "laboratory" / "notes" / "stress.md").read_text()
     (example,) = [part for part in text.split("```") if "stress import" in part]

@@ -104,7 +104,7 @@ def test_while_messages_flow_nothing_else_is_waited_for(served, clock):
     assert not served.waits_for_all()
 
 
-def test_messages_that_never_pause_starve_no_service(served):
+def test_messages_that_never_pause_starve_no_service_nor_let_it_wait_for_a_look(served, clock):
     served.hear_one()
     future = served.client.call_async(Trigger.Request())
     deadline = time.perf_counter() + 120

@@ -26,11 +26,11 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from rclpy.parameter import Parameter
-from tracker_rig import TrackerNode, overrides
+from tracker_rig import SOME_FAST, TrackerNode, overrides
 
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
-from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, find_variant
+from vehicle_pf_tracker.trackers.registry import NODES, find_variant
 
 pytestmark = pytest.mark.ros
 
@@ -57,7 +57,7 @@ def absolute(name: str, node: str) -> str:
     return "/" + name.replace("~", node).lstrip("/")
 
 
-@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("variant", SOME_FAST)
 @pytest.mark.parametrize("transport", ["raw", "compressed"])
 def test_the_policy_allows_what_a_node_has_and_no_more(bench, variant, transport):
     policy = ElementTree.parse(ROOT / "config" / "sros2_policy.xml").getroot()

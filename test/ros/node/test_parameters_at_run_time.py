@@ -24,14 +24,14 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
 from rclpy.parameter import Parameter, parameter_value_to_python
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from tracker_rig import FIRST_NS, PERIOD_NS, Rig, on_target, overrides, road, values_of
+from tracker_rig import FIRST_NS, PERIOD_NS, SOME_FAST, Rig, on_target, overrides, road, values_of
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import ParameterSpec
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS
-from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
+from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session
 
 pytestmark = pytest.mark.ros
@@ -97,7 +97,7 @@ class Twin:
         return {n: text(v) for n, v in estimate.scalars().items() if n not in TIMED}
 
 
-@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("variant", SOME_FAST)
 def test_every_parameter_set_at_run_time_reaches_the_next_estimate(bench, variant):
     """The node's estimates stay those of a session that was given the same parameter.
 
@@ -183,7 +183,7 @@ def values(node: TrackerNode) -> dict[str, object]:
     return {name: one.value for name, one in node.get_parameters_by_prefix("").items()}
 
 
-@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("variant", SOME_FAST)
 def test_a_dumped_node_can_be_made_again(bench, tmp_path, monkeypatch, variant):
     chosen = find_variant(variant)
     own = on_target(seed=77, image_transport="compressed", queue_depth=5)
@@ -202,7 +202,7 @@ def test_a_dumped_node_can_be_made_again(bench, tmp_path, monkeypatch, variant):
     before, configuration = values(node), node.table.configuration
     bench.remove(node)
     warnings = []
-    monkeypatch.setattr(TrackerNode, "_warn_of", lambda _, sentences: warnings.extend(sentences))
+    monkeypatch.setattr(TrackerNode, "warn_of", lambda _, sentences: warnings.extend(sentences))
     again = bench.add(
         TrackerNode(
             chosen,

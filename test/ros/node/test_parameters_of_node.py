@@ -32,7 +32,7 @@ from rcl_interfaces.srv import (
 )
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.parameter import Parameter
-from tracker_rig import TARGET, Rig, on_target, overrides, road, values_of
+from tracker_rig import SOME_FAST, TARGET, Rig, on_target, overrides, road, values_of
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import (
@@ -43,7 +43,7 @@ from vehicle_pf_tracker.parameters.configuration import (
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
-from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
+from vehicle_pf_tracker.trackers.registry import find_variant
 
 pytestmark = pytest.mark.ros
 
@@ -91,7 +91,7 @@ def value(node: TrackerNode, name: str):
 # At start-up
 
 
-@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("variant", SOME_FAST)
 def test_every_parameter_of_the_three_tables_is_declared(make, variant):
     node = make(variant=variant)
     chosen = find_variant(variant).parameters
@@ -104,7 +104,7 @@ def test_every_parameter_of_the_three_tables_is_declared(make, variant):
     assert len(names) == len(set(names))
 
 
-@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("variant", SOME_FAST)
 def test_descriptors_say_all_that_is_known(make, variant):
     node = make(variant=variant)
     for name, spec in Configuration.of(find_variant(variant)).specs().items():

@@ -130,20 +130,24 @@ def test_a_folder_ends_with_the_process(start, folder):
     assert f"the source has ended after {COUNT} images" in process.output
 
 
+def slow(*values):
+    return pytest.param(*values, marks=pytest.mark.slow)
+
+
 @pytest.mark.parametrize(
     ("source", "parameters", "said"),
     [
         ("/nowhere.mp4", {}, "there is no file or folder /nowhere.mp4"),
         ("", {}, "give a source"),
-        ("/dev/null", {}, "/dev/null is not a regular file or a folder"),
-        (__file__, {}, "is not a video file that can be decoded"),
-        ("rec.mcap", {}, "rec.mcap is a recording; `bag_replay rec.mcap` plays it"),
-        ("http://127.0.0.1:9/stream", {}, "the stream http://127.0.0.1:9/stream cannot be opened"),
+        slow("/dev/null", {}, "/dev/null is not a regular file or a folder"),
+        slow(__file__, {}, "is not a video file that can be decoded"),
+        slow("rec.mcap", {}, "rec.mcap is a recording; `bag_replay rec.mcap` plays it"),
+        slow("http://127.0.0.1:9/stream", {}, "/stream cannot be opened"),
         ("FOLDER", {"camera_info_url": "/no.yaml"}, "cannot read the calibration /no.yaml"),
-        ("FOLDER", {"jpeg_quality": 101}, "the parameter jpeg_quality cannot have this value"),
-        ("FOLDER", {"frame_id": 5}, "the parameter frame_id cannot have this value"),
+        slow("FOLDER", {"jpeg_quality": 101}, "the parameter jpeg_quality cannot have this value"),
+        slow("FOLDER", {"frame_id": 5}, "the parameter frame_id cannot have this value"),
         ("FOLDER", {"fps": "quick"}, "the parameter fps is neither 0 nor from"),
-        ("FOLDER", {"fps": -2}, "the parameter fps is neither 0 nor from"),
+        slow("FOLDER", {"fps": -2}, "the parameter fps is neither 0 nor from"),
     ],
 )
 def test_a_mistake_ends_in_one_sentence(start, folder, source, parameters, said):

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.camera_motion import SmallGrey
-from vehicle_pf_tracker.trackers.fusion.foreground import Foreground, _median
+from vehicle_pf_tracker.trackers.fusion.foreground import Foreground, median
 
 SIZE = np.array([24.0, 14.0])
 
@@ -99,4 +99,4 @@ def test_boxes_at_and_beyond_the_border_have_no_outline(centre):
 def test_the_median_is_that_of_each_pixel(count):
     images = list(np.random.default_rng(count).integers(0, 256, (count, 9, 7)).astype(np.uint8))
     expected = np.sort(images, axis=0)[count // 2]
-    assert np.array_equal(_median(images), expected)
+    assert np.array_equal(median(images), expected)

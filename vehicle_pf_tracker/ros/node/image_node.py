@@ -209,7 +209,7 @@ class ImageNode(ManagedNode):
             for loss in missing(self):
                 words = f"this release of rclpy is not one of those tried: {loss}"
                 self.get_logger().warning(words)
-            self._warn_of(unknown_overrides(self, qos=False))
+            self.warn_of(unknown_overrides(self, qos=False))
             if self.table.configuration.node.autostart:
                 self.start()
         except InputError:
@@ -242,8 +242,9 @@ class ImageNode(ManagedNode):
 
     def warn_of_overrides(self) -> None:
         """Warn of QoS overrides of topics that the node has not, once all are open."""
-        self._warn_of(unknown_overrides(self, qos=True))
+        self.warn_of(unknown_overrides(self, qos=True))
 
-    def _warn_of(self, sentences: list[str]) -> None:
+    def warn_of(self, sentences: list[str]) -> None:
+        """Log what is ignored, a line each."""
         for sentence in sentences:
             self.get_logger().warning(f"ignored: {sentence}")

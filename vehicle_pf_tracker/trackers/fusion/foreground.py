@@ -110,7 +110,7 @@ class Foreground:
         piece = small.image[rows, columns]
         if min(piece.shape) < 3:
             return None
-        usual = _median([each.image[rows, columns] for each in self._background])
+        usual = median([each.image[rows, columns] for each in self._background])
         change = cv2.absdiff(piece, usual)
         level = max(_LEAST_CONTRAST, _NOISE_FACTOR * float(np.median(change)))
         moving = (cv2.GaussianBlur(change, (3, 3), 0) > level).astype(np.uint8)
@@ -123,7 +123,7 @@ class Foreground:
         return Outline((low + corner) / small.zoom, (high + corner) / small.zoom)
 
 
-def _median(images: list[npt.NDArray[np.uint8]]) -> npt.NDArray[np.uint8]:
+def median(images: list[npt.NDArray[np.uint8]]) -> npt.NDArray[np.uint8]:
     """Upper median, pixel by pixel.
 
     Sorted by exchanges of whole images (odd-even transposition), which takes a tenth of the time of

@@ -22,8 +22,8 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD, check_target
+from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.association import (
