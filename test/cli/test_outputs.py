@@ -25,7 +25,7 @@ from small_recordings import COUNT, TARGET, frame_of, record
 
 from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.cli.targets import parse_target
+from vehicle_pf_tracker.cli.tracking_options import parse_target
 
 HOLD = """
 import sys

@@ -20,7 +20,7 @@ from small_recordings import COUNT, TARGET, box_of, record, record_two_cameras
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, read_estimates
-from vehicle_pf_tracker.trackers.session import Session
+from vehicle_pf_tracker.trackers.papers.apf import ApfTracker
 
 
 @pytest.fixture
@@ -163,16 +163,15 @@ def test_a_road_that_is_none_is_refused(tmp_path, capsys):
 
 
 def test_an_unexpected_error_costs_its_frame_alone(run, bag, monkeypatch):
-    feed = Session.feed
+    step = ApfTracker.step
 
-    def fail_once(session, frame, stamp_ns):
-        estimate = feed(session, frame, stamp_ns)
-        if next(calls) == 4:
+    def fail_once(tracker, frame, *elapsed):
+        if next(calls) == 3:  # the first frame is started on
             raise ZeroDivisionError("by zero")
-        return estimate
+        return step(tracker, frame, *elapsed)
 
     calls = itertools.count(1)
-    monkeypatch.setattr(Session, "feed", fail_once)
+    monkeypatch.setattr(ApfTracker, "step", fail_once)
     rows, _, info = run(bag)
     assert [row.frame for row in rows if row.mode == REJECTED] == [4]
     assert len(rows) == COUNT

@@ -30,9 +30,8 @@ import vehicle_pf_tracker.cli.run as run_verb
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline import video_writer
+from vehicle_pf_tracker.offline import pictures
 from vehicle_pf_tracker.offline.estimates import read_estimates
-from vehicle_pf_tracker.offline.video_writer import has_encoder
 from vehicle_pf_tracker.recordings.cdr import deserialize
 from vehicle_pf_tracker.recordings.reader import Recording
 
@@ -196,7 +195,7 @@ def test_the_video_shows_every_frame_and_keeps_the_rate(run, video, tmp_path, ca
     assert len(frames) == COUNT
     assert frames[0].shape == (64, 96, 3)
     codec = int(shown.get(cv2.CAP_PROP_FOURCC)).to_bytes(4, "little")
-    if has_encoder():
+    if pictures.has_encoder():
         assert codec in (b"h264", b"avc1")
     else:
         assert "browsers do not play" in capsys.readouterr().err
@@ -219,17 +218,17 @@ def little_space():
 
 
 @pytest.mark.parametrize("encoder", [False, pytest.param(True, marks=pytest.mark.skipif(
-    not has_encoder(), reason="PyAV is an extra"))])  # fmt: skip
+    not pictures.has_encoder(), reason="PyAV is an extra"))])  # fmt: skip
 def test_a_video_that_finds_no_space_is_an_error_and_is_not_left(
     tmp_path, monkeypatch, little_space, encoder
 ):
-    monkeypatch.setattr(video_writer, "has_encoder", lambda: encoder)
+    monkeypatch.setattr(pictures, "has_encoder", lambda: encoder)
     path = tmp_path / "made.mp4"
     noise = np.random.default_rng(0).integers(0, 256, (30, 120, 160, 3), np.uint8)
     little_space()
     with (
         pytest.raises(InputError, match=f"cannot write {path}"),
-        video_writer.video_writer(path, (160, 120), 25.0) as writer,
+        pictures.video_writer(path, (160, 120), 25.0) as writer,
     ):
         for frame in noise:
             writer.write(frame)
@@ -312,8 +311,7 @@ def test_what_was_tracked_until_a_signal_is_kept_and_said(
 def test_without_the_encoder_the_video_is_written_and_the_remedy_said(
     run, video, tmp_path, monkeypatch, capsys
 ):
-    for module in (run_verb, video_writer):
-        monkeypatch.setattr(module, "has_encoder", lambda: False)
+    monkeypatch.setattr(pictures, "has_encoder", lambda: False)
     made = tmp_path / "made.mp4"
     assert run(video, "--target", TARGET, "--video", made) == 0
     assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.traffic_files import DetectionFile
+from vehicle_pf_tracker.offline.detectors import DetectionFile
 
 
 @pytest.fixture

@@ -16,8 +16,7 @@
 
 import pytest
 
-from vehicle_pf_tracker.offline.contact_sheet import clock_words, mode_spans, summary
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.offline.estimates import EstimateRow, clock_words, mode_spans, summary
 
 
 def rows(modes, period=100_000_000):

@@ -29,10 +29,9 @@ from itertools import tee
 from pathlib import Path
 from types import MappingProxyType
 
-from vehicle_pf_tracker.cli.console import counting, show, tell_notices
-from vehicle_pf_tracker.cli.replay import progress_view
-from vehicle_pf_tracker.cli.requests import option
-from vehicle_pf_tracker.cli.shared_options import OverwriteOption, natural
+from vehicle_pf_tracker.cli.console import counting, show, shown_progress, tell_notice
+from vehicle_pf_tracker.cli.replay import ReplayWords
+from vehicle_pf_tracker.cli.requests import OverwriteOption, natural, option
 from vehicle_pf_tracker.cli.synth import record_scene
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -41,15 +40,14 @@ from vehicle_pf_tracker.evaluation.plots import overview_figure, save
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
 from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
-from vehicle_pf_tracker.offline.driver import OfflineTracker
+from vehicle_pf_tracker.offline.driver import OfflineTracker, follow
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import write_with_estimates
-from vehicle_pf_tracker.offline.following import Pictures, follow
 from vehicle_pf_tracker.offline.output_files import make_folder, write_text
+from vehicle_pf_tracker.offline.pictures import NO_ENCODER, Pictures, has_encoder
 from vehicle_pf_tracker.offline.run_folder import RunFolder, RunInfo, describe_run
-from vehicle_pf_tracker.offline.traffic_files import track_files
 from vehicle_pf_tracker.offline.traffic_following import TrafficRun
-from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, has_encoder
+from vehicle_pf_tracker.offline.traffic_results import track_files
 from vehicle_pf_tracker.parameters.table import Value, from_mapping
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import make_scene
@@ -140,7 +138,7 @@ def track_through_ros(recording: Recording) -> dict[str, Sequence[EstimateRow]]:
     nodes = {f"/{name}_tracker": name for name in CONTESTANTS}
     options = ReplayOptions(lockstep=True, nodes=tuple(nodes), timeout=_PATIENCE)
     with ExitStack() as stack:
-        on_progress = stack.enter_context(progress_view())
+        on_progress = stack.enter_context(shown_progress(ReplayWords()))
         trackers = [
             stack.enter_context(tracker_process(name, _for_node(name), recording.image_topic))
             for name in CONTESTANTS
@@ -150,7 +148,7 @@ def track_through_ros(recording: Recording) -> dict[str, Sequence[EstimateRow]]:
             for tracker in trackers:
                 tracker.check()
 
-        report = replay(recording, options, on_progress, lambda s: tell_notices([s]), check)
+        report = replay(recording, options, on_progress, tell_notice, check)
     if report.interrupted:
         raise KeyboardInterrupt
     for node in report.nodes:
@@ -196,7 +194,7 @@ def run(request: Request) -> int:
     """Run the whole chain; return 1 if ROS and offline runs differ."""
     absence = absence_of_ros()
     if absence:
-        tell_notices([f"{absence}, so the nodes are left out and everything is tracked offline"])
+        tell_notice(f"{absence}, so the nodes are left out and everything is tracked offline")
     with claimed([Products(request.output, PRODUCTS)], [], overwrite=request.overwrite):
         return _run_chain(request, make_folder(request.output), absence)
 
@@ -281,7 +279,7 @@ def _draw(
     trackers = {name: offline_tracker(recording, name) for name in scores if name in IN_VIDEO}
     follow(trackers, iter(enumerate(recording.frames(), start=1)), Pictures(folder / VIDEO))
     if not has_encoder():
-        tell_notices([NO_ENCODER])
+        tell_notice(NO_ENCODER)
 
 
 def _follow_all(recording: Recording, folder: Path, picture: Path) -> list[str]:

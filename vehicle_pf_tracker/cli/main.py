@@ -40,8 +40,7 @@ from vehicle_pf_tracker.cli.console import (
 )
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
-from vehicle_pf_tracker.core.address_space import check_address_space
-from vehicle_pf_tracker.core.errors import InputError, suggestion
+from vehicle_pf_tracker.core.errors import InputError, check_address_space, suggestion
 
 EXTRAS: Mapping[str, str] = MappingProxyType(
     {

@@ -21,24 +21,17 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError, counting, show, tell_notices
-from vehicle_pf_tracker.cli.requests import option, switch
-from vehicle_pf_tracker.cli.shared_options import MaxDiffOption
-from vehicle_pf_tracker.cli.stopping import (
+from vehicle_pf_tracker.cli.requests import MaxDiffOption, option, switch
+from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.cli.tracking_options import (
     Numbered,
     TrackingRequest,
+    by_name,
+    chosen,
     cut_short,
     numbered_frames,
     peeked,
-    stopping,
-)
-from vehicle_pf_tracker.cli.targets import (
-    PictureWindow,
-    TargetOption,
-    by_name,
-    parse_target,
-    read_targets,
 )
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import max_diff_ns
@@ -48,11 +41,15 @@ from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.tables import comparison
 from vehicle_pf_tracker.image.target_pixels import doubts
-from vehicle_pf_tracker.offline.contact_sheet import summary
-from vehicle_pf_tracker.offline.driver import OfflineTracker, with_target
-from vehicle_pf_tracker.offline.estimates import EstimateRow, interpolated_columns, write_tracks
+from vehicle_pf_tracker.offline.driver import OfflineTracker, follow, with_target
+from vehicle_pf_tracker.offline.estimates import (
+    EstimateRow,
+    interpolated_columns,
+    summary,
+    write_tracks,
+)
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame, run_recording
-from vehicle_pf_tracker.offline.following import Pictures, follow
+from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import (
     ESTIMATES,
     METRICS,
@@ -61,7 +58,6 @@ from vehicle_pf_tracker.offline.run_folder import (
     RunInfo,
     describe_run,
 )
-from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, has_encoder
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source, open_source
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
@@ -83,9 +79,6 @@ class Request(TrackingRequest, MaxDiffOption):
         help="folder for estimates.csv, run.json, summary.png, and metrics.json where there is "
         "truth (default: results/ and the source's name)",
     )  # fmt: skip
-    video: Path | None = option(
-        type=Path, metavar="FILE", help="write the frames with box, path and mode to FILE, an mp4"
-    )
     recording: Path | None = option(
         type=Path, metavar="OUT",
         help="write images (JPEG), truth, estimates and Foxglove's annotations to the rosbag2 "
@@ -95,12 +88,6 @@ class Request(TrackingRequest, MaxDiffOption):
     interpolate_occlusions: bool = switch(
         help="add columns to estimates.csv with the path drawn straight through the frames that "
         "are not TRACKING; they are not scored",
-    )  # fmt: skip
-    target: Sequence[TargetOption] = option(
-        type=parse_target, action="append", default=[],
-        metavar="[NAME][@FRAME:]X,Y,W,H",
-        help="box to start on in px, top-left corner and size, in the first frame or in FRAME; "
-        "repeatable, for several vehicles or to correct one later; otherwise the first true box",
     )  # fmt: skip
 
 
@@ -115,9 +102,8 @@ def run(request: Request) -> int:
 
 
 def _track(request: Request, variant: Variant, source: Source, folder: RunFolder) -> int:
-    window = PictureWindow(request.source) if request.show else None
-    show_in = window.show if window else None
-    pictures = Pictures(request.video, particles=request.particles, show=show_in)
+    window = request.source if request.show else ""
+    pictures = Pictures(request.video, particles=request.particles, window=window)
     with stopping() as stop, counting("tracked") as progress:
         first, frames = peeked(numbered_frames(source, request, stop, progress))
         targets = _targets(variant, source, request, first)
@@ -127,8 +113,7 @@ def _track(request: Request, variant: Variant, source: Source, folder: RunFolder
     notices = list(source.notices)
     for tracker in trackers.values():
         notices += [*tracker.notices, *tracker.road_notices]
-    if request.video and not has_encoder():
-        notices.append(NO_ENCODER)
+    notices += pictures.notices
     ended = cut_short(stop, source, max(map(len, rows.values())))
     notices += ended
     tell_notices(notices)
@@ -194,8 +179,8 @@ def _targets(
     variant: Variant, source: Source, request: Request, first: tuple[int, StampedFrame]
 ) -> dict[str, _Target]:
     """Make a tracker for each target; without any, one that starts on the first true box."""
-    options = [*request.target, *(read_targets(request.targets) if request.targets else [])]
-    configuration = parameter_options.chosen(variant, request)
+    options = request.given_targets()
+    configuration = chosen(variant, request)
     parameters, settings = configuration.tracker, configuration.session
     if not options:
         truth = None if settings.target.box else _first_truth(source, request, first[1].stamp_ns)

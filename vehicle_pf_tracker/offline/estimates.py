@@ -20,7 +20,7 @@ import csv
 import io
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
-from itertools import pairwise
+from itertools import groupby, pairwise
 from pathlib import Path
 from types import MappingProxyType
 from typing import TypeAlias
@@ -238,3 +238,55 @@ def _between(first: EstimateRow, last: EstimateRow, stamp_ns: int) -> Point | No
     assert end is not None
     gone = (stamp_ns - first.stamp_ns) / (last.stamp_ns - first.stamp_ns)
     return start[0] + gone * (end[0] - start[0]), start[1] + gone * (end[1] - start[1])
+
+
+_MOST_SPANS = 12
+"""Spans in a summary; more are counted, since nobody reads a line of hundreds."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModeSpan:
+    """Consecutive frames of one mode.
+
+    Attributes
+    ----------
+    mode : str
+        The mode.
+    first, last : EstimateRow
+        Rows of its first and its last frame.
+    """
+
+    mode: str
+    first: EstimateRow
+    last: EstimateRow
+
+
+def mode_spans(rows: Sequence[EstimateRow]) -> list[ModeSpan]:
+    """Group consecutive rows of one mode."""
+    groups = ((mode, list(group)) for mode, group in groupby(rows, key=lambda row: row.mode))
+    return [ModeSpan(mode, group[0], group[-1]) for mode, group in groups]
+
+
+def summary(rows: Sequence[EstimateRow]) -> str:
+    """Return the modes of a run in one sentence, times in min:s after its first frame."""
+    if not rows:
+        return "no frames"
+    spans, start = mode_spans(rows), rows[0].stamp_ns
+    words = [_words(span, start, is_last=span is spans[-1]) for span in spans[:_MOST_SPANS]]
+    if len(spans) > _MOST_SPANS:
+        words.append(f"and {len(spans) - _MOST_SPANS} more changes of the mode")
+    tracked = sum(row.mode == Mode.TRACKING.value for row in rows)
+    return f"{', '.join(words)}; {tracked} of {len(rows)} frames tracked"
+
+
+def clock_words(nanoseconds: int) -> str:
+    """Return a time as min:s with tenths, as ``1:07.5``."""
+    tenths = round(nanoseconds / 1e8)
+    return f"{tenths // 600}:{tenths // 10 % 60:02d}.{tenths % 10}"
+
+
+def _words(span: ModeSpan, start: int, *, is_last: bool) -> str:
+    first, last = (clock_words(row.stamp_ns - start) for row in (span.first, span.last))
+    if is_last and span.mode == Mode.LOST.value:
+        return f"LOST from {first}"
+    return f"{span.mode} {first}-{last}"
