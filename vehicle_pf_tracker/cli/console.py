@@ -23,13 +23,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TextIO, TypeAlias, TypeVar
 
-from rich.console import Console
-from rich.progress import BarColumn, TextColumn
-from rich.progress import Progress as ProgressBar
-from rich.table import Table
-from rich.text import Text
-
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from vehicle_pf_tracker.evaluation.tables import Comparison
     from vehicle_pf_tracker.offline.processes import OnProgress
     from vehicle_pf_tracker.offline.processes import Progress as WorkProgress
@@ -70,6 +66,9 @@ def show(table: Comparison) -> None:
 
 def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: str = "") -> None:
     """Print cells as a table on stdout; nothing in them is markup."""
+    from rich.table import Table
+    from rich.text import Text
+
     table = Table(title=title or None)
     for heading in headings:
         table.add_column(Text(heading), justify="right")
@@ -80,6 +79,8 @@ def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: st
 
 def print_table(table: Table) -> None:
     """Print a table on stdout; not wrapped where that is not a terminal."""
+    from rich.console import Console
+
     console = Console()
     if not console.is_terminal:
         console = Console(width=_WIDE)
@@ -141,6 +142,10 @@ def shown_progress(
 
         yield print_line
         return
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn
+    from rich.progress import Progress as ProgressBar
+
     columns = BarColumn(), TextColumn("{task.description}", markup=False)
     with ProgressBar(*columns, console=Console(file=stream), transient=True) as bar:
         task = bar.add_task("", total=None)
