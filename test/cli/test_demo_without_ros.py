@@ -116,8 +116,3 @@ def test_a_missing_module_of_our_own_is_not_taken_for_missing_ros(monkeypatch):
     monkeypatch.setattr(demo, "import_module", broken)
     with pytest.raises(ModuleNotFoundError):
         demo.absence_of_ros()
-
-
-def test_the_contestants_are_those_of_the_readme():
-    assert list(demo.CONTESTANTS) == ["fusion", "apf", "pf"]
-    assert set(demo.IN_VIDEO) <= set(demo.CONTESTANTS)

@@ -52,15 +52,6 @@ def test_the_size_of_raw_images_is_a_bound(tmp_path, capsys):
     assert f"will take up to {pixels:.2g} MB\n" in capsys.readouterr().out
 
 
-def test_the_format_can_be_chosen_and_a_recording_replaced(tmp_path, capsys):
-    source = frame_folder(tmp_path / "source")
-    call("import", source, tmp_path / "bag")
-    assert main(["import", str(source), str(tmp_path / "bag")]) == 1
-    assert "is not empty; give --overwrite to" in capsys.readouterr().err
-    call("import", source, tmp_path / "bag", "--format", "raw", "--overwrite")
-    assert Recording(tmp_path / "bag").image_type == "sensor_msgs/msg/Image"
-
-
 def test_a_video_file_becomes_a_recording(tmp_path, capsys):
     video = cv2.VideoWriter(
         str(tmp_path / "a.avi"), cv2.VideoWriter_fourcc(*"MJPG"), 20.0, (96, 64)
@@ -138,6 +129,8 @@ def test_the_list_names_scenes_and_settings(capsys):
     out = capsys.readouterr().out
     assert all(f"{name}: {kind.summary}" in out for name, kind in SCENES.items())
     assert "  width=30.0 [px, from 0 to 120]: " in out
+    assert "traffic-pair: a car overtakes behind a lorry, which hides it\n" in out
+    assert "  the settings of traffic with vehicles=2, directions=1, " in out
 
 
 def test_traffic_becomes_a_folder_of_mot_challenge(tmp_path, capsys):
@@ -155,14 +148,6 @@ def test_traffic_becomes_a_folder_of_mot_challenge(tmp_path, capsys):
 def test_traffic_becomes_nothing_else(tmp_path, capsys, words):
     assert main(["synth", "traffic-pair", str(tmp_path / words[0]), *words[1:]]) == 2
     assert "is written as a new MOTChallenge folder" in capsys.readouterr().err
-
-
-def test_the_list_names_traffic(capsys):
-    call("synth", "--list")
-    out = capsys.readouterr().out
-    assert "traffic-pair: a car overtakes behind a lorry, which hides it\n" in out
-    assert "  the settings of traffic with vehicles=2, directions=1, " in out
-    assert "  vehicles=20 [from 2 to 80]: more vehicles in both directions together" in out
 
 
 @pytest.mark.parametrize(

@@ -350,11 +350,3 @@ def test_a_recorded_run_of_one_target_keeps_the_truth_of_its_part(run, tmp_path)
     assert [truth.stamp_ns for truth in truths] == [found.stamp_ns for found in images]
     assert len(images) == COUNT - 2
     assert annotations(Recording(bag), "/pf_tracker/annotations")[0].startswith("TRACKING")
-
-
-def test_a_recorded_run_leaves_its_source_and_its_results_alone(run, tmp_path, capsys):
-    source = record(tmp_path / "bag")
-    for taken, reason in ((source, "would change the input"), (tmp_path / "out", "two outputs")):
-        assert run(source, "--recording", taken) == 1
-        assert reason in capsys.readouterr().err
-    assert Recording(source).frame_count == COUNT

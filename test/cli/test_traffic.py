@@ -194,12 +194,6 @@ def test_the_printed_parameters_are_taken(run, tmp_path, capsys):
     assert info["parameters"]["lost_after"] == 9.0
 
 
-def test_elapsed_comes_from_the_stamps(run):
-    out = run()
-    stamps = [int(row["stamp_ns"]) for row in table(out / "tracks.csv")]
-    assert stamps[:3] == [1_000_000_000, 1_000_000_000, 1_040_000_000]
-
-
 def test_a_part_of_the_source_keeps_its_numbers(run):
     rows = table(run("--start", 5, "--end", 9) / "tracks.csv")
     assert {row["frame"] for row in rows} == set("56789")
@@ -236,21 +230,6 @@ def test_motion_is_found_without_any_detections(tmp_path, real, capsys):
     assert capsys.readouterr().out.startswith("1 vehicle in 100 frames")
     last = table(out / "tracks.csv")[-1]
     assert float(last["x"]) == pytest.approx(2 * 39 + 18, abs=4)
-
-
-def test_two_runs_are_equal(run):
-    first = run()
-    text = [(first / name).read_text() for name in ("tracks.csv", "tracks.txt")]
-    second = run("--overwrite")
-    assert text == [(second / name).read_text() for name in ("tracks.csv", "tracks.txt")]
-
-
-def test_results_are_not_replaced_unasked(run, capsys):
-    out = run()
-    before = (out / "tracks.csv").stat().st_mtime_ns
-    run(status=1)
-    assert "give --overwrite" in capsys.readouterr().err
-    assert (out / "tracks.csv").stat().st_mtime_ns == before
 
 
 def test_a_run_that_fails_keeps_the_results_before(run, capsys):

@@ -86,17 +86,6 @@ def test_crossings_are_rows_of_counts(tmp_path):
     }  # fmt: skip
 
 
-def test_files_appear_whole_or_not_at_all(tmp_path):
-    def write_and_fail():
-        with track_files(tmp_path) as files:
-            files.write(1, 0, ALL)
-            raise RuntimeError
-
-    with pytest.raises(RuntimeError):
-        write_and_fail()
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_run_that_fails_leaves_the_earlier_one_and_one_that_does_not_replaces_all(tmp_path):
     with track_files(tmp_path, counting=True) as files:
         files.write(1, 0, ALL)

@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`demo`: a synthetic scene, tracked through ROS and offline, scored against truth, and shown.
-
-Runs of the demo: its contestants offline, and through ROS where that is installed.
-"""
+"""`demo`: a synthetic scene, tracked through ROS and offline, scored against truth, and shown."""
 
 from __future__ import annotations
 
@@ -23,13 +20,12 @@ import itertools
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
-from itertools import tee
 from pathlib import Path
 from types import MappingProxyType
 
-from vehicle_pf_tracker.cli.console import counting, show, shown_progress, tell_notice
+from vehicle_pf_tracker.cli.console import OnFrames, counting, show, shown_progress, tell_notice
 from vehicle_pf_tracker.cli.replay import ReplayWords
 from vehicle_pf_tracker.cli.requests import OverwriteOption, natural, option
 from vehicle_pf_tracker.cli.synth import record_scene
@@ -40,7 +36,7 @@ from vehicle_pf_tracker.evaluation.plots import overview_figure, save
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
 from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
-from vehicle_pf_tracker.offline.driver import OfflineTracker, follow
+from vehicle_pf_tracker.offline.driver import Numbered, OfflineTracker, follow
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import write_with_estimates
 from vehicle_pf_tracker.offline.output_files import make_folder, write_text
@@ -76,10 +72,10 @@ CONTESTANTS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A tracker and its rows, one for each frame so far."""
+    """A tracker and its rows, one for each frame."""
 
     tracker: OfflineTracker
-    rows: list[EstimateRow] = field(default_factory=list)
+    rows: Sequence[EstimateRow]
 
 
 def absence_of_ros() -> str:
@@ -105,22 +101,24 @@ def offline_tracker(recording: Recording, name: str, seed: int = SHOWN_SEED) -> 
 
 def track_offline(recording: Recording, more_seeds: int) -> dict[str, list[Run]]:
     """Track with every contestant, first with the seed shown; each frame is decoded once."""
-    seeds = range(SHOWN_SEED, SHOWN_SEED + 1 + more_seeds)
-    runs = {
-        name: [Run(offline_tracker(recording, name, seed)) for seed in seeds]
+    trackers = {
+        f"{name} {seed}": offline_tracker(recording, name, seed)
         for name in CONTESTANTS
+        for seed in range(SHOWN_SEED, SHOWN_SEED + 1 + more_seeds)
     }
-    every = [run for of_name in runs.values() for run in of_name]
-    images = ((image.stamp_ns, image.frame) for image in recording.frames())
-    streams = [
-        run.tracker.rows(stream) for run, stream in zip(every, tee(images, len(every)), strict=True)
-    ]
     with counting("tracked") as progress:
-        for number, of_frame in enumerate(zip(*streams, strict=True), start=1):
-            for run, row in zip(every, of_frame, strict=True):
-                run.rows.append(row)
-            progress(number, recording.frame_count)
+        rows = follow(trackers, numbered(recording, progress), Pictures())
+    runs: dict[str, list[Run]] = {name: [] for name in CONTESTANTS}
+    for key, tracker in trackers.items():
+        runs[tracker.session.variant.name].append(Run(tracker, rows[key]))
     return runs
+
+
+def numbered(recording: Recording, progress: OnFrames) -> Numbered:
+    """Yield the frames of a recording with their numbers."""
+    for number, found in enumerate(recording.frames(), start=1):
+        yield number, found
+        progress(number, recording.frame_count)
 
 
 def track_through_ros(recording: Recording) -> dict[str, Sequence[EstimateRow]]:

@@ -123,12 +123,9 @@ def write_estimates(
     InputError
         If it cannot be written.
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([*COLUMNS, *extra])
-    for row, *more in zip(rows, *extra.values(), strict=True):
-        writer.writerow([_text(value) for value in (*astuple(row), *more)])
-    write_text(path, text.getvalue())
+    found = zip(rows, *extra.values(), strict=True)
+    cells = ((*astuple(row), *more) for row, *more in found)
+    _write_table(path, [*COLUMNS, *extra], cells)
 
 
 def write_tracks(path: Path, rows: Mapping[str, Sequence[EstimateRow]]) -> None:
@@ -141,12 +138,21 @@ def write_tracks(path: Path, rows: Mapping[str, Sequence[EstimateRow]]) -> None:
     InputError
         If it cannot be written.
     """
+    cells = (
+        (name, *astuple(row))
+        for of_frame in zip(*rows.values(), strict=True)
+        for name, row in zip(rows, of_frame, strict=True)
+    )
+    _write_table(path, ["target", *COLUMNS], cells)
+
+
+def _write_table(
+    path: Path, header: Sequence[str], rows: Iterable[Sequence[float | str | None]]
+) -> None:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["target", *COLUMNS])
-    for of_frame in zip(*rows.values(), strict=True):
-        for name, row in zip(rows, of_frame, strict=True):
-            writer.writerow([name, *map(_text, astuple(row))])
+    writer.writerow(header)
+    writer.writerows(map(_text, row) for row in rows)
     write_text(path, text.getvalue())
 
 
@@ -244,37 +250,14 @@ _MOST_SPANS = 12
 """Spans in a summary; more are counted, since nobody reads a line of hundreds."""
 
 
-@dataclass(frozen=True, slots=True)
-class ModeSpan:
-    """Consecutive frames of one mode.
-
-    Attributes
-    ----------
-    mode : str
-        The mode.
-    first, last : EstimateRow
-        Rows of its first and its last frame.
-    """
-
-    mode: str
-    first: EstimateRow
-    last: EstimateRow
-
-
-def mode_spans(rows: Sequence[EstimateRow]) -> list[ModeSpan]:
-    """Group consecutive rows of one mode."""
-    groups = ((mode, list(group)) for mode, group in groupby(rows, key=lambda row: row.mode))
-    return [ModeSpan(mode, group[0], group[-1]) for mode, group in groups]
-
-
 def summary(rows: Sequence[EstimateRow]) -> str:
     """Return the modes of a run in one sentence, times in min:s after its first frame."""
     if not rows:
         return "no frames"
-    spans, start = mode_spans(rows), rows[0].stamp_ns
-    words = [_words(span, start, is_last=span is spans[-1]) for span in spans[:_MOST_SPANS]]
+    spans = [list(group) for _, group in groupby(rows, key=lambda row: row.mode)]
+    words = [_words(span, rows[0].stamp_ns, is_last=span is spans[-1]) for span in spans]
     if len(spans) > _MOST_SPANS:
-        words.append(f"and {len(spans) - _MOST_SPANS} more changes of the mode")
+        words[_MOST_SPANS:] = [f"and {len(spans) - _MOST_SPANS} more changes of the mode"]
     tracked = sum(row.mode == Mode.TRACKING.value for row in rows)
     return f"{', '.join(words)}; {tracked} of {len(rows)} frames tracked"
 
@@ -285,8 +268,8 @@ def clock_words(nanoseconds: int) -> str:
     return f"{tenths // 600}:{tenths // 10 % 60:02d}.{tenths % 10}"
 
 
-def _words(span: ModeSpan, start: int, *, is_last: bool) -> str:
-    first, last = (clock_words(row.stamp_ns - start) for row in (span.first, span.last))
-    if is_last and span.mode == Mode.LOST.value:
-        return f"LOST from {first}"
-    return f"{span.mode} {first}-{last}"
+def _words(span: Sequence[EstimateRow], start: int, *, is_last: bool) -> str:
+    """Return mode and times of consecutive rows of one mode."""
+    mode = span[0].mode
+    first, last = (clock_words(row.stamp_ns - start) for row in (span[0], span[-1]))
+    return f"LOST from {first}" if is_last and mode == Mode.LOST.value else f"{mode} {first}-{last}"
