@@ -14,7 +14,6 @@
 
 """Each mistake gives one clear sentence and a status that is not 0, and never a traceback."""
 
-import os
 from pathlib import Path
 
 import pytest
@@ -170,27 +169,6 @@ def test_a_file_that_is_no_parameter_file(run_fails, bag, tmp_path, text, messag
     path = tmp_path / "mine.yaml"
     path.write_text(text)
     assert message in run_fails(bag, "--params", path)
-
-
-def test_an_output_that_is_a_file(fails, bag, tmp_path):
-    (tmp_path / "out").touch()
-    line = fails("run", bag, "--variant", "apf", "-o", tmp_path / "out")
-    assert f"{tmp_path / 'out'} is a file" in line
-
-
-def test_an_output_below_a_file(fails, bag, tmp_path):
-    (tmp_path / "file").touch()
-    line = fails("run", bag, "--variant", "apf", "-o", tmp_path / "file" / "out")
-    assert "cannot write" in line
-    assert str(tmp_path / "file" / "out") in line
-
-
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
-def test_an_output_that_may_not_be_written(fails, bag, tmp_path):
-    locked = tmp_path / "locked"
-    locked.mkdir(mode=0o500)
-    line = fails("run", bag, "--variant", "apf", "-o", locked)
-    assert f"cannot write {locked}: Permission denied" in line
 
 
 @pytest.mark.parametrize(

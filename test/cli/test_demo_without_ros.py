@@ -87,7 +87,7 @@ def test_kernels_are_ready_before_nodes_start(tmp_path, monkeypatch, capsys, lon
     monkeypatch.setattr(demo, "takes_long", lambda _choice: long)
     monkeypatch.setattr(demo, "load_kernels", order.append)
     monkeypatch.setattr(demo, "absence_of_ros", lambda: "")
-    monkeypatch.setattr(demo, "_record", lambda _path: None)
+    monkeypatch.setattr(demo, "record", lambda _path: None)
 
     def through_ros(_recording):
         order.append("nodes")

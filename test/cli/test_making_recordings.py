@@ -15,7 +15,7 @@
 import cv2
 import numpy as np
 import pytest
-from small_recordings import COUNT, box_of, frame_folder, frame_of
+from small_recordings import COUNT, box_of, frame_folder
 
 from vehicle_pf_tracker.cli.console import megabytes
 from vehicle_pf_tracker.cli.main import main
@@ -50,20 +50,6 @@ def test_the_size_of_raw_images_is_a_bound(tmp_path, capsys):
     call("import", source, tmp_path / "bag", "--format", "raw")
     pixels = 12 * 96 * 64 * 3 / 1e6
     assert f"will take up to {pixels:.2g} MB\n" in capsys.readouterr().out
-
-
-def test_a_video_file_becomes_a_recording(tmp_path, capsys):
-    video = cv2.VideoWriter(
-        str(tmp_path / "a.avi"), cv2.VideoWriter_fourcc(*"MJPG"), 20.0, (96, 64)
-    )
-    if not video.isOpened():
-        pytest.skip("this OpenCV writes no MJPG")
-    for index in range(5):
-        video.write(np.ascontiguousarray(frame_of(index)[:, :, ::-1]))
-    video.release()
-    call("import", tmp_path / "a.avi", tmp_path / "bag")
-    assert Recording(tmp_path / "bag").frame_count == 5
-    assert "5 frames of 96x64 px at 20 frames/s, 0 with truth" in capsys.readouterr().out
 
 
 def test_a_scene_becomes_a_recording_with_its_frames_and_truth(tmp_path, capsys):

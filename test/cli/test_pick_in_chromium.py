@@ -43,7 +43,7 @@ _HANDS = """
 """
 
 
-class DrivenHandler(pick._Handler):
+class DrivenHandler(pick.PageHandler):
     """Serves the page with a script that does what a user would."""
 
     script = ""

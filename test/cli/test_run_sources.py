@@ -23,7 +23,6 @@ import threading
 import cv2
 import numpy as np
 import pytest
-import yaml
 from small_recordings import COUNT, TARGET, box_of, frame_folder, frame_of, record
 
 import vehicle_pf_tracker.cli.run as run_verb
@@ -73,11 +72,6 @@ def test_a_video_is_tracked_as_it_is(run, video, tmp_path, capsys):
     assert [row.stamp_ns for row in rows] == [10**9 + n * 40_000_000 for n in range(COUNT)]
     assert all(abs(row.x - box_of(n).centre[0]) < 4 for n, row in enumerate(rows))
     assert f"TRACKING 0:00.0-0:00.4; {COUNT} of {COUNT} frames tracked" in capsys.readouterr().out
-
-
-def test_a_folder_with_truth_starts_on_it_and_is_scored(run, tmp_path, capsys):
-    assert run(frame_folder(tmp_path / "frames")) == 0
-    assert "on target while visible" in capsys.readouterr().out
 
 
 def test_a_folder_and_its_import_give_the_same_estimates(run, tmp_path):
@@ -148,15 +142,6 @@ def test_several_vehicles_in_one_pass(run, video, tmp_path, capsys):
 def test_a_target_is_corrected_in_the_middle(run, video, tmp_path):
     assert run(video, "--target", f"a:{TARGET}", "--target", "a@6:60,8,16,12") == 0
     assert estimates(tmp_path / "out")[5].position == (68.0, 14.0)
-
-
-def test_targets_come_from_a_file(run, video, tmp_path):
-    path = tmp_path / "targets.yaml"
-    path.write_text(
-        yaml.safe_dump({"targets": [{"name": "a", "frame": 3, "box": [12, 24, 16, 12]}]})
-    )
-    assert run(video, "--targets", path) == 0
-    assert estimates(tmp_path / "out")[2].position == (20.0, 30.0)
 
 
 @pytest.mark.parametrize(

@@ -204,7 +204,7 @@ def _run_chain(request: Request, folder: Path, absence: str) -> int:
         _announce(steps, "kernels: the first start compiles for up to a minute, later ones load")
         load_kernels("auto")
     _announce(steps, f"a recording of the scene {SCENE!r} with exact truth")
-    recording = _record(folder / "recording")
+    recording = record(folder / "recording")
     answers: Mapping[str, Sequence[EstimateRow]] | None = None
     if not absence:
         nodes = ", ".join(f"{name}_tracker" for name in CONTESTANTS)
@@ -235,7 +235,8 @@ def _announce(steps: Iterator[int], what: str) -> None:
     print(f"{next(steps)}. {what}", flush=True)
 
 
-def _record(path: Path) -> Recording:
+def record(path: Path) -> Recording:
+    """Render the scene of the demo into the recording `path`, and open it."""
     record_scene(make_scene(SCENE, seed=SCENE_SEED), path, overwrite=True)
     return Recording(path)
 

@@ -195,7 +195,7 @@ class PickingServer(ThreadingHTTPServer, Generic[PickedT]):
     block_on_close = False
 
     def __init__(self, frames: FrameStore, tool: Tool[PickedT], first: int = 1) -> None:
-        super().__init__(("127.0.0.1", 0), _Handler)
+        super().__init__(("127.0.0.1", 0), PageHandler)
         self.frames = frames
         self.tool = tool
         self.first = first
@@ -241,7 +241,9 @@ def ask(source: Source, tool: Tool[PickedT], first: int) -> Sequence[PickedT]:
         return server.pick()
 
 
-class _Handler(BaseHTTPRequestHandler):
+class PageHandler(BaseHTTPRequestHandler):
+    """Answers the requests of the page."""
+
     server: PickingServer[Any]
 
     def do_GET(self) -> None:

@@ -20,6 +20,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, show, tell_notices
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, option, switch
@@ -58,7 +59,7 @@ from vehicle_pf_tracker.offline.run_folder import (
     RunInfo,
     describe_run,
 )
-from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.recordings.source import Source, open_source
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
@@ -106,10 +107,15 @@ def _track(request: Request, variant: Variant, source: Source, folder: RunFolder
     pictures = Pictures(request.video, particles=request.particles, window=window)
     with stopping() as stop, counting("tracked") as progress:
         first, frames = peeked(numbered_frames(source, request, stop, progress))
-        targets = _targets(variant, source, request, first)
-        trackers = {name: one.tracker for name, one in targets.items()}
+        configuration = chosen(variant, request)
+        given = _boxes(request, configuration.session, first[0])
+        truth = None if any(given.values()) else _first_truth(source, request, first[1].stamp_ns)
+        trackers = {
+            name: _tracker(request, variant, configuration, boxes, first[0], truth)
+            for name, boxes in given.items()
+        }
         with _recording(request, variant, source, list(trackers)) as on_frame:
-            rows = follow(trackers, _doubting(frames, targets), pictures, on_frame)
+            rows = follow(trackers, _doubting(frames, given, trackers), pictures, on_frame)
     notices = list(source.notices)
     for tracker in trackers.values():
         notices += [*tracker.notices, *tracker.road_notices]
@@ -167,36 +173,32 @@ def _write(
         show(comparison({request.variant: metrics}))
 
 
-@dataclass(frozen=True, slots=True)
-class _Target:
-    """A tracker, and its boxes by frame."""
-
-    tracker: OfflineTracker
-    boxes: Mapping[int, Box]
+Boxes: TypeAlias = Mapping[str, Mapping[int, Box]]
+"""Boxes given by the user, px: for each target, by the number of the frame."""
 
 
-def _targets(
-    variant: Variant, source: Source, request: Request, first: tuple[int, StampedFrame]
-) -> dict[str, _Target]:
-    """Make a tracker for each target; without any, one that starts on the first true box."""
-    options = request.given_targets()
-    configuration = chosen(variant, request)
-    parameters, settings = configuration.tracker, configuration.session
-    if not options:
-        truth = None if settings.target.box else _first_truth(source, request, first[1].stamp_ns)
-        tracker = OfflineTracker(
-            variant, parameters, settings, first_truth=truth, max_diff=request.max_diff
-        )
-        box = settings.target.box
-        return {"1": _Target(tracker, {first[0]: box} if box else {})}
-    made = {}
-    for name, boxes in by_name(options, first[0]).items():
-        initial = boxes.get(first[0])
-        later = {frame: box for frame, box in boxes.items() if frame != first[0]}
-        own = with_target(settings, initial) if initial else settings
-        tracker = OfflineTracker(variant, parameters, own, targets=later, max_diff=request.max_diff)
-        made[name] = _Target(tracker, boxes)
-    return made
+def _boxes(request: Request, settings: SessionParameters, first: int) -> Boxes:
+    """Return the targets given; without any, the target "1" of the parameters, if they have one."""
+    configured = {} if settings.target.box is None else {first: settings.target.box}
+    return by_name(request.given_targets(), first) or {"1": configured}
+
+
+def _tracker(
+    request: Request,
+    variant: Variant,
+    configuration: Configuration,
+    boxes: Mapping[int, Box],
+    first: int,
+    truth: Truth | None,
+) -> OfflineTracker:
+    """Make the tracker of one target, which starts on `truth` where it has no boxes."""
+    settings, later = configuration.session, dict(boxes)
+    if (initial := later.pop(first, None)) is not None:
+        settings = with_target(settings, initial)
+    return OfflineTracker(
+        variant, configuration.tracker, settings,
+        first_truth=truth, targets=later, max_diff=request.max_diff,
+    )  # fmt: skip
 
 
 def _first_truth(source: Source, request: Request, first_ns: int) -> Truth:
@@ -210,14 +212,13 @@ def _first_truth(source: Source, request: Request, first_ns: int) -> Truth:
     return truth
 
 
-def _doubting(frames: Numbered, targets: Mapping[str, _Target]) -> Numbered:
+def _doubting(frames: Numbered, given: Boxes, trackers: Mapping[str, OfflineTracker]) -> Numbered:
     """Pass frames on; note what speaks against the targets given for them."""
     for number, found in frames:
-        for name, target in targets.items():
-            box = target.boxes.get(number)
-            if box is not None and found.frame is not None:
-                notices = target.tracker.notices
-                notices += [
-                    f"the target {name} is doubtful: {why}" for why in doubts(found.frame, box)
+        for name, boxes in given.items():
+            if number in boxes and found.frame is not None:
+                trackers[name].notices += [
+                    f"the target {name} is doubtful: {why}"
+                    for why in doubts(found.frame, boxes[number])
                 ]
         yield number, found

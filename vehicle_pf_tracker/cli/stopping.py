@@ -77,7 +77,7 @@ class Stop:
 
     @property
     def came(self) -> bool:
-        """Whether one has come."""
+        """True once a signal has come."""
         return self.number is not None
 
     @property

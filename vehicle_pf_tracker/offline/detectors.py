@@ -134,7 +134,7 @@ class DetectionFile:
         return int(self._frames[-1]) if len(self) else 0
 
     def of(self, frame: int) -> Detections:
-        """Return the detections of a frame; one without rows is one in which nothing was seen."""
+        """Return the detections of a frame; one without rows is one without vehicles."""
         begin, end = np.searchsorted(self._frames, [frame, frame + 1])
         return Detections.make(self._rows[begin:end, :4], self._rows[begin:end, 4])
 

@@ -176,9 +176,9 @@ class VehicleLog:
     label : str
         Class; "" where it is unknown.
     survived : int
-        Occlusions after which it was seen under the same number.
+        Occlusions after which it was visible under the same number.
     is_hidden : bool
-        True from the beginning of an occlusion until it is seen again.
+        True from the beginning of an occlusion until it is visible again.
     """
 
     first_frame: int
@@ -245,12 +245,12 @@ class TrafficSummary:
 
     @property
     def survived(self) -> int:
-        """Occlusions after which a vehicle was seen under the same number."""
+        """Occlusions after which a vehicle was visible under the same number."""
         return sum(one.survived for one in self.vehicles.values())
 
     @property
     def ended_hidden(self) -> int:
-        """Vehicles that were not seen again after their last occlusion."""
+        """Vehicles that stayed invisible after their last occlusion."""
         return sum(one.is_hidden for one in self.vehicles.values())
 
     def sentences(self, counter: Counter | None = None) -> list[str]:
