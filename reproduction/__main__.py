@@ -37,11 +37,9 @@ from reproduction.experiment import (
 from reproduction.output import write_report
 from reproduction.page import write_page
 from reproduction.running import complete
-from vehicle_pf_tracker.cli.console import USAGE, UsageError
+from vehicle_pf_tracker.cli.console import USAGE, UsageError, telling
 from vehicle_pf_tracker.cli.main import exit_status
-from vehicle_pf_tracker.cli.requests import add_options
-from vehicle_pf_tracker.cli.shared_options import WorkersOption, natural, positive
-from vehicle_pf_tracker.cli.work_progress import telling
+from vehicle_pf_tracker.cli.requests import WorkersOption, add_options, natural, positive
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
 PROGRAM = "python -m reproduction"

@@ -30,11 +30,9 @@ from laboratory.stress import (
 )
 from laboratory.stress.battery import QUICK_FRAMES, QUICK_PER_SEQUENCE
 from laboratory.stress.report import MARKDOWN, table_rows, write_report
-from vehicle_pf_tracker.cli.console import print_rows, tell_notices
-from vehicle_pf_tracker.cli.requests import option
-from vehicle_pf_tracker.cli.shared_options import positive
+from vehicle_pf_tracker.cli.console import print_rows, tell_notices, telling
+from vehicle_pf_tracker.cli.requests import option, positive
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest, chosen
-from vehicle_pf_tracker.cli.work_progress import telling
 
 STORE = "scores.jsonl"
 

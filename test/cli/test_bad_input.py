@@ -14,7 +14,6 @@
 
 """Each mistake gives one clear sentence and a status that is not 0, and never a traceback."""
 
-import os
 from pathlib import Path
 
 import pytest
@@ -42,9 +41,10 @@ def fails(capsys):
         assert main([str(word) for word in words]) == status
         out, err = capsys.readouterr()
         assert out == ""
-        assert err.count("\n") == 1
-        assert err.startswith("vehicle-pf-tracker: error: ")
-        return err
+        # A slow machine shows progress too.
+        (line,) = [one for one in err.splitlines() if not one.startswith("tracked ")]
+        assert line.startswith("vehicle-pf-tracker: error: ")
+        return line
 
     return call
 
@@ -62,71 +62,46 @@ def run_fails(fails, tmp_path):
     return call
 
 
-def test_no_such_file(run_fails, tmp_path):
-    assert str(tmp_path / "none") in run_fails(tmp_path / "none")
-
-
-def test_not_an_mcap(run_fails, tmp_path):
-    path = tmp_path / "text.mcap"
-    path.write_text("This is no recording, however long it may go on.\n" * 100)
-    assert str(path) in run_fails(path)
-
-
-def test_an_empty_file(run_fails, tmp_path):
-    path = tmp_path / "empty.mcap"
-    path.touch()
-    assert str(path) in run_fails(path)
-
-
-def test_a_recording_truncated_before_its_first_image(run_fails, bag):
-    path = bag / "bag_0.mcap"
-    path.write_bytes(path.read_bytes()[:200])
-    assert "truncated" in run_fails(path)
-
-
-def test_a_folder_that_is_no_recording(run_fails, tmp_path):
+@pytest.fixture
+def sources(bag, tmp_path):
+    """The folder of sources, most of which cannot be tracked in."""
+    (tmp_path / "text.mcap").write_text("This is no recording, however long it goes on.\n" * 100)
+    (tmp_path / "empty.mcap").touch()
     (tmp_path / "empty").mkdir()
-    assert str(tmp_path / "empty") in run_fails(tmp_path / "empty")
-
-
-def test_no_image_topic(run_fails, tmp_path):
-    line = run_fails(record_without_images(tmp_path / "bag"))
-    assert "has no images" in line
-    assert "/ground_truth/box" in line
-
-
-def test_several_image_topics_and_none_chosen(run_fails, tmp_path):
-    line = run_fails(record_two_cameras(tmp_path / "bag"), "--target", TARGET)
-    assert "choose one with --topic: /left/image, /right/image" in line
-
-
-def test_a_topic_that_is_not_there(run_fails, bag):
-    assert "has no topic /other" in run_fails(bag, "--topic", "/other")
-
-
-def test_a_topic_of_another_type(run_fails, bag):
-    line = run_fails(bag, "--topic", "/ground_truth/box")
-    assert "carries geometry_msgs/msg/PolygonStamped" in line
-
-
-def test_a_target_outside_the_image(run_fails, bag):
-    line = run_fails(bag, "--target", "500,500,20,20")
-    assert "500,500,20,20" in line
-    assert "outside the image of 96x64 px" in line
+    cut = record(tmp_path / "cut") / "cut_0.mcap"
+    cut.write_bytes(cut.read_bytes()[:200])
+    record_without_images(tmp_path / "blind")
+    record_two_cameras(tmp_path / "two")
+    record(tmp_path / "untrue", truths=())
+    return tmp_path
 
 
 @pytest.mark.parametrize(
-    ("target", "message"),
+    ("source", "words", "message"),
     [
-        ("8,24,0,0", "smaller than one pixel"),
-        ("0,0,0,0", "smaller than one pixel"),
-        ("8,24,16,0.5", "smaller than one pixel"),
-        ("8,24,-16,12", "smaller than one pixel"),
-        ("-5e8,-5e8,1e9,1e9", "far larger than the image"),
+        ("none", (), "none"),
+        ("text.mcap", (), "text.mcap"),
+        ("empty.mcap", (), "empty.mcap"),
+        ("empty", (), "empty"),
+        ("cut", (), "truncated"),
+        ("blind", (), "has no images"),
+        ("two", ("--target", TARGET), "choose one with --topic: /left/image, /right/image"),
+        ("bag", ("--topic", "/other"), "has no topic /other"),
+        ("bag", ("--topic", "/ground_truth/box"), "carries geometry_msgs/msg/PolygonStamped"),
+        ("bag", ("--target", "500,500,20,20"), "500,500,20,20 has its centre outside the image of"),
+        ("bag", ("--target", "8,24,0,0"), "smaller than one pixel"),
+        ("bag", ("--target", "8,24,16,0.5"), "smaller than one pixel"),
+        ("bag", ("--target=8,24,-16,12",), "smaller than one pixel"),
+        ("bag", ("--target=-5e8,-5e8,1e9,1e9",), "far larger than the image"),
+        ("bag", ("--variant", "kalman"), "no variant 'kalman'"),
+        ("bag", ("--seed", "-2"), "seed must be from -1"),
+        ("bag", ("--params", "none.yaml"), "cannot read the parameter file none.yaml"),
+        ("bag", ("--set", "road.pairs=0,0=0,0"), "at least 4 pairs"),
+        ("untrue", ("--max-diff", "-1", "--target", TARGET), "seconds >= 0"),
     ],
 )
-def test_a_target_of_an_impossible_size(run_fails, bag, target, message):
-    assert message in run_fails(bag, f"--target={target}")
+def test_a_run_that_cannot_begin(run_fails, sources, source, words, message):
+    assert message in run_fails(sources / source, *words)
 
 
 @pytest.mark.parametrize("target", ["1,2,3", "1,2,3,4,5", "a,b,c,d", "nan,1,2,3", ""])
@@ -140,12 +115,6 @@ def test_no_target_is_known(run_fails, tmp_path):
     line = run_fails(record(tmp_path / "bag", truths=()), status=2)
     assert "no truth to start on" in line
     assert "--target x,y,w,h" in line
-
-
-def test_an_unknown_variant(run_fails, bag):
-    line = run_fails(bag, variant="kalman")
-    assert "no variant 'kalman'" in line
-    assert "apf, pf" in line
 
 
 @pytest.mark.parametrize(
@@ -163,10 +132,6 @@ def test_an_unknown_variant(run_fails, bag):
 )
 def test_a_parameter_that_does_not_fit(run_fails, bag, assignment, message):
     assert message in run_fails(bag, "--set", assignment)
-
-
-def test_a_seed_out_of_range(run_fails, bag):
-    assert "seed must be from -1" in run_fails(bag, "--seed", "-2")
 
 
 @pytest.mark.parametrize(
@@ -206,44 +171,6 @@ def test_a_file_that_is_no_parameter_file(run_fails, bag, tmp_path, text, messag
     assert message in run_fails(bag, "--params", path)
 
 
-def test_no_such_parameter_file(run_fails, bag, tmp_path):
-    assert "cannot read the parameter file" in run_fails(bag, "--params", tmp_path / "none.yaml")
-
-
-def test_truth_of_another_time(run_fails, tmp_path):
-    # The estimates are worth keeping where a target was given; here none could be made.
-    line = run_fails(record(tmp_path / "bag", count=5, truths=()), "--max-diff", "-1",
-                     "--target", TARGET)  # fmt: skip
-    assert "seconds >= 0" in line
-
-
-def test_an_output_that_is_a_file(fails, bag, tmp_path):
-    (tmp_path / "out").touch()
-    line = fails("run", bag, "--variant", "apf", "-o", tmp_path / "out")
-    assert f"{tmp_path / 'out'} is a file" in line
-
-
-def test_an_output_below_a_file(fails, bag, tmp_path):
-    (tmp_path / "file").touch()
-    line = fails("run", bag, "--variant", "apf", "-o", tmp_path / "file" / "out")
-    assert "cannot write" in line
-    assert str(tmp_path / "file" / "out") in line
-
-
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
-def test_an_output_that_may_not_be_written(fails, bag, tmp_path):
-    locked = tmp_path / "locked"
-    locked.mkdir(mode=0o500)
-    line = fails("run", bag, "--variant", "apf", "-o", locked)
-    assert f"cannot write {locked}: Permission denied" in line
-
-
-def test_an_unknown_scene(fails, tmp_path):
-    line = fails("synth", "moon", tmp_path / "out")
-    assert "no scene 'moon'" in line
-    assert "bar, highway" in line
-
-
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -258,39 +185,27 @@ def test_a_scene_setting_that_does_not_fit(fails, tmp_path, words, message):
     assert not (tmp_path / "out").exists()
 
 
-def test_synth_without_a_scene_is_wrong_usage(fails):
-    assert "SCENE and OUT" in fails("synth", status=2)
-
-
-def test_synth_into_a_folder_with_something_in_it(fails, tmp_path):
-    (tmp_path / "mine.txt").touch()
-    assert "is not empty" in fails("synth", "bar", tmp_path)
-
-
-def test_import_of_what_is_not_there(fails, tmp_path):
-    line = fails("import", tmp_path / "none.mp4", tmp_path / "out")
-    assert str(tmp_path / "none.mp4") in line
-
-
-def test_import_of_what_is_no_video(fails, tmp_path):
-    (tmp_path / "notes.mp4").write_text("no video")
-    assert "notes.mp4" in fails("import", tmp_path / "notes.mp4", tmp_path / "out")
-    assert not (tmp_path / "out").exists()
-
-
 @pytest.mark.parametrize(
     ("words", "told", "status"),
     [
         (("runn", "x"), "there is no verb 'runn' (did you mean 'run'?); the verbs are demo", 2),
         (("dance",), "there is no verb 'dance'; the verbs are demo", 2),
+        (("synth",), "synth needs SCENE and OUT", 2),
+        (("synth", "moon", "out"), "no scene 'moon'; choose one of bar, ", 1),
+        (("synth", "bar", "."), "is not empty; give --overwrite", 1),
+        (("import", "none.mp4", "out"), "none.mp4", 1),
+        (("import", "notes.mp4", "out"), "notes.mp4", 1),
         (("synth", "bars2", "out"), "no scene 'bars2' (did you mean 'bars'?)", 1),
         (("synth", "trafic-pair", "out"), "'trafic-pair' (did you mean 'traffic-pair'?)", 1),
         (("synth", "bar", "out", "--set", "widht=3"), "setting 'widht' (did you mean 'width'?)", 1),
         (("params", "mfps"), "no variant 'mfps' (did you mean 'mfpf'?)", 1),
     ],
 )
-def test_a_mistyped_name_is_answered_with_the_one_meant(fails, words, told, status):
+def test_other_mistakes_leave_nothing(fails, tmp_path, monkeypatch, words, told, status):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "notes.mp4").write_text("no video")
     assert told in fails(*words, status=status)
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_file_for_another_variant_is_named_as_such(run_fails, bag, tmp_path):

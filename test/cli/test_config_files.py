@@ -30,7 +30,7 @@ def nowhere(monkeypatch, tmp_path):
     """Code without any install around it, in tmp_path/code."""
     code = tmp_path / "code" / "vehicle_pf_tracker" / "cli" / "config_files.py"
     monkeypatch.setattr(params, "__file__", str(code))
-    monkeypatch.setattr(params, "_ROOT", tmp_path / "code")
+    monkeypatch.setattr(params, "ROOT", tmp_path / "code")
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     return tmp_path
 

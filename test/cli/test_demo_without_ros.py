@@ -87,7 +87,7 @@ def test_kernels_are_ready_before_nodes_start(tmp_path, monkeypatch, capsys, lon
     monkeypatch.setattr(demo, "takes_long", lambda _choice: long)
     monkeypatch.setattr(demo, "load_kernels", order.append)
     monkeypatch.setattr(demo, "absence_of_ros", lambda: "")
-    monkeypatch.setattr(demo, "_record", lambda _path: None)
+    monkeypatch.setattr(demo, "record", lambda _path: None)
 
     def through_ros(_recording):
         order.append("nodes")
@@ -116,8 +116,3 @@ def test_a_missing_module_of_our_own_is_not_taken_for_missing_ros(monkeypatch):
     monkeypatch.setattr(demo, "import_module", broken)
     with pytest.raises(ModuleNotFoundError):
         demo.absence_of_ros()
-
-
-def test_the_contestants_are_those_of_the_readme():
-    assert list(demo.CONTESTANTS) == ["fusion", "apf", "pf"]
-    assert set(demo.IN_VIDEO) <= set(demo.CONTESTANTS)

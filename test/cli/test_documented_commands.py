@@ -24,7 +24,7 @@ import numpy as np
 import pytest
 
 import vehicle_pf_tracker
-from vehicle_pf_tracker.cli.main import _parser, main
+from vehicle_pf_tracker.cli.main import main, make_parser
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.registry import NODES
@@ -75,13 +75,13 @@ LAUNCHES = commands("ros2 launch vehicle_pf_tracker", code_lines)
 
 @pytest.mark.parametrize("words", COMMANDS)
 def test_the_command_is_understood(words):
-    assert _parser(words).parse_args(words).command[1:] == words
+    assert make_parser(words).parse_args(words).command[1:] == words
 
 
 @pytest.mark.parametrize("words", commands(PROGRAM, mentions))
 def test_the_command_in_a_sentence_is_understood_as_far_as_it_goes(words, capsys):
     try:
-        _parser(words).parse_args(words)
+        make_parser(words).parse_args(words)
     except SystemExit:
         message = capsys.readouterr().err.splitlines()[-1]
         assert "the following arguments are required" in message or "expected one" in message

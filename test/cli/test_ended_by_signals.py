@@ -12,8 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Commands that a signal ends in the middle leave nothing, and end by that signal."""
+"""Commands that a signal ends leave nothing half done, end by that signal, and can go on."""
 
+import csv
 import os
 import signal
 import subprocess
@@ -21,6 +22,7 @@ import sys
 import time
 
 import pytest
+from small_recordings import record
 from unmeasured import unmeasured_environment
 
 from vehicle_pf_tracker.cli.main import main
@@ -32,7 +34,7 @@ CODE = (
     "signal.signal(signal.SIGHUP, signal.SIG_DFL)\n"
     "from vehicle_pf_tracker.cli.main import main; sys.exit(main())"
 )
-ENDINGS = {signal.SIGINT: 130, signal.SIGTERM: -signal.SIGTERM, signal.SIGHUP: -signal.SIGHUP}
+ENDINGS = {signal.SIGINT: 130, **{n: -n for n in (signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)}}
 
 
 @pytest.fixture(scope="module")
@@ -49,15 +51,15 @@ def has_begun(folder):
     return any(recordings) or any(images) or any(folder.glob(".*.mp4"))
 
 
-def end_in_the_middle(folder, number, *words):
-    """Run a command, send it a signal when its hidden file has some data; return what is left."""
+def signalled(folder, number, has_begun, *words):
+    """Run a command in `folder`, send it a signal when it has begun; return what it printed."""
     process = subprocess.Popen(
         [sys.executable, "-c", CODE, *words], stderr=subprocess.PIPE, text=True, cwd=folder,
         env=unmeasured_environment(),
     )  # fmt: skip
     try:
         deadline = time.monotonic() + 60
-        while not has_begun(folder):
+        while not has_begun():
             assert process.poll() is None, process.communicate()
             assert time.monotonic() < deadline
             time.sleep(0.002)
@@ -67,10 +69,16 @@ def end_in_the_middle(folder, number, *words):
         process.kill()
     assert "Traceback" not in told
     assert process.returncode == ENDINGS[number]
+    return told
+
+
+def end_in_the_middle(folder, number, *words):
+    """Send a signal when the command's hidden file has some data; return what is left."""
+    signalled(folder, number, lambda: has_begun(folder), *words)
     return sorted(path.name for path in folder.iterdir())
 
 
-@pytest.mark.parametrize("number", ENDINGS)
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_scene_that_is_not_done_leaves_nothing(tmp_path, number):
     assert end_in_the_middle(tmp_path, number, "synth", "highway", "rec") == []
 
@@ -106,3 +114,34 @@ def test_a_second_signal_would_end_the_process_at_once():
                 assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+def estimates(folder):
+    return {
+        str(path.relative_to(folder)): [
+            {name: text for name, text in row.items() if name != "step_ms"}
+            for row in csv.DictReader(path.open())
+        ]
+        for path in sorted(folder.glob("cells/*/*/seed-*/estimates.csv"))
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_what_was_ended_goes_on_and_comes_out_the_same(tmp_path, number):
+    record(tmp_path / "bag")
+    words = ["evaluate", str(tmp_path / "bag"), "--variants", "pf,ms", "--seeds", "60"]
+    words += ["--no-images", "--workers", "2", "-o"]
+    ended, whole = tmp_path / "ended", tmp_path / "whole"
+    told = signalled(tmp_path, number, lambda: len(estimates(ended)) >= 5, *words, str(ended))
+    assert ("interrupted; run the same command to resume" in told) == (number == signal.SIGINT)
+    before = {
+        path: path.stat().st_mtime_ns for path in ended.glob("cells/*/*/seed-*/estimates.csv")
+    }
+    assert 5 <= len(before) < 61
+    assert not (ended / "report.html").exists()
+    assert main([*words, str(ended)]) == 0
+    assert {path: path.stat().st_mtime_ns for path in before} == before
+    assert main([*words, str(whole)]) == 0
+    assert len(estimates(whole)) == 61
+    assert estimates(ended) == estimates(whole)

@@ -69,7 +69,7 @@ def test_a_comparison_is_written_and_shown(folder, tmp_path, monkeypatch, capsys
     ("words", "status", "sentence"),
     [
         (["--traffic", "{folder}", "--timing"], 2, "--timing does not go with --traffic"),
-        (["--traffic", "{folder}", "--stress", "quick"], 2, "--stress does not go with --traffic"),
+        (["{folder}", "--stress", "quick"], 2, "the stress battery is no option of evaluate"),
         (["{folder}", "--perturbations", "none"], 2, "--perturbations does not go without --traf"),
         (["--traffic", "{folder}", "--detections", "god"], 1, "there are no detections 'god' (did"),
         (["--traffic", "{folder}", "--perturbations", "x"], 1, "there are no perturbations 'x'"),

@@ -15,7 +15,7 @@
 import cv2
 import numpy as np
 import pytest
-from small_recordings import COUNT, box_of, frame_folder, frame_of
+from small_recordings import COUNT, box_of, frame_folder
 
 from vehicle_pf_tracker.cli.console import megabytes
 from vehicle_pf_tracker.cli.main import main
@@ -50,29 +50,6 @@ def test_the_size_of_raw_images_is_a_bound(tmp_path, capsys):
     call("import", source, tmp_path / "bag", "--format", "raw")
     pixels = 12 * 96 * 64 * 3 / 1e6
     assert f"will take up to {pixels:.2g} MB\n" in capsys.readouterr().out
-
-
-def test_the_format_can_be_chosen_and_a_recording_replaced(tmp_path, capsys):
-    source = frame_folder(tmp_path / "source")
-    call("import", source, tmp_path / "bag")
-    assert main(["import", str(source), str(tmp_path / "bag")]) == 1
-    assert "is not empty; give --overwrite to" in capsys.readouterr().err
-    call("import", source, tmp_path / "bag", "--format", "raw", "--overwrite")
-    assert Recording(tmp_path / "bag").image_type == "sensor_msgs/msg/Image"
-
-
-def test_a_video_file_becomes_a_recording(tmp_path, capsys):
-    video = cv2.VideoWriter(
-        str(tmp_path / "a.avi"), cv2.VideoWriter_fourcc(*"MJPG"), 20.0, (96, 64)
-    )
-    if not video.isOpened():
-        pytest.skip("this OpenCV writes no MJPG")
-    for index in range(5):
-        video.write(np.ascontiguousarray(frame_of(index)[:, :, ::-1]))
-    video.release()
-    call("import", tmp_path / "a.avi", tmp_path / "bag")
-    assert Recording(tmp_path / "bag").frame_count == 5
-    assert "5 frames of 96x64 px at 20 frames/s, 0 with truth" in capsys.readouterr().out
 
 
 def test_a_scene_becomes_a_recording_with_its_frames_and_truth(tmp_path, capsys):
@@ -138,6 +115,8 @@ def test_the_list_names_scenes_and_settings(capsys):
     out = capsys.readouterr().out
     assert all(f"{name}: {kind.summary}" in out for name, kind in SCENES.items())
     assert "  width=30.0 [px, from 0 to 120]: " in out
+    assert "traffic-pair: a car overtakes behind a lorry, which hides it\n" in out
+    assert "  the settings of traffic with vehicles=2, directions=1, " in out
 
 
 def test_traffic_becomes_a_folder_of_mot_challenge(tmp_path, capsys):
@@ -155,14 +134,6 @@ def test_traffic_becomes_a_folder_of_mot_challenge(tmp_path, capsys):
 def test_traffic_becomes_nothing_else(tmp_path, capsys, words):
     assert main(["synth", "traffic-pair", str(tmp_path / words[0]), *words[1:]]) == 2
     assert "is written as a new MOTChallenge folder" in capsys.readouterr().err
-
-
-def test_the_list_names_traffic(capsys):
-    call("synth", "--list")
-    out = capsys.readouterr().out
-    assert "traffic-pair: a car overtakes behind a lorry, which hides it\n" in out
-    assert "  the settings of traffic with vehicles=2, directions=1, " in out
-    assert "  vehicles=20 [from 2 to 80]: more vehicles in both directions together" in out
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ from small_recordings import COUNT, TARGET, frame_of, record
 
 from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.cli.targets import parse_target
+from vehicle_pf_tracker.cli.tracking_options import parse_target
 
 HOLD = """
 import sys
@@ -217,21 +217,3 @@ def test_a_lock_ends_with_its_process(hold, here):
     assert (here / "out" / ".lock").exists()
     assert main(ONCE_MORE["run"]) == 0
     assert not (here / "out" / ".lock").exists()
-
-
-def test_two_runs_at_one_time(here):
-    code = "import sys; from vehicle_pf_tracker.cli.main import main; sys.exit(main())"
-    words = [sys.executable, "-c", code, "pick", "bag", "-o", "picked.yaml"]
-    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
-    environment.pop("WAYLAND_DISPLAY", None)
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    with subprocess.Popen(words, env=environment, **pipes) as first:
-        try:
-            assert first.stdout.readline().startswith("open http://127.0.0.1:")
-            second = subprocess.run(
-                words, check=False, env=environment, capture_output=True, text=True
-            )
-        finally:
-            first.kill()
-    assert second.returncode == 1
-    assert "another command is at work in picked.yaml" in second.stderr

@@ -76,10 +76,3 @@ def test_markdown_has_a_row_for_each_parameter(capsys):
     assert rule == "| --- | --- | --- | --- | --- | --- | --- |"
     assert {line.count(" | ") for line in (head, rule, *rows)} == {6}
     assert any(row.startswith("| `sigma` | 8.0 | from 0.01 to 1000 | px/frame |") for row in rows)
-
-
-def test_an_unknown_variant_is_named_with_the_known_ones(capsys):
-    assert main(["params", "kalman"]) == 1
-    error = capsys.readouterr().err
-    assert "no variant 'kalman'" in error
-    assert "apf, pf" in error

@@ -26,10 +26,10 @@ import cv2
 import pytest
 from small_recordings import COUNT, frame_folder, frame_of, record
 
-from vehicle_pf_tracker.cli import picking
+from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.cli.picking import BOXES, FrameStore, PickingServer
-from vehicle_pf_tracker.cli.targets import read_targets
+from vehicle_pf_tracker.cli.pick import BOXES, FrameStore, PickingServer
+from vehicle_pf_tracker.cli.tracking_options import read_targets
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.source import open_source
@@ -51,7 +51,7 @@ def answered(monkeypatch):
             thread.start()
 
         monkeypatch.setenv("DISPLAY", ":0")
-        monkeypatch.setattr(picking.webbrowser, "open", answer)
+        monkeypatch.setattr(pick.webbrowser, "open", answer)
 
     return use
 
@@ -173,7 +173,7 @@ def test_a_browser_that_hangs_up_is_not_a_fault(server, capsys):
 def test_without_a_display_no_browser_is_started(monkeypatch, tmp_path, capsys):
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    monkeypatch.setattr(picking.webbrowser, "open", lambda url: pytest.fail("opened"))
+    monkeypatch.setattr(pick.webbrowser, "open", lambda url: pytest.fail("opened"))
     monkeypatch.setattr(PickingServer, "serve_forever", lambda server, poll_interval: None)
     assert main(["pick", str(record(tmp_path / "bag"))]) == 2
     assert "open http://127.0.0.1:" in capsys.readouterr().out

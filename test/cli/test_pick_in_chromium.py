@@ -19,8 +19,8 @@ from pathlib import Path
 
 from small_recordings import COUNT, record
 
-from vehicle_pf_tracker.cli import picking
-from vehicle_pf_tracker.cli.picking import BOXES, POINTS, FrameStore, PickingServer
+from vehicle_pf_tracker.cli import pick
+from vehicle_pf_tracker.cli.pick import BOXES, POINTS, FrameStore, PickingServer
 from vehicle_pf_tracker.recordings.source import open_source
 
 _HANDS = """
@@ -43,7 +43,7 @@ _HANDS = """
 """
 
 
-class DrivenHandler(picking._Handler):
+class DrivenHandler(pick.PageHandler):
     """Serves the page with a script that does what a user would."""
 
     script = ""
@@ -52,7 +52,7 @@ class DrivenHandler(picking._Handler):
         if self._asked() != "driven":
             super().do_GET()
             return
-        page = Path(picking.__file__).with_name("pick.html").read_text(encoding="utf-8")
+        page = Path(pick.__file__).with_name("pick.html").read_text(encoding="utf-8")
         driven = page.replace("</body>", f"<script>{_HANDS}{self.script}</script></body>")
         self._answer("text/html; charset=utf-8", driven.encode())
 

@@ -12,9 +12,17 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-import io
+"""Progress: a bar on a terminal, plain lines at intervals elsewhere."""
 
-from vehicle_pf_tracker.cli.console import counting
+import io
+import time
+
+import pytest
+
+from vehicle_pf_tracker.cli.console import counting, shown_progress, stages, telling
+from vehicle_pf_tracker.cli.replay import ReplayWords
+from vehicle_pf_tracker.offline import processes
+from vehicle_pf_tracker.ros.replay import replay_options
 
 
 class Terminal(io.StringIO):
@@ -22,27 +30,97 @@ class Terminal(io.StringIO):
         return True
 
 
+def lines(view, reports):
+    """Show (time, report) in turn; return what was written to a file."""
+    now, stream = [0.0], io.StringIO()
+    with view(stream, lambda: now[0]) as show:
+        for moment, report in reports:
+            now[0] = moment
+            show(*report)
+    return stream.getvalue().splitlines()
+
+
+def frames(stream, clock):
+    return counting("tracked", stream, clock)
+
+
+def runs(stream, clock):
+    return telling("apf-fig1", stream, clock)
+
+
+def report_stages(stream, clock):
+    return stages("report", stream, clock)
+
+
+def replay(stream, clock):
+    return shown_progress(ReplayWords(), stream, clock)
+
+
+def replayed(*moments):
+    """Lines of a replay that lasts 20 s at (time, frames, position)."""
+    reports = [(at, (replay_options.Progress(n, where, 20.0),)) for at, n, where in moments]
+    return lines(replay, reports)
+
+
 def test_plain_lines_come_after_two_seconds_and_every_five():
-    now, out = [0.0], io.StringIO()
-    with counting("tracked", out, lambda: now[0]) as progress:
-        for done in range(1, 13):
-            now[0] += 1.0
-            progress(done, 12)
-    assert out.getvalue() == (
-        "tracked 2 of 12 frames\ntracked 7 of 12 frames\ntracked 12 of 12 frames\n"
-    )
+    assert lines(frames, [(float(done), (done, 12)) for done in range(1, 13)]) == [
+        "tracked 2 of 12 frames, about 10 s left",
+        "tracked 7 of 12 frames, about 5 s left",
+        "tracked 12 of 12 frames",
+    ]
 
 
 def test_where_the_total_is_unknown_the_line_says_less():
-    now, out = [0.0], io.StringIO()
-    with counting("imported", out, lambda: now[0]) as progress:
-        now[0] = 9.0
-        progress(7, None)
-    assert out.getvalue() == "imported 7 frames\n"
+    assert lines(frames, [(9.0, (7, None))]) == ["tracked 7 frames"]
 
 
-def test_a_terminal_gets_a_bar():
-    out = Terminal()
-    with counting("tracked", out) as progress:
-        progress(3, 12)
-    assert "3/12" in out.getvalue()
+def test_runs_are_told_with_the_time_left_and_those_under_way():
+    reports = [
+        processes.Progress(0, 8, ("bar PF",)),
+        processes.Progress(4, 8, ("bar PF", "bar MS")),
+        processes.Progress(7, 8, tuple("abcdef")),
+    ]
+    assert lines(runs, [(10.0 * n, (one,)) for n, one in enumerate(reports, start=1)]) == [
+        "apf-fig1: 0 of 8 runs done, time left unknown; running bar PF",
+        "apf-fig1: 4 of 8 runs done, about 20 s left; running bar PF, bar MS",
+        "apf-fig1: 7 of 8 runs done, about 4 s left; running a, b, c, d, 2 more",
+    ]
+
+
+def test_stages_of_quick_work_are_not_told():
+    moments = [0.0, 1.9, 2.0, 3.0, 6.9, 7.0]
+    told = lines(report_stages, [(at, (f"stage at {at}",)) for at in moments])
+    assert told == ["report: stage at 2.0", "report: stage at 7.0"]
+
+
+def test_the_rate_of_a_replay_begins_with_its_first_frame():
+    assert replayed((100.0, 1, 0.0), (102.0, 21, 2.0), (106.0, 61, 6.0)) == [
+        "1 frame",
+        " 30%, 61 frames, 10.0 frames/s, about 14 s left",
+    ]
+
+
+def test_the_time_left_is_that_of_the_present_pass_of_a_loop():
+    assert replayed((0.0, 1, 0.0), (1.5, 16, 20.0), (1.6, 17, 0.0), (3.6, 37, 10.0)) == [
+        " 50%, 37 frames, 10.0 frames/s, about 2 s left"
+    ]
+
+
+def test_a_recording_of_one_moment_has_no_end_to_wait_for():
+    assert replayed((0.0, 1, 0.0), (6.0, 2, 0.0)) == ["2 frames, 0.2 frames/s"]
+
+
+@pytest.mark.parametrize(
+    ("view", "report", "shown"),
+    [
+        (frames, (3, 12), "tracked 3 of 12 frames"),
+        (runs, (processes.Progress(1, 2, ("[a]",)),), "running [a]"),
+        (report_stages, ("drawing the page",), "report: drawing the page"),
+        (replay, (replay_options.Progress(41, 10.0, 20.0),), "50%, 41 frames"),
+    ],
+)
+def test_a_terminal_shows_a_bar(view, report, shown):
+    stream = Terminal()
+    with view(stream, time.monotonic) as show:
+        show(*report)
+    assert shown in stream.getvalue()

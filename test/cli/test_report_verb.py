@@ -25,8 +25,3 @@ def test_the_verb_writes_where_the_evaluation_is(tmp_path, capsys):
     assert main(["report", str(tmp_path), "--no-images"]) == 0
     assert capsys.readouterr().out == f"the report is {tmp_path / 'report.html'}\n"
     assert (tmp_path / "report.html").stat().st_size > 1000
-
-
-def test_usage(capsys):
-    assert main(["report"]) == 2
-    assert "DIR" in capsys.readouterr().err

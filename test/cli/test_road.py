@@ -75,7 +75,7 @@ def test_files_without_pairs(bag, tmp_path, text, capsys):
     path = tmp_path / "pairs.yaml"
     path.write_text(text)
     assert main(["road", "calibrate", bag, "--pairs", str(path)]) == 1
-    assert "no pairs of the form" in capsys.readouterr().err
+    assert "holds no pairs; it must read pairs:" in capsys.readouterr().err
 
 
 def test_a_grid_to_read_points_off(bag, tmp_path, capsys):

@@ -23,16 +23,14 @@ import threading
 import cv2
 import numpy as np
 import pytest
-import yaml
 from small_recordings import COUNT, TARGET, box_of, frame_folder, frame_of, record
 
 import vehicle_pf_tracker.cli.run as run_verb
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline import video_writer
+from vehicle_pf_tracker.offline import pictures
 from vehicle_pf_tracker.offline.estimates import read_estimates
-from vehicle_pf_tracker.offline.video_writer import has_encoder
 from vehicle_pf_tracker.recordings.cdr import deserialize
 from vehicle_pf_tracker.recordings.reader import Recording
 
@@ -74,11 +72,6 @@ def test_a_video_is_tracked_as_it_is(run, video, tmp_path, capsys):
     assert [row.stamp_ns for row in rows] == [10**9 + n * 40_000_000 for n in range(COUNT)]
     assert all(abs(row.x - box_of(n).centre[0]) < 4 for n, row in enumerate(rows))
     assert f"TRACKING 0:00.0-0:00.4; {COUNT} of {COUNT} frames tracked" in capsys.readouterr().out
-
-
-def test_a_folder_with_truth_starts_on_it_and_is_scored(run, tmp_path, capsys):
-    assert run(frame_folder(tmp_path / "frames")) == 0
-    assert "on target while visible" in capsys.readouterr().out
 
 
 def test_a_folder_and_its_import_give_the_same_estimates(run, tmp_path):
@@ -151,15 +144,6 @@ def test_a_target_is_corrected_in_the_middle(run, video, tmp_path):
     assert estimates(tmp_path / "out")[5].position == (68.0, 14.0)
 
 
-def test_targets_come_from_a_file(run, video, tmp_path):
-    path = tmp_path / "targets.yaml"
-    path.write_text(
-        yaml.safe_dump({"targets": [{"name": "a", "frame": 3, "box": [12, 24, 16, 12]}]})
-    )
-    assert run(video, "--targets", path) == 0
-    assert estimates(tmp_path / "out")[2].position == (20.0, 30.0)
-
-
 @pytest.mark.parametrize(
     "text", ["", "targets", "targets: 3", "targets: [{}]", "targets: [{box: 3}]", "a: [", "[1]"]
 )
@@ -196,7 +180,7 @@ def test_the_video_shows_every_frame_and_keeps_the_rate(run, video, tmp_path, ca
     assert len(frames) == COUNT
     assert frames[0].shape == (64, 96, 3)
     codec = int(shown.get(cv2.CAP_PROP_FOURCC)).to_bytes(4, "little")
-    if has_encoder():
+    if pictures.has_encoder():
         assert codec in (b"h264", b"avc1")
     else:
         assert "browsers do not play" in capsys.readouterr().err
@@ -219,17 +203,17 @@ def little_space():
 
 
 @pytest.mark.parametrize("encoder", [False, pytest.param(True, marks=pytest.mark.skipif(
-    not has_encoder(), reason="PyAV is an extra"))])  # fmt: skip
+    not pictures.has_encoder(), reason="PyAV is an extra"))])  # fmt: skip
 def test_a_video_that_finds_no_space_is_an_error_and_is_not_left(
     tmp_path, monkeypatch, little_space, encoder
 ):
-    monkeypatch.setattr(video_writer, "has_encoder", lambda: encoder)
+    monkeypatch.setattr(pictures, "has_encoder", lambda: encoder)
     path = tmp_path / "made.mp4"
     noise = np.random.default_rng(0).integers(0, 256, (30, 120, 160, 3), np.uint8)
     little_space()
     with (
         pytest.raises(InputError, match=f"cannot write {path}"),
-        video_writer.video_writer(path, (160, 120), 25.0) as writer,
+        pictures.video_writer(path, (160, 120), 25.0) as writer,
     ):
         for frame in noise:
             writer.write(frame)
@@ -312,8 +296,7 @@ def test_what_was_tracked_until_a_signal_is_kept_and_said(
 def test_without_the_encoder_the_video_is_written_and_the_remedy_said(
     run, video, tmp_path, monkeypatch, capsys
 ):
-    for module in (run_verb, video_writer):
-        monkeypatch.setattr(module, "has_encoder", lambda: False)
+    monkeypatch.setattr(pictures, "has_encoder", lambda: False)
     made = tmp_path / "made.mp4"
     assert run(video, "--target", TARGET, "--video", made) == 0
     assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err
@@ -352,11 +335,3 @@ def test_a_recorded_run_of_one_target_keeps_the_truth_of_its_part(run, tmp_path)
     assert [truth.stamp_ns for truth in truths] == [found.stamp_ns for found in images]
     assert len(images) == COUNT - 2
     assert annotations(Recording(bag), "/pf_tracker/annotations")[0].startswith("TRACKING")
-
-
-def test_a_recorded_run_leaves_its_source_and_its_results_alone(run, tmp_path, capsys):
-    source = record(tmp_path / "bag")
-    for taken, reason in ((source, "would change the input"), (tmp_path / "out", "two outputs")):
-        assert run(source, "--recording", taken) == 1
-        assert reason in capsys.readouterr().err
-    assert Recording(source).frame_count == COUNT

@@ -19,9 +19,9 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.offline.contact_sheet import THUMB_WIDTH, ContactSheet
 from vehicle_pf_tracker.offline.drawing import COLOURS, Annotator, annotated
 from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.offline.pictures import THUMB_WIDTH, ContactSheet
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 BLACK = np.zeros((120, 160, 3), np.uint8)

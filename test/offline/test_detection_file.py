@@ -14,13 +14,10 @@
 
 """Reading of MOTChallenge detections: what they hold, and the sentence for a bad row."""
 
-import time
-
-import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.traffic_files import DetectionFile
+from vehicle_pf_tracker.offline.detectors import DetectionFile
 
 
 @pytest.fixture
@@ -110,22 +107,3 @@ def test_what_is_no_text_or_not_there_is_one_sentence(read, tmp_path):
         DetectionFile(tmp_path / "none.txt")
     with pytest.raises(InputError, match="cannot read the detections"):
         DetectionFile(tmp_path)
-
-
-def test_the_time_to_read_a_file_grows_with_its_length(tmp_path):
-    rng = np.random.default_rng(0)
-
-    def seconds(count):
-        frames, boxes = rng.integers(1, 5001, count), rng.uniform(1, 300, (count, 4)).tolist()
-        path = tmp_path / "det.txt"
-        rows = (
-            f"{frame},-1,{','.join(map(str, box))},0.5,-1,-1,-1\n"
-            for frame, box in zip(frames, boxes, strict=True)
-        )
-        path.write_text("".join(rows))
-        begin = time.process_time()
-        found = DetectionFile(path)
-        assert sum(len(found.of(frame)) for frame in range(1, 5001)) == count
-        return time.process_time() - begin
-
-    assert seconds(80_000) < 10 * seconds(20_000)  # four times as long, not sixteen

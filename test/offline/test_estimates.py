@@ -12,7 +12,6 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-import math
 
 import pytest
 from hypothesis import given
@@ -49,10 +48,6 @@ rows = st.builds(
 )
 
 
-def test_header_is_the_agreed_one():
-    assert ",".join(COLUMNS) == "frame,stamp_ns,x,y,width,height,mode,confidence,n_eff,step_ms"
-
-
 @given(st.lists(rows, max_size=5))
 def test_every_digit_survives_the_file(tmp_path_factory, written):
     path = tmp_path_factory.mktemp("rows") / "estimates.csv"
@@ -64,7 +59,8 @@ def test_a_row_as_text(tmp_path):
     path = tmp_path / "estimates.csv"
     row = EstimateRow(1, 2, 0.1 + 0.2, 4.0, 5.0, 6.0, "LOST", 0.5, 100.0, 1.25)
     write_estimates(path, [row, EstimateRow.without(2, 3, WAITING)])
-    assert path.read_bytes().decode().splitlines()[1:] == [
+    assert path.read_bytes().decode().splitlines() == [
+        "frame,stamp_ns,x,y,width,height,mode,confidence,n_eff,step_ms",
         "1,2,0.30000000000000004,4.0,5.0,6.0,LOST,0.5,100.0,1.25",
         "2,3,,,,,WAITING,,,",
     ]
@@ -82,11 +78,6 @@ def test_scalars_as_numbers_and_as_text_make_the_same_row():
 def test_a_waiting_row_has_no_numbers():
     row = EstimateRow.from_scalars(1, 0, {"mode": WAITING, "x": ""})
     assert (row.x, row.width, row.confidence, row.n_eff, row.step_ms, row.position) == (None,) * 6
-
-
-def test_not_a_number_survives(tmp_path):
-    write_estimates(tmp_path / "e.csv", [EstimateRow(1, 2, 3, 4, 5, 6, "LOST", math.nan, 8, 9)])
-    assert math.isnan(read_estimates(tmp_path / "e.csv")[0].confidence)
 
 
 def test_scalars_without_a_mode_are_refused():
@@ -110,9 +101,6 @@ def test_broken_files_are_named(tmp_path, text, message):
     with pytest.raises(InputError, match=message) as caught:
         read_estimates(path)
     assert str(path) in str(caught.value)
-
-
-def test_no_such_file_is_named(tmp_path):
     with pytest.raises(InputError, match=r"none\.csv: No such file"):
         read_estimates(tmp_path / "none.csv")
 

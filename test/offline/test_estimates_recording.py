@@ -71,13 +71,6 @@ def test_images_and_truth_are_copied_as_they_are(recording, tmp_path):
     assert all((a.frame == b.frame).all() for a, b in zip(copied, original, strict=True))
 
 
-def test_estimates_of_several_nodes_have_topics_of_their_own(recording, tmp_path):
-    runs = {"apf_tracker": [row(0, x=1.0)], "pf_tracker": [row(0, x=2.0)]}
-    write_with_estimates(tmp_path / "all", recording, runs)
-    for name, x in (("apf_tracker", 1.0), ("pf_tracker", 2.0)):
-        assert [p.point.x for _, p in read(tmp_path / "all", f"/{name}/position")] == [x]
-
-
 def test_annotations_are_stamped_as_their_images_and_name_the_node(recording, tmp_path):
     rows = {"apf_tracker": [row(0, x=1.0), row(1, "LOST", 2.0)], "pf_tracker": [row(0, "WAITING")]}
     write_with_estimates(tmp_path / "all", recording, rows)

@@ -16,8 +16,7 @@
 
 import pytest
 
-from vehicle_pf_tracker.offline.contact_sheet import clock_words, mode_spans, summary
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.offline.estimates import EstimateRow, clock_words, summary
 
 
 def rows(modes, period=100_000_000):
@@ -26,13 +25,6 @@ def rows(modes, period=100_000_000):
         EstimateRow.without(number, 5 * 10**9 + (number - 1) * period, letters[letter])
         for number, letter in enumerate(modes, start=1)
     ]
-
-
-def test_spans_join_frames_of_one_mode():
-    spans = mode_spans(rows("TTOT"))
-    assert [(s.mode[0], s.first.frame, s.last.frame) for s in spans] == [
-        ("T", 1, 2), ("O", 3, 3), ("T", 4, 4)
-    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(

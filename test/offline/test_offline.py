@@ -27,7 +27,6 @@ from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.failures import TrackerError
 from vehicle_pf_tracker.trackers.registry import VARIANTS
-from vehicle_pf_tracker.trackers.session import Session
 
 PF = VARIANTS["pf"]
 TARGET = with_target(SessionParameters(), box_of(0))
@@ -75,12 +74,6 @@ def test_a_broken_tracker_ends_the_run(monkeypatch):
         next(rows)
 
 
-def test_the_numbers_are_those_of_the_session():
-    session = Session(PF, PF.parameters(sigma=4.0), TARGET)
-    expected = [session.feed(frame, stamp).position for stamp, frame in drive()]
-    assert [row.position for row in tracker(TARGET).rows(drive())] == expected
-
-
 def test_the_same_seed_gives_the_same_rows_and_another_seed_others():
     def rows(seed):
         made = OfflineTracker(PF, PF.parameters(seed=seed), TARGET)
@@ -109,12 +102,6 @@ def test_waiting_changes_nothing_about_the_numbers():
 def test_the_first_truth_belongs_to_the_nearest_frame(shift_ms):
     shifted = Truth(stamp_of(3) + shift_ms * 1_000_000, box_of(3), Occlusion.NONE)
     made = tracker(first_truth=shifted)
-    list(made.rows(drive(6)))
-    assert made.start_frame == 4
-
-
-def test_of_several_frames_within_the_limit_the_nearest_is_taken():
-    made = tracker(first_truth=truth_of(3), max_diff=1.0)
     list(made.rows(drive(6)))
     assert made.start_frame == 4
 
@@ -172,10 +159,6 @@ def test_a_stray_before_the_start_is_rejected_too():
     frames[1] = (stamp_of(1), np.zeros((9, 9, 3), np.uint8))
     made = tracker(first_truth=truth_of(1))
     assert modes(made.rows(frames)) == [WAITING, REJECTED, "TRACKING", "TRACKING"]
-
-
-def test_no_frames_no_rows():
-    assert list(tracker(TARGET).rows([])) == []
 
 
 def test_frames_are_taken_one_by_one():

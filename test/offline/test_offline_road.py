@@ -14,7 +14,6 @@
 
 """Tracking a recording offline with a road."""
 
-import numpy as np
 import pytest
 from drive import box_of, drive
 
@@ -77,13 +76,3 @@ def test_what_comes_from_topics_is_for_nodes(road):
     values = {"pairs": PAIRS} if "from_tf" not in road else {}
     with pytest.raises(InputError, match="for nodes"):
         tracked(**values, **road)
-
-
-def test_rows_without_an_estimate_have_no_place():
-    settings = with_target(SessionParameters(road=RoadParameters(pairs=PAIRS)), box_of(0))
-    tracker = OfflineTracker(PF, PF.parameters(sigma=4.0), settings)
-    frames = list(drive())
-    frames[3] = frames[3][0], None
-    list(tracker.rows(frames))
-    assert tracker.road_columns["road_x"][3] is None
-    assert np.isfinite(tracker.road_columns["road_x"][4])

@@ -12,7 +12,6 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-import json
 import os
 
 import cv2
@@ -22,10 +21,7 @@ from drive import box_of, drive
 
 from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.offline.driver import OfflineTracker, with_target
-from vehicle_pf_tracker.offline.estimates import read_estimates
 from vehicle_pf_tracker.offline.output_files import write_json, write_text
 from vehicle_pf_tracker.offline.run_folder import RunFolder, RunInfo, describe_run
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
@@ -69,17 +65,6 @@ def test_the_drawn_seed_repeats_the_run(done):
     settings = with_target(SessionParameters(), box_of(0))
     again = OfflineTracker(PF, PF.parameters(seed=described["seed"]), settings).rows(drive(4))
     assert [row.position for row in again] == [row.position for row in rows]
-
-
-def test_the_three_files(tmp_path, done):
-    rows, described, _ = done
-    folder = RunFolder(tmp_path / "a" / "b")
-    folder.write_run(rows, described)
-    folder.write_metrics(measure(score_frames(rows, [])).to_json())
-    assert names_in(folder.path) == ["estimates.csv", "metrics.json", "run.json"]
-    assert read_estimates(folder.path / "estimates.csv") == rows
-    assert json.loads((folder.path / "run.json").read_text()) == described
-    assert json.loads((folder.path / "metrics.json").read_text())["frames"] == 4
 
 
 def test_metrics_of_an_earlier_run_are_not_left_beside_a_new_one(tmp_path, done):

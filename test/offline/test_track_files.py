@@ -22,7 +22,7 @@ import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.traffic_files import track_files
+from vehicle_pf_tracker.offline.traffic_results import track_files
 from vehicle_pf_tracker.trackers.traffic.counting import Crossing
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 
@@ -84,17 +84,6 @@ def test_crossings_are_rows_of_counts(tmp_path):
         "frame": "3", "stamp_ns": "95", "place": "north, left", "direction": "in", "id": "7",
         "label": "car", "mode": "OCCLUDED", "speed_px_s": "123.46", "speed_kmh": "",
     }  # fmt: skip
-
-
-def test_files_appear_whole_or_not_at_all(tmp_path):
-    def write_and_fail():
-        with track_files(tmp_path) as files:
-            files.write(1, 0, ALL)
-            raise RuntimeError
-
-    with pytest.raises(RuntimeError):
-        write_and_fail()
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_run_that_fails_leaves_the_earlier_one_and_one_that_does_not_replaces_all(tmp_path):

@@ -105,11 +105,3 @@ def test_lines_and_zones_are_drawn_with_their_counts():
         counter.update([vehicle(1, 200, bottom)], index)
     draw_counts(other, counter)
     assert (picture != other).any()  # 1 in
-
-
-def test_a_larger_picture_has_lines_at_their_places():
-    plan = CountingPlan((CountingLine("exit", (0.0, 50.0), (100.0, 50.0)),))
-    picture = BLACK.copy()
-    draw_counts(picture, Counter(plan), 3.0)
-    assert picture[150, 5:295].all()
-    assert not picture[50].any()

@@ -22,8 +22,8 @@ from failing import failing
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.traffic_files import TrackFiles
-from vehicle_pf_tracker.offline.traffic_following import Target, TrafficRun
+from vehicle_pf_tracker.offline.traffic_following import TrafficRun
+from vehicle_pf_tracker.offline.traffic_results import TrackFiles
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.failures import TrackerError
@@ -49,11 +49,9 @@ def driving(number):
 @pytest.fixture
 def follow():
     def call(stamps, *, unreadable=(), counter=None, targets=None, **options):
-        run = TrafficRun(
-            TrafficSession(TrafficTracker()), counter, targets=targets or {}, **options
-        )
+        run = TrafficRun(TrafficSession(TrafficTracker()), counter, **options)
         table, mot = io.StringIO(), io.StringIO()
-        run.follow(stamped(stamps, unreadable), TrackFiles(table, mot, None))
+        run.follow(stamped(stamps, unreadable), TrackFiles(table, mot, None), targets=targets or {})
         return run, table.getvalue().splitlines()[1:]
 
     return call
@@ -97,10 +95,7 @@ def test_a_recording_that_begins_again_counts_its_vehicles_again(follow):
 
 
 def test_a_name_stays_with_its_vehicle_when_the_tracker_starts_anew(follow, monkeypatch):
-    targets = {
-        2: [Target("van", Box(50, 50, 30, 20))],
-        8: [Target("van", Box(60, 60, 30, 20))],
-    }
+    targets = {"van": {2: Box(50, 50, 30, 20), 8: Box(60, 60, 30, 20)}}
     monkeypatch.setattr(TrafficTracker, "step", failing(TrafficTracker.step, {3, 4}))
     run, rows = follow([k * PERIOD_NS for k in range(10)], targets=targets)
     by_frame = {int(row.split(",")[0]): int(row.split(",")[2]) for row in rows}
@@ -117,8 +112,8 @@ def test_a_broken_tracker_ends_the_run(follow, monkeypatch):
 
 def test_a_name_that_comes_again_replaces_the_vehicle(follow):
     targets = {
-        2: [Target("van", Box(50, 50, 30, 20)), Target("1", Box(200, 100, 30, 20))],
-        5: [Target("van", Box(60, 60, 30, 20))],
+        "van": {2: Box(50, 50, 30, 20), 5: Box(60, 60, 30, 20)},
+        "1": {2: Box(200, 100, 30, 20)},
     }
     _, rows = follow([k * PERIOD_NS for k in range(8)], targets=targets)
     by_frame = {}
@@ -131,4 +126,4 @@ def test_a_name_that_comes_again_replaces_the_vehicle(follow):
 
 def test_a_target_outside_the_image_names_its_frame(follow):
     with pytest.raises(InputError, match="in frame 3, the target 500,5,10,10 has its centre"):
-        follow([k * PERIOD_NS for k in range(5)], targets={3: [Target("1", Box(500, 5, 10, 10))]})
+        follow([k * PERIOD_NS for k in range(5)], targets={"1": {3: Box(500, 5, 10, 10)}})

@@ -19,7 +19,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, identity_colour
-from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary, limited
+from vehicle_pf_tracker.offline.traffic_results import TrafficSummary, limited
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 MODES = {

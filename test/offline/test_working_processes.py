@@ -26,7 +26,7 @@ def test_one_that_ends_gives_its_status():
 
 
 def test_one_that_will_not_end_is_killed(monkeypatch):
-    monkeypatch.setattr(processes, "_PATIENCE", 0.1)
+    monkeypatch.setattr(processes, "PATIENCE", 0.1)
     deaf = (
         "import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN);"
         "print('deaf', flush=True); signal.pause()"

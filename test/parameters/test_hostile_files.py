@@ -22,8 +22,7 @@ import sys
 
 import pytest
 
-from vehicle_pf_tracker.core import address_space
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import LEAST_ADDRESS_SPACE, InputError
 from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.trackers.papers.apf import ApfParameters
@@ -108,7 +107,7 @@ def test_a_limit_that_libraries_crash_at_is_said(program):
     """Below it, compiling kernels ends in a segmentation fault."""
     code = f"from vehicle_pf_tracker.{program} import main; raise SystemExit(main(WORDS))"
     words = "['params', 'apf']" if program == "cli.main" else "'apf'"
-    limit = address_space._LEAST - 2**20
+    limit = LEAST_ADDRESS_SPACE - 2**20
 
     def under_limit():
         resource.setrlimit(resource.RLIMIT_AS, (limit, limit))

@@ -23,9 +23,8 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError
@@ -38,22 +37,10 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS
 SHELLS = ("bash", "zsh")
 INSTALL, PRINT = "--install-completion", "--print-completion"
 
-_NAMES = {
-    "--variant": tuple(VARIANTS),
-    "--variants": tuple(VARIANTS),
-}
+_NAMES = {"--variant": tuple(VARIANTS), "--variants": tuple(VARIANTS)}
 """Words after options whose parser takes any text."""
 _ARGUMENTS = {"params": tuple(VARIANTS), "synth": (*SCENES, *TRAFFIC_SCENES)}
 """Words that are no options, by verb."""
-
-
-@dataclass(frozen=True, slots=True)
-class VerbWords:
-    """Words of a verb: its options, the values of some of them, and its arguments."""
-
-    options: Sequence[str]
-    values: Mapping[str, Sequence[str]]
-    arguments: Sequence[str]
 
 
 def run(words: Sequence[str], verbs: Mapping[str, tuple[str, str]]) -> int:
@@ -70,8 +57,12 @@ def run(words: Sequence[str], verbs: Mapping[str, tuple[str, str]]) -> int:
     shell = rest[0] if rest else Path(os.environ.get("SHELL", "")).name
     if shell not in SHELLS or len(rest) > 1:
         raise UsageError(f"say for which shell: {action} {' or '.join(SHELLS)}")
-    found = {name: _words_of(name, module) for name, (module, _) in verbs.items()}
-    text = _filled({"bash": _BASH, "zsh": _ZSH}[shell], found)
+    text = {"bash": _BASH, "zsh": _ZSH}[shell].format(
+        program=PROGRAM,
+        function=PROGRAM.replace("-", "_"),
+        install=INSTALL,
+        cases="\n".join(_cases({name: _actions(module) for name, (module, _) in verbs.items()})),
+    )
     if action == PRINT:
         print(text, end="")
         return 0
@@ -82,23 +73,12 @@ def run(words: Sequence[str], verbs: Mapping[str, tuple[str, str]]) -> int:
     return 0
 
 
-def _words_of(verb: str, module: str) -> VerbWords:
+def _actions(module: str) -> list[argparse.Action]:
+    """Return the options and arguments of a verb; none if it needs an extra that is missing."""
     parser = argparse.ArgumentParser()
-    with suppress(ModuleNotFoundError):  # of an extra that is not installed, as the verb will say
+    with suppress(ModuleNotFoundError):
         add_options(parser, importlib.import_module(f"vehicle_pf_tracker.cli.{module}").Request)
-    options: list[str] = []
-    values: dict[str, Sequence[str]] = {}
-    arguments = list(_ARGUMENTS.get(verb, ()))
-    for action in parser._actions:  # argparse has no other way to list them
-        choices = tuple(map(str, action.choices or ()))
-        if not action.option_strings:
-            arguments += choices
-            continue
-        options += action.option_strings
-        for name in action.option_strings:
-            if known := choices or _NAMES.get(name, ()):
-                values[name] = known
-    return VerbWords(options, values, arguments)
+    return list(parser._actions)  # argparse has no other way to list them
 
 
 def _place(shell: str) -> tuple[Path, str]:
@@ -137,31 +117,29 @@ _{function} "$@"
 """
 
 
-def _filled(template: str, verbs: Mapping[str, VerbWords]) -> str:
-    return template.format(
-        program=PROGRAM,
-        function=PROGRAM.replace("-", "_"),
-        install=INSTALL,
-        cases="\n".join(_cases(verbs)),
-    )
-
-
-def _cases(verbs: Mapping[str, VerbWords]) -> Iterator[str]:
+def _cases(verbs: Mapping[str, Iterable[argparse.Action]]) -> Iterator[str]:
     """Write what sets `found` from `verb`, `before` and `word`, in the words that both shells know.
 
     Options are offered once a dash is there, so that files come first where files are meant.
     """
     yield "    case $verb in"
     yield f'        "") found="{" ".join([*verbs, "--help", "--version", INSTALL, PRINT])}" ;;'
-    for verb, one in verbs.items():
+    for verb, actions in verbs.items():
+        options: list[str] = []
+        arguments = list(_ARGUMENTS.get(verb, ()))
         yield f"        {verb})"
         yield "            case $before in"
-        for name, values in one.values.items():
-            yield f'                {name}) found="{" ".join(values)}" ;;'
+        for action in actions:
+            options += action.option_strings
+            choices = [*map(str, action.choices or ())]
+            arguments += [] if action.option_strings else choices
+            for name in action.option_strings:
+                if known := choices or _NAMES.get(name, ()):
+                    yield f'                {name}) found="{" ".join(known)}" ;;'
         yield "                *)"
         yield "                    case $word in"
-        yield f'                        -*) found="{" ".join(one.options)}" ;;'
-        yield f'                        *) found="{" ".join(one.arguments)}" ;;'
+        yield f'                        -*) found="{" ".join(options)}" ;;'
+        yield f'                        *) found="{" ".join(arguments)}" ;;'
         yield "                    esac ;;"
         yield "            esac ;;"
     yield "    esac"

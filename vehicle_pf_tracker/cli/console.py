@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Output of the verbs: results on stdout, everything else on stderr.
-
-Progress of work that is counted: a bar on a terminal, plain lines elsewhere.
-"""
+"""Output of the verbs: results on stdout, everything else on stderr."""
 
 from __future__ import annotations
 
@@ -23,21 +20,23 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TextIO, TypeAlias
-
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TextIO, TypeAlias, TypeVar
 
 if TYPE_CHECKING:
-    from rich.table import Table as RichTable
+    from rich.table import Table
 
     from vehicle_pf_tracker.evaluation.tables import Comparison
+    from vehicle_pf_tracker.offline.processes import OnProgress
+    from vehicle_pf_tracker.offline.processes import Progress as WorkProgress
 
 PROGRAM = "vehicle-pf-tracker"
 FAILED, USAGE, INTERRUPTED, PIPE_CLOSED = 1, 2, 130, 141
 """Exit statuses; the last two are those of a program that a signal ended."""
 _WIDE = 200
 """Columns of a table that is written to a file or a pipe, where lines may be long."""
+_SHOWN_RUNS = 4
+"""Names of runs in a line of progress: more do not fit a terminal of 100 columns."""
 
 
 class UsageError(Exception):
@@ -49,10 +48,15 @@ def tell_error(sentence: str, program: str = PROGRAM) -> None:
     print(f"{program}: error: {' '.join(sentence.split())}", file=sys.stderr, flush=True)
 
 
+def tell_notice(sentence: str) -> None:
+    """Print a notice as one line on stderr."""
+    print(f"{PROGRAM}: note: {sentence}", file=sys.stderr, flush=True)
+
+
 def tell_notices(sentences: Iterable[str]) -> None:
     """Print notices on stderr, one per line."""
     for sentence in sentences:
-        print(f"{PROGRAM}: note: {sentence}", file=sys.stderr, flush=True)
+        tell_notice(sentence)
 
 
 def show(table: Comparison) -> None:
@@ -73,7 +77,7 @@ def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: st
     print_table(table)
 
 
-def print_table(table: RichTable) -> None:
+def print_table(table: Table) -> None:
     """Print a table on stdout; not wrapped where that is not a terminal."""
     from rich.console import Console
 
@@ -89,66 +93,133 @@ def megabytes(count: int) -> str:
     return f"{size:.0f} MB" if size >= 100 else f"{float(f'{size:.2g}'):g} MB"
 
 
-OnProgress: TypeAlias = Callable[[int, int | None], None]
+OnFrames: TypeAlias = Callable[[int, int | None], None]
+"""Takes the numbers of frames done and of all, None if unknown."""
+Clock: TypeAlias = Callable[[], float]
+ReportT = TypeVar("ReportT")
+
 _FIRST_SECONDS, _LINE_SECONDS = 2.0, 5.0
 """Seconds before the first plain line and between two: quick work prints none, and long work does
 not fill a log."""
 
 
-class LineClock:
-    """Tells when a plain line of progress is due.
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """Words about work under way, and its share done (0 to 1), None if unknown."""
 
-    Parameters
-    ----------
-    now : float
-        Time at which the work begins, s.
-    """
-
-    def __init__(self, now: float) -> None:
-        self._next = now + _FIRST_SECONDS
-
-    def is_due(self, now: float) -> bool:
-        """Return whether a line is due; the next one is later then."""
-        if now < self._next:
-            return False
-        self._next = now + _LINE_SECONDS
-        return True
+    words: str
+    share: float | None = None
 
 
 @contextmanager
-def counting(
-    verb: str, stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
-) -> Iterator[OnProgress]:
-    """Return a function that takes the numbers of frames done and of all (None if unknown).
+def shown_progress(
+    describe: Callable[[ReportT, float], Progress],
+    stream: TextIO | None = None,
+    clock: Clock = time.monotonic,
+) -> Iterator[Callable[[ReportT], None]]:
+    """Return a function that shows reports: as a bar on a terminal, as plain lines elsewhere.
 
     Parameters
     ----------
-    verb : str
-        What is done to them, as in ``tracked``.
+    describe : callable
+        Makes the progress of a report and of the time since the beginning, s.
     stream : text stream or None
         Where to show it; None is standard error.
     clock : callable
         The monotonic clock in s.
     """
-    stream = stream or sys.stderr
+    stream, began = stream or sys.stderr, clock()
     if not stream.isatty():
-        yield _Lines(verb, stream, clock)
+        next_line = _FIRST_SECONDS
+
+        def print_line(report: ReportT) -> None:
+            nonlocal next_line
+            elapsed = clock() - began
+            progress = describe(report, elapsed)
+            if elapsed >= next_line:
+                next_line = elapsed + _LINE_SECONDS
+                print(progress.words, file=stream, flush=True)
+
+        yield print_line
         return
-    columns = (TextColumn(verb), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(file=stream), transient=True) as bar:
-        task = bar.add_task(verb, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn
+    from rich.progress import Progress as ProgressBar
+
+    columns = BarColumn(), TextColumn("{task.description}", markup=False)
+    with ProgressBar(*columns, console=Console(file=stream), transient=True) as bar:
+        task = bar.add_task("", total=None)
+
+        def move_bar(report: ReportT) -> None:
+            progress = describe(report, clock() - began)
+            total = None if progress.share is None else 1.0
+            bar.update(task, completed=progress.share, total=total, description=progress.words)
+
+        yield move_bar
 
 
-class _Lines:
-    def __init__(self, verb: str, stream: TextIO, clock: Callable[[], float]) -> None:
-        self._verb = verb
-        self._stream = stream
-        self._clock = clock
-        self._due = LineClock(clock())
+@contextmanager
+def counting(
+    verb: str, stream: TextIO | None = None, clock: Clock = time.monotonic
+) -> Iterator[OnFrames]:
+    """Return a function that shows how many frames are done; see `shown_progress`.
 
-    def __call__(self, done: int, total: int | None) -> None:
-        if not self._due.is_due(self._clock()):
-            return
-        of_all = "" if total is None else f" of {total}"
-        print(f"{self._verb} {done}{of_all} frames", file=self._stream, flush=True)
+    Parameters
+    ----------
+    verb : str
+        Participle of the work, as in ``tracked``.
+    stream : text stream or None
+        Where to show it; None is standard error.
+    clock : callable
+        The monotonic clock in s.
+    """
+
+    def describe(report: tuple[int, int | None], elapsed: float) -> Progress:
+        done, total = report
+        if not total:
+            return Progress(f"{verb} {done} frames")
+        left = f", {time_left(done / total, elapsed)}" if done < total else ""
+        return Progress(f"{verb} {done} of {total} frames{left}", done / total)
+
+    with shown_progress(describe, stream, clock) as show:
+        yield lambda done, total: show((done, total))
+
+
+@contextmanager
+def telling(
+    name: str, stream: TextIO | None = None, clock: Clock = time.monotonic
+) -> Iterator[OnProgress]:
+    """Return a function that shows the runs done and running; see `shown_progress`."""
+
+    def describe(report: WorkProgress, elapsed: float) -> Progress:
+        share = report.done / report.total if report.total else 1.0
+        shown, beyond = report.running[:_SHOWN_RUNS], len(report.running) - _SHOWN_RUNS
+        names = ", ".join([*shown, *([f"{beyond} more"] if beyond > 0 else [])])
+        running = f"; running {names}" if names else ""
+        left = time_left(share, elapsed)
+        words = f"{name}: {report.done} of {report.total} runs done, {left}{running}"
+        return Progress(words, share)
+
+    with shown_progress(describe, stream, clock) as show:
+        yield show
+
+
+@contextmanager
+def stages(
+    name: str, stream: TextIO | None = None, clock: Clock = time.monotonic
+) -> Iterator[Callable[[str], None]]:
+    """Return a function that shows the present stage of a work; see `shown_progress`."""
+
+    def describe(stage: str, _elapsed: float) -> Progress:
+        return Progress(f"{name}: {stage}")
+
+    with shown_progress(describe, stream, clock) as show:
+        yield show
+
+
+def time_left(share: float, seconds: float) -> str:
+    """Return the time that the rest takes, as words, if `share` (0 to 1) took `seconds`."""
+    if not share:
+        return "time left unknown"
+    left = seconds * (1 / share - 1)
+    return f"about {left:.0f} s left" if left < 100 else f"about {left / 60:.0f} min left"

@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`demo`: a synthetic scene, tracked through ROS and offline, scored against truth, and shown.
-
-Runs of the demo: its contestants offline, and through ROS where that is installed.
-"""
+"""`demo`: a synthetic scene, tracked through ROS and offline, scored against truth, and shown."""
 
 from __future__ import annotations
 
@@ -23,16 +20,14 @@ import itertools
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
-from itertools import tee
 from pathlib import Path
 from types import MappingProxyType
 
-from vehicle_pf_tracker.cli.console import counting, show, tell_notices
-from vehicle_pf_tracker.cli.replay import progress_view
-from vehicle_pf_tracker.cli.requests import option
-from vehicle_pf_tracker.cli.shared_options import OverwriteOption, natural
+from vehicle_pf_tracker.cli.console import OnFrames, counting, show, shown_progress, tell_notice
+from vehicle_pf_tracker.cli.replay import ReplayWords
+from vehicle_pf_tracker.cli.requests import OverwriteOption, natural, option
 from vehicle_pf_tracker.cli.synth import record_scene
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -41,15 +36,14 @@ from vehicle_pf_tracker.evaluation.plots import overview_figure, save
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
 from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
-from vehicle_pf_tracker.offline.driver import OfflineTracker
+from vehicle_pf_tracker.offline.driver import Numbered, OfflineTracker, follow
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import write_with_estimates
-from vehicle_pf_tracker.offline.following import Pictures, follow
 from vehicle_pf_tracker.offline.output_files import make_folder, write_text
+from vehicle_pf_tracker.offline.pictures import NO_ENCODER, Pictures, has_encoder
 from vehicle_pf_tracker.offline.run_folder import RunFolder, RunInfo, describe_run
-from vehicle_pf_tracker.offline.traffic_files import track_files
 from vehicle_pf_tracker.offline.traffic_following import TrafficRun
-from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, has_encoder
+from vehicle_pf_tracker.offline.traffic_results import track_files
 from vehicle_pf_tracker.parameters.table import Value, from_mapping
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import make_scene
@@ -78,10 +72,10 @@ CONTESTANTS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A tracker and its rows, one for each frame so far."""
+    """A tracker and its rows, one for each frame."""
 
     tracker: OfflineTracker
-    rows: list[EstimateRow] = field(default_factory=list)
+    rows: Sequence[EstimateRow]
 
 
 def absence_of_ros() -> str:
@@ -107,22 +101,24 @@ def offline_tracker(recording: Recording, name: str, seed: int = SHOWN_SEED) -> 
 
 def track_offline(recording: Recording, more_seeds: int) -> dict[str, list[Run]]:
     """Track with every contestant, first with the seed shown; each frame is decoded once."""
-    seeds = range(SHOWN_SEED, SHOWN_SEED + 1 + more_seeds)
-    runs = {
-        name: [Run(offline_tracker(recording, name, seed)) for seed in seeds]
+    trackers = {
+        f"{name} {seed}": offline_tracker(recording, name, seed)
         for name in CONTESTANTS
+        for seed in range(SHOWN_SEED, SHOWN_SEED + 1 + more_seeds)
     }
-    every = [run for of_name in runs.values() for run in of_name]
-    images = ((image.stamp_ns, image.frame) for image in recording.frames())
-    streams = [
-        run.tracker.rows(stream) for run, stream in zip(every, tee(images, len(every)), strict=True)
-    ]
     with counting("tracked") as progress:
-        for number, of_frame in enumerate(zip(*streams, strict=True), start=1):
-            for run, row in zip(every, of_frame, strict=True):
-                run.rows.append(row)
-            progress(number, recording.frame_count)
+        rows = follow(trackers, numbered(recording, progress), Pictures())
+    runs: dict[str, list[Run]] = {name: [] for name in CONTESTANTS}
+    for key, tracker in trackers.items():
+        runs[tracker.session.variant.name].append(Run(tracker, rows[key]))
     return runs
+
+
+def numbered(recording: Recording, progress: OnFrames) -> Numbered:
+    """Yield the frames of a recording with their numbers."""
+    for number, found in enumerate(recording.frames(), start=1):
+        yield number, found
+        progress(number, recording.frame_count)
 
 
 def track_through_ros(recording: Recording) -> dict[str, Sequence[EstimateRow]]:
@@ -140,7 +136,7 @@ def track_through_ros(recording: Recording) -> dict[str, Sequence[EstimateRow]]:
     nodes = {f"/{name}_tracker": name for name in CONTESTANTS}
     options = ReplayOptions(lockstep=True, nodes=tuple(nodes), timeout=_PATIENCE)
     with ExitStack() as stack:
-        on_progress = stack.enter_context(progress_view())
+        on_progress = stack.enter_context(shown_progress(ReplayWords()))
         trackers = [
             stack.enter_context(tracker_process(name, _for_node(name), recording.image_topic))
             for name in CONTESTANTS
@@ -150,7 +146,7 @@ def track_through_ros(recording: Recording) -> dict[str, Sequence[EstimateRow]]:
             for tracker in trackers:
                 tracker.check()
 
-        report = replay(recording, options, on_progress, lambda s: tell_notices([s]), check)
+        report = replay(recording, options, on_progress, tell_notice, check)
     if report.interrupted:
         raise KeyboardInterrupt
     for node in report.nodes:
@@ -196,7 +192,7 @@ def run(request: Request) -> int:
     """Run the whole chain; return 1 if ROS and offline runs differ."""
     absence = absence_of_ros()
     if absence:
-        tell_notices([f"{absence}, so the nodes are left out and everything is tracked offline"])
+        tell_notice(f"{absence}, so the nodes are left out and everything is tracked offline")
     with claimed([Products(request.output, PRODUCTS)], [], overwrite=request.overwrite):
         return _run_chain(request, make_folder(request.output), absence)
 
@@ -208,7 +204,7 @@ def _run_chain(request: Request, folder: Path, absence: str) -> int:
         _announce(steps, "kernels: the first start compiles for up to a minute, later ones load")
         load_kernels("auto")
     _announce(steps, f"a recording of the scene {SCENE!r} with exact truth")
-    recording = _record(folder / "recording")
+    recording = record(folder / "recording")
     answers: Mapping[str, Sequence[EstimateRow]] | None = None
     if not absence:
         nodes = ", ".join(f"{name}_tracker" for name in CONTESTANTS)
@@ -239,7 +235,8 @@ def _announce(steps: Iterator[int], what: str) -> None:
     print(f"{next(steps)}. {what}", flush=True)
 
 
-def _record(path: Path) -> Recording:
+def record(path: Path) -> Recording:
+    """Render the scene of the demo into the recording `path`, and open it."""
     record_scene(make_scene(SCENE, seed=SCENE_SEED), path, overwrite=True)
     return Recording(path)
 
@@ -281,7 +278,7 @@ def _draw(
     trackers = {name: offline_tracker(recording, name) for name in scores if name in IN_VIDEO}
     follow(trackers, iter(enumerate(recording.frames(), start=1)), Pictures(folder / VIDEO))
     if not has_encoder():
-        tell_notices([NO_ENCODER])
+        tell_notice(NO_ENCODER)
 
 
 def _follow_all(recording: Recording, folder: Path, picture: Path) -> list[str]:

@@ -31,14 +31,22 @@ from vehicle_pf_tracker.cli.console import (
     counting,
     print_rows,
     print_table,
+    stages,
     tell_error,
+    tell_notice,
     tell_notices,
+    telling,
 )
 from vehicle_pf_tracker.cli.report import ReportParts
-from vehicle_pf_tracker.cli.requests import VerbRequest, option, switch
-from vehicle_pf_tracker.cli.shared_options import MaxDiffOption, natural, positive
+from vehicle_pf_tracker.cli.requests import (
+    MaxDiffOption,
+    VerbRequest,
+    natural,
+    option,
+    positive,
+    switch,
+)
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
-from vehicle_pf_tracker.cli.work_progress import stages, telling
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
@@ -233,14 +241,14 @@ def run(request: Request) -> int:
             return run_traffic(request) if request.traffic else _run_grid(request, sources)
     except KeyboardInterrupt:
         if not request.traffic:
-            tell_notices(["interrupted; run the same command to resume"])
+            tell_notice("interrupted; run the same command to resume")
         raise
 
 
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
     plan = _plan(request, sources)
     with telling("evaluate") as on_progress:
-        complete(plan, request.output, _runner(request), on_progress, _tell)
+        complete(plan, request.output, _runner(request), on_progress, tell_notice)
     if request.timing:
         with telling("timing") as on_progress:
             time_systems(plan, request.output, request.timing_frames, on_progress)
@@ -248,10 +256,6 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
     _show(summaries)
     report.write(request.output, request)
     return _judge(summaries, request.max_rmse)
-
-
-def _tell(notice: str) -> None:
-    tell_notices([notice])
 
 
 def _plan(request: Request, sources: Sequence[str]) -> Plan:
@@ -281,7 +285,7 @@ def _show(summaries: Sequence[SystemSummary]) -> None:
     print_table(grid_table(summaries))
     for summary in summaries:
         for reason in dict.fromkeys(summary.reasons):
-            tell_notices([f"{summary.label} did not run everywhere: {reason}"])
+            tell_notice(f"{summary.label} did not run everywhere: {reason}")
 
 
 def _judge(summaries: Sequence[SystemSummary], limit: float | None) -> int:

@@ -20,8 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import counting, megabytes, tell_notices
-from vehicle_pf_tracker.cli.requests import option, positional
-from vehicle_pf_tracker.cli.shared_options import OverwriteOption
+from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.recordings.importing import (
     FORMATS,

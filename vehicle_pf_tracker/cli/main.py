@@ -40,8 +40,7 @@ from vehicle_pf_tracker.cli.console import (
 )
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
-from vehicle_pf_tracker.core.address_space import check_address_space
-from vehicle_pf_tracker.core.errors import InputError, suggestion
+from vehicle_pf_tracker.core.errors import InputError, check_address_space, suggestion
 
 EXTRAS: Mapping[str, str] = MappingProxyType(
     {
@@ -164,14 +163,14 @@ def _run(words: list[str]) -> int:
 
         return completion.run(words, VERBS)
     try:
-        args = _parser(words).parse_args(words)
+        args = make_parser(words).parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
         return ended.code if isinstance(ended.code, int) else USAGE
     status: int = args.module.run(request_of(args.module.Request, args))
     return status
 
 
-def _parser(words: list[str]) -> argparse.ArgumentParser:
+def make_parser(words: list[str]) -> argparse.ArgumentParser:
     """Make the parser, with the options of the verb that `words` ask for.
 
     No other verb is loaded, so that help is quick and nothing needs ROS but what uses it.

@@ -33,7 +33,7 @@ from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant, find_
 
 _NAME = "vehicle_pf_tracker"
 _SHARE = Path("share", _NAME, "config")
-_ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def config_path(variant: str) -> Path:
@@ -71,10 +71,10 @@ def config_path(variant: str) -> Path:
 
 def _folders() -> Iterator[Path]:
     """Yield the folders to look in, best first: nothing is assumed to exist."""
-    if (_ROOT / "package.xml").is_file():  # a checkout: editable and symlink installs run from it
-        yield _ROOT / "config"
+    if (ROOT / "package.xml").is_file():  # a checkout: editable and symlink installs run from it
+        yield ROOT / "config"
     yield from _recorded_folders()
-    yield _ROOT / _SHARE  # pip --target: shares sit beside the packages, the record is not adapted
+    yield ROOT / _SHARE  # pip --target: shares sit beside the packages, the record is not adapted
     for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
         yield Path(prefix) / _SHARE
 

@@ -12,35 +12,35 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`replay`: feed a recording to ROS nodes; also installed as `bag_replay`.
-
-Progress of a replay: a bar on a terminal, plain lines elsewhere.
-"""
+"""`replay`: feed a recording to ROS nodes; also installed as `bag_replay`."""
 
 from __future__ import annotations
 
 import argparse
 import re
-import sys
-import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-from vehicle_pf_tracker.cli.console import LineClock, UsageError, tell_notices
-from vehicle_pf_tracker.cli.parameter_options import parse_box
-from vehicle_pf_tracker.cli.requests import option, positional, switch
-from vehicle_pf_tracker.cli.shared_options import (
+from vehicle_pf_tracker.cli.console import (
+    Progress,
+    UsageError,
+    shown_progress,
+    tell_notice,
+    tell_notices,
+    time_left,
+)
+from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
     RosOption,
     number,
+    option,
+    positional,
     positive_number,
+    switch,
 )
+from vehicle_pf_tracker.cli.tracking_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.estimates import write_estimates
@@ -52,83 +52,30 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay.replay_options import Progress as ReplayProgress
 
 
-@contextmanager
-def progress_view(
-    stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
-) -> Iterator[Callable[[ReplayProgress], None]]:
-    """Return a function that reports the progress of the replay.
+class ReplayWords:
+    """Describes the progress of a replay; rates begin with its first image."""
 
-    Parameters
-    ----------
-    stream : text stream or None
-        Where to show it; None is standard error.
-    clock : callable
-        The monotonic clock in s.
-    """
-    stream = stream or sys.stderr
-    if not stream.isatty():
-        yield _Lines(stream, clock)
-        return
-    columns = (
-        BarColumn(),
-        TextColumn("{task.percentage:3.0f} %  {task.fields[frames]} frames  {task.fields[rate]}"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(file=stream)) as bar:
-        yield _Bar(bar, clock)
+    def __init__(self) -> None:
+        self._began = self._pass_began = self._position = 0.0
 
-
-class _Bar:
-    """A bar that appears with the first image."""
-
-    def __init__(self, bar: Progress, clock: Callable[[], float]) -> None:
-        self._bar = bar
-        self._clock = clock
-        self._began = clock()
-        self._task = bar.add_task("replay", total=None, frames=0, rate="")
-
-    def __call__(self, progress: ReplayProgress) -> None:
+    def __call__(self, progress: ReplayProgress, elapsed: float) -> Progress:
+        """Describe the replay `elapsed` s after its beginning."""
         if progress.frames == 1:
-            self._began = self._clock()
-        self._bar.update(
-            self._task,
-            completed=progress.position,
-            total=progress.length,
-            frames=progress.frames,
-            rate=_rate(progress, self._clock() - self._began),
-        )
-
-
-class _Lines:
-    def __init__(self, stream: TextIO, clock: Callable[[], float]) -> None:
-        self._stream = stream
-        self._clock = clock
-        self._began = self._pass_began = clock()
-        self._due = LineClock(self._began)
-        self._position = 0.0
-
-    def __call__(self, progress: ReplayProgress) -> None:
-        now = self._clock()
-        if progress.frames == 1:
-            self._began = self._pass_began = now
-            self._due = LineClock(now)
-        if progress.position < self._position:  # a loop begins again
-            self._pass_began = now
+            self._began = elapsed
+        if progress.frames == 1 or progress.position < self._position:  # a loop begins again
+            self._pass_began = elapsed
         self._position = progress.position
-        if self._due.is_due(now):
-            print(self._line(progress, now), file=self._stream, flush=True)
-
-    def _line(self, progress: ReplayProgress, now: float) -> str:
-        line = f"{progress.frames} frames, {_rate(progress, now - self._began)}"
+        words, seconds = (
+            f"{progress.frames} frame{'s' * (progress.frames > 1)}",
+            elapsed - self._began,
+        )
+        if seconds > 0:
+            words += f", {(progress.frames - 1) / seconds:.1f} frames/s"
         if not progress.position:
-            return line
+            return Progress(words)
         share = progress.position / progress.length
-        left = (now - self._pass_began) * (1 / share - 1)
-        return f"{share:4.0%}, {line}, {left:.0f} s left"
-
-
-def _rate(progress: ReplayProgress, elapsed: float) -> str:
-    return f"{(progress.frames - 1) / elapsed:.1f} frames/s" if elapsed > 0 else ""
+        left = time_left(share, elapsed - self._pass_began)
+        return Progress(f"{share:4.0%}, {words}, {left}", share)
 
 
 ANSWERS = ("estimates.csv", "*/estimates.csv")
@@ -179,11 +126,11 @@ class Request(RosOption, OverwriteOption):
     delay: float = option("-d", type=_seconds, default=0.0, metavar="S", help="wait before playing")
     start_paused: bool = switch(help="begin paused, until ~/resume is called")
     topics: Sequence[str] = option(
-        nargs="+", default=[], metavar="TOPIC", help="play these topics only"
+        type=_absolute, nargs="+", default=[], metavar="TOPIC", help="play these topics only"
     )
     regex: str = option("-e", type=_pattern, default="", help="play topics that match this whole")
     exclude: Sequence[str] = option(
-        "--exclude", "--exclude-topics", nargs="+", default=[], metavar="TOPIC",
+        "--exclude", "--exclude-topics", type=_absolute, nargs="+", default=[], metavar="TOPIC",
         help="play all but these topics",
     )  # fmt: skip
     exclude_regex: str = option(
@@ -210,8 +157,8 @@ class Request(RosOption, OverwriteOption):
     topic: str | None = option(
         metavar="TOPIC", help="the image topic, if the recording has several"
     )
-    node: Sequence[str] = option(
-        action="append", default=[], metavar="NAME",
+    nodes: Sequence[str] = option(
+        "--node", action="append", default=[], metavar="NAME",
         help="a tracker node that takes part, repeatable; all that subscribe if none is named",
     )  # fmt: skip
     target: Box | None = option(
@@ -219,9 +166,10 @@ class Request(RosOption, OverwriteOption):
         exclusive="target",
         help="box to start on in px, top-left corner and size; otherwise the first true box",
     )  # fmt: skip
-    no_target: bool = switch(
-        exclusive="target", help="neither set the nodes' targets nor reset them"
-    )
+    set_target: bool = option(
+        "--no-target", action="store_false", exclusive="target",
+        help="neither set the nodes' targets nor reset them",
+    )  # fmt: skip
     timeout: float = option(
         type=positive_number, default=10.0, metavar="S",
         help="longest wait for a node in seconds (default: 10)",
@@ -253,8 +201,8 @@ def run(request: Request) -> int:
         if request.output:
             make_folder(request.output)
         try:
-            with progress_view() as on_progress:
-                report = replay(recording, options_of(request), on_progress, _tell)
+            with shown_progress(ReplayWords()) as on_progress:
+                report = replay(recording, options_of(request), on_progress, tell_notice)
         except NoTargetError as error:
             raise UsageError(str(error)) from None
         later = [notice for notice in recording.notices if notice not in told]
@@ -266,34 +214,15 @@ def run(request: Request) -> int:
 
 
 def options_of(request: Request) -> ReplayOptions:
-    """Collect the options of a parsed command line."""
+    """Return the options of the player, most of which are fields of the request."""
     from vehicle_pf_tracker.ros.replay.playable import read_qos_overrides
     from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
+    names = {one.name for one in fields(ReplayOptions)} & {one.name for one in fields(request)}
+    shared = {name: getattr(request, name) for name in names}
     qos_file = request.qos_profile_overrides_path
-    return ReplayOptions(
-        rate=request.rate,
-        start_offset=request.start_offset,
-        playback_duration=request.playback_duration,
-        loop=request.loop,
-        delay=request.delay,
-        start_paused=request.start_paused,
-        topics=tuple(map(_absolute, request.topics)),
-        regex=request.regex,
-        exclude=tuple(map(_absolute, request.exclude)),
-        exclude_regex=request.exclude_regex,
-        qos=read_qos_overrides(qos_file) if qos_file else {},
-        remap=dict(request.remap),
-        clock=request.clock,
-        wait_for_subscribers=request.wait_for_subscribers,
-        lockstep=request.lockstep,
-        decompress=request.decompress,
-        nodes=tuple(request.node),
-        target=request.target,
-        set_target=not request.no_target,
-        timeout=request.timeout,
-        ros_args=tuple(request.ros_args),
-    )
+    qos = read_qos_overrides(qos_file) if qos_file else {}
+    return ReplayOptions(**{**shared, "qos": qos, "remap": dict(request.remap)})
 
 
 def write_answers(folder: Path, nodes: Sequence[NodeReport]) -> list[Path]:
@@ -326,7 +255,3 @@ def summary(report: ReplayReport) -> str:
         unanswered = report.frames - node.answered
         lines.append(f"{node.name}: {node.answered} answered, {unanswered} not")
     return "\n".join(lines)
-
-
-def _tell(sentence: str) -> None:
-    tell_notices([sentence])

@@ -20,9 +20,8 @@ import argparse
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import tell_notices
+from vehicle_pf_tracker.cli.console import stages, tell_notice
 from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, switch
-from vehicle_pf_tracker.cli.work_progress import stages
 from vehicle_pf_tracker.core.outputs import Products, claimed
 
 FIGURE_FORMATS = ("pdf", "svg", "png")
@@ -88,7 +87,5 @@ def write(folder: Path, request: ReportParts) -> None:
         request.images, request.video, request.recordings, request.trajectories, request.figures
     )
     with stages("report") as on_stage:
-        page, *_ = write_report(
-            folder, options, lambda sentence: tell_notices([sentence]), on_stage
-        )
+        page, *_ = write_report(folder, options, tell_notice, on_stage)
     print(f"the report is {page}")

@@ -22,10 +22,9 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.console import UsageError, counting
-from vehicle_pf_tracker.cli.picking import FORM, POINTS, ask, read_pairs
-from vehicle_pf_tracker.cli.requests import option, positional
-from vehicle_pf_tracker.cli.shared_options import OverwriteOption, positive
+from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional, positive
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.offline.drawing import draw_pixel_grid, draw_road_grid
 from vehicle_pf_tracker.offline.output_files import write_picture, write_text
@@ -57,7 +56,9 @@ class Request(OverwriteOption):
         help="a pixel and the point of the road that it shows, px and m; repeatable; without pairs "
         "a page is served on which to click them",
     )  # fmt: skip
-    file: Path | None = option("--pairs", type=Path, metavar="FILE", help=f"YAML file with {FORM}")
+    file: Path | None = option(
+        "--pairs", type=Path, metavar="FILE", help=f"YAML file with pairs: [{pick.PAIR_FORM}]"
+    )
     intrinsics: str = option(default="", metavar="FX,FY,CX,CY", help="as in CameraInfo")
     distortion_model: str = option(default="none", choices=MODELS)
     distortion: str = option(default="", metavar="K1,K2,…", help="as in CameraInfo")
@@ -76,7 +77,7 @@ def run(request: Request) -> int:
     """Fit, print the residuals, and write parameters and picture."""
     pairs = (
         *parse_pairs(";".join(request.pairs)),
-        *(read_pairs(request.file) if request.file else ()),
+        *(pick.read_pairs(request.file) if request.file else ()),
     )
     source = open_source(request.source, topic=request.topic)
     inputs = (request.source, request.file)
@@ -91,7 +92,7 @@ def _calibrate(request: Request, source: Source, pairs: tuple[Pair, ...]) -> int
         write_picture(request.grid, draw_pixel_grid(frame))
         print(f"{request.grid}: read off pixels of points whose place on the road you know")
         return 0
-    pairs = pairs or tuple(ask(source, POINTS, request.frame))
+    pairs = pairs or tuple(pick.ask(source, pick.POINTS, request.frame))
     if not pairs:
         raise UsageError("nothing was picked")
     road = _road(request, pairs)

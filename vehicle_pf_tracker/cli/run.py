@@ -20,25 +20,19 @@ from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
-from vehicle_pf_tracker.cli import parameter_options
 from vehicle_pf_tracker.cli.console import UsageError, counting, show, tell_notices
-from vehicle_pf_tracker.cli.requests import option, switch
-from vehicle_pf_tracker.cli.shared_options import MaxDiffOption
-from vehicle_pf_tracker.cli.stopping import (
+from vehicle_pf_tracker.cli.requests import MaxDiffOption, option, switch
+from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.cli.tracking_options import (
     Numbered,
     TrackingRequest,
+    by_name,
+    chosen,
     cut_short,
     numbered_frames,
     peeked,
-    stopping,
-)
-from vehicle_pf_tracker.cli.targets import (
-    PictureWindow,
-    TargetOption,
-    by_name,
-    parse_target,
-    read_targets,
 )
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import max_diff_ns
@@ -48,11 +42,15 @@ from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.tables import comparison
 from vehicle_pf_tracker.image.target_pixels import doubts
-from vehicle_pf_tracker.offline.contact_sheet import summary
-from vehicle_pf_tracker.offline.driver import OfflineTracker, with_target
-from vehicle_pf_tracker.offline.estimates import EstimateRow, interpolated_columns, write_tracks
+from vehicle_pf_tracker.offline.driver import OfflineTracker, follow, with_target
+from vehicle_pf_tracker.offline.estimates import (
+    EstimateRow,
+    interpolated_columns,
+    summary,
+    write_tracks,
+)
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame, run_recording
-from vehicle_pf_tracker.offline.following import Pictures, follow
+from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import (
     ESTIMATES,
     METRICS,
@@ -61,8 +59,7 @@ from vehicle_pf_tracker.offline.run_folder import (
     RunInfo,
     describe_run,
 )
-from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, has_encoder
-from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.recordings.source import Source, open_source
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
@@ -83,9 +80,6 @@ class Request(TrackingRequest, MaxDiffOption):
         help="folder for estimates.csv, run.json, summary.png, and metrics.json where there is "
         "truth (default: results/ and the source's name)",
     )  # fmt: skip
-    video: Path | None = option(
-        type=Path, metavar="FILE", help="write the frames with box, path and mode to FILE, an mp4"
-    )
     recording: Path | None = option(
         type=Path, metavar="OUT",
         help="write images (JPEG), truth, estimates and Foxglove's annotations to the rosbag2 "
@@ -95,12 +89,6 @@ class Request(TrackingRequest, MaxDiffOption):
     interpolate_occlusions: bool = switch(
         help="add columns to estimates.csv with the path drawn straight through the frames that "
         "are not TRACKING; they are not scored",
-    )  # fmt: skip
-    target: Sequence[TargetOption] = option(
-        type=parse_target, action="append", default=[],
-        metavar="[NAME][@FRAME:]X,Y,W,H",
-        help="box to start on in px, top-left corner and size, in the first frame or in FRAME; "
-        "repeatable, for several vehicles or to correct one later; otherwise the first true box",
     )  # fmt: skip
 
 
@@ -115,20 +103,23 @@ def run(request: Request) -> int:
 
 
 def _track(request: Request, variant: Variant, source: Source, folder: RunFolder) -> int:
-    window = PictureWindow(request.source) if request.show else None
-    show_in = window.show if window else None
-    pictures = Pictures(request.video, particles=request.particles, show=show_in)
+    window = request.source if request.show else ""
+    pictures = Pictures(request.video, particles=request.particles, window=window)
     with stopping() as stop, counting("tracked") as progress:
         first, frames = peeked(numbered_frames(source, request, stop, progress))
-        targets = _targets(variant, source, request, first)
-        trackers = {name: one.tracker for name, one in targets.items()}
+        configuration = chosen(variant, request)
+        given = _boxes(request, configuration.session, first[0])
+        truth = None if any(given.values()) else _first_truth(source, request, first[1].stamp_ns)
+        trackers = {
+            name: _tracker(request, variant, configuration, boxes, first[0], truth)
+            for name, boxes in given.items()
+        }
         with _recording(request, variant, source, list(trackers)) as on_frame:
-            rows = follow(trackers, _doubting(frames, targets), pictures, on_frame)
+            rows = follow(trackers, _doubting(frames, given, trackers), pictures, on_frame)
     notices = list(source.notices)
     for tracker in trackers.values():
         notices += [*tracker.notices, *tracker.road_notices]
-    if request.video and not has_encoder():
-        notices.append(NO_ENCODER)
+    notices += pictures.notices
     ended = cut_short(stop, source, max(map(len, rows.values())))
     notices += ended
     tell_notices(notices)
@@ -182,36 +173,32 @@ def _write(
         show(comparison({request.variant: metrics}))
 
 
-@dataclass(frozen=True, slots=True)
-class _Target:
-    """A tracker, and its boxes by frame."""
-
-    tracker: OfflineTracker
-    boxes: Mapping[int, Box]
+Boxes: TypeAlias = Mapping[str, Mapping[int, Box]]
+"""Boxes given by the user, px: for each target, by the number of the frame."""
 
 
-def _targets(
-    variant: Variant, source: Source, request: Request, first: tuple[int, StampedFrame]
-) -> dict[str, _Target]:
-    """Make a tracker for each target; without any, one that starts on the first true box."""
-    options = [*request.target, *(read_targets(request.targets) if request.targets else [])]
-    configuration = parameter_options.chosen(variant, request)
-    parameters, settings = configuration.tracker, configuration.session
-    if not options:
-        truth = None if settings.target.box else _first_truth(source, request, first[1].stamp_ns)
-        tracker = OfflineTracker(
-            variant, parameters, settings, first_truth=truth, max_diff=request.max_diff
-        )
-        box = settings.target.box
-        return {"1": _Target(tracker, {first[0]: box} if box else {})}
-    made = {}
-    for name, boxes in by_name(options, first[0]).items():
-        initial = boxes.get(first[0])
-        later = {frame: box for frame, box in boxes.items() if frame != first[0]}
-        own = with_target(settings, initial) if initial else settings
-        tracker = OfflineTracker(variant, parameters, own, targets=later, max_diff=request.max_diff)
-        made[name] = _Target(tracker, boxes)
-    return made
+def _boxes(request: Request, settings: SessionParameters, first: int) -> Boxes:
+    """Return the targets given; without any, the target "1" of the parameters, if they have one."""
+    configured = {} if settings.target.box is None else {first: settings.target.box}
+    return by_name(request.given_targets(), first) or {"1": configured}
+
+
+def _tracker(
+    request: Request,
+    variant: Variant,
+    configuration: Configuration,
+    boxes: Mapping[int, Box],
+    first: int,
+    truth: Truth | None,
+) -> OfflineTracker:
+    """Make the tracker of one target, which starts on `truth` where it has no boxes."""
+    settings, later = configuration.session, dict(boxes)
+    if (initial := later.pop(first, None)) is not None:
+        settings = with_target(settings, initial)
+    return OfflineTracker(
+        variant, configuration.tracker, settings,
+        first_truth=truth, targets=later, max_diff=request.max_diff,
+    )  # fmt: skip
 
 
 def _first_truth(source: Source, request: Request, first_ns: int) -> Truth:
@@ -225,14 +212,13 @@ def _first_truth(source: Source, request: Request, first_ns: int) -> Truth:
     return truth
 
 
-def _doubting(frames: Numbered, targets: Mapping[str, _Target]) -> Numbered:
+def _doubting(frames: Numbered, given: Boxes, trackers: Mapping[str, OfflineTracker]) -> Numbered:
     """Pass frames on; note what speaks against the targets given for them."""
     for number, found in frames:
-        for name, target in targets.items():
-            box = target.boxes.get(number)
-            if box is not None and found.frame is not None:
-                notices = target.tracker.notices
-                notices += [
-                    f"the target {name} is doubtful: {why}" for why in doubts(found.frame, box)
+        for name, boxes in given.items():
+            if number in boxes and found.frame is not None:
+                trackers[name].notices += [
+                    f"the target {name} is doubtful: {why}"
+                    for why in doubts(found.frame, boxes[number])
                 ]
         yield number, found

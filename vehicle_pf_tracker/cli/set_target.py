@@ -19,9 +19,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.parameter_options import parse_box
-from vehicle_pf_tracker.cli.requests import option, positional
-from vehicle_pf_tracker.cli.shared_options import RosOption, positive_number
+from vehicle_pf_tracker.cli.requests import RosOption, option, positional, positive_number
+from vehicle_pf_tracker.cli.tracking_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 
 

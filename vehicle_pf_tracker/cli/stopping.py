@@ -12,32 +12,17 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Signals that end a command: partial files are removed, and what was tracked is kept.
-
-Frames of a source for the verbs that track.
-"""
+"""Signals that end a command: partial files are removed, and what was tracked is kept."""
 
 from __future__ import annotations
 
-import argparse
-import itertools
 import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
-from pathlib import Path
 from types import FrameType
-from typing import TypeAlias, TypeVar
-
-from vehicle_pf_tracker.cli.console import OnProgress
-from vehicle_pf_tracker.cli.parameter_options import ParameterOptions
-from vehicle_pf_tracker.cli.requests import option, switch
-from vehicle_pf_tracker.cli.shared_options import OverwriteOption, SourceOptions
-from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.recordings.source import Moment, Source, numbered_part
+from typing import TypeVar
 
 T = TypeVar("T")
 
@@ -92,7 +77,7 @@ class Stop:
 
     @property
     def came(self) -> bool:
-        """Whether one has come."""
+        """True once a signal has come."""
         return self.number is not None
 
     @property
@@ -139,65 +124,3 @@ def _handled(numbers: Iterable[signal.Signals], handle: Handle) -> Iterator[None
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-def _moment(text: str) -> Moment:
-    try:
-        return Moment.parse(text)
-    except InputError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-
-
-@dataclass(frozen=True, kw_only=True)
-class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
-    """Request to track in a source, or in a part of it."""
-
-    start: Moment | None = option(
-        type=_moment, metavar="AT",
-        help="first frame: its number, from 1, or its time in seconds, as 4.3s",
-    )  # fmt: skip
-    end: Moment | None = option(type=_moment, metavar="AT", help="last frame, likewise")
-    targets: Path | None = option(type=Path, metavar="FILE", help="targets that `pick` wrote")
-    show: bool = switch(help="show them in a window meanwhile; q ends the run")
-
-    @property
-    def inputs(self) -> tuple[str | Path | None, ...]:
-        """The source, and the files that options name."""
-        return self.source, self.params, self.targets
-
-
-Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
-
-
-def numbered_frames(
-    source: Source, request: TrackingRequest, stop: Stop, progress: OnProgress
-) -> Numbered:
-    """Yield the frames from ``--start`` to ``--end`` with their numbers, until a stop comes."""
-    part = numbered_part(stop.until(source.frames()), request.start, request.end)
-    for number, found in part:
-        progress(number, source.frame_count)
-        yield number, found
-
-
-def peeked(frames: Numbered) -> tuple[tuple[int, StampedFrame], Numbered]:
-    """Return the first frame, and all frames.
-
-    Raises
-    ------
-    InputError
-        If there is none.
-    """
-    first = next(frames, None)
-    if first is None:
-        raise InputError("the source ended before its first image")
-    return first, itertools.chain([first], frames)
-
-
-def cut_short(stop: Stop, source: Source, done: int) -> list[str]:
-    """Say that a signal ended the run after `done` frames; empty if it is whole.
-
-    A live source ends by a signal, and so its run is whole then.
-    """
-    if not stop.came or source.frame_count is None:
-        return []
-    return [f"a signal ended the run after {done} of {source.frame_count} frames"]

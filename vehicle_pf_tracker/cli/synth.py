@@ -21,15 +21,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notices
-from vehicle_pf_tracker.cli.requests import option, positional, switch
-from vehicle_pf_tracker.cli.shared_options import OverwriteOption
+from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notice
+from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional, switch
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.offline.output_files import write_text
-from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, SUFFIX, has_encoder, video_writer
+from vehicle_pf_tracker.offline.pictures import NO_ENCODER, SUFFIX, has_encoder, video_writer
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.importing import FORMATS, jpeg
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
@@ -95,7 +94,7 @@ def run(request: Request) -> int:
         raise UsageError("--format is for recordings; a video is H.264 or MPEG-4")
     truth, box = _film(scene, request.out, overwrite=request.overwrite)
     if not has_encoder():
-        tell_notices([NO_ENCODER])
+        tell_notice(NO_ENCODER)
     print(f"{facts}; the truth is in {truth}, and begins with --target {_words(box)}")
     return 0
 

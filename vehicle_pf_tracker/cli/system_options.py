@@ -17,34 +17,171 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.parameter_options import (
-    ParameterSet,
-    check_sets,
-    configure,
-    fitting_sets,
-    read_sets,
-    settable,
+from vehicle_pf_tracker.cli.requests import (
+    WorkersOption,
+    natural,
+    option,
+    positional,
+    positive,
+    switch,
 )
-from vehicle_pf_tracker.cli.requests import option, positional, switch
-from vehicle_pf_tracker.cli.shared_options import WorkersOption, natural, positive
+from vehicle_pf_tracker.cli.tracking_options import with_file
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Baseline, unknown_baseline
 from vehicle_pf_tracker.evaluation.grid.cells import BASELINE, BaselineSystem, System, VariantSystem
-from vehicle_pf_tracker.parameters.table import Value, parse_assignments, to_mapping
+from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
+from vehicle_pf_tracker.parameters.table import (
+    ParameterSpec,
+    Value,
+    parse_assignments,
+    specs,
+    to_mapping,
+    unknown_name,
+)
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
-
-if TYPE_CHECKING:
-    from vehicle_pf_tracker.parameters.configuration import Configuration
 
 SEEDS, FEW_SEEDS = 5, 1
 """Runs of each system; few where the cases vary more than the seeds of one case do."""
 ALL, ALL_BASELINES = "all", "baselines"
 _BASELINES_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not models)
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """Named parameters; for one variant, or (None) for all that accept them."""
+
+    name: str
+    variant: str | None = None
+    files: list[Path] = field(default_factory=list)
+    assignments: list[str] = field(default_factory=list)
+
+
+def read_sets(
+    files: Iterable[str], assignments: Iterable[str]
+) -> tuple[list[str], list[ParameterSet]]:
+    """Return the assignments that hold everywhere, and the sets in the order they are named.
+
+    Parameters
+    ----------
+    files : iterable of str
+        Each ``LABEL=FILE`` or ``VARIANT@LABEL=FILE``.
+    assignments : iterable of str
+        Each ``NAME=VALUE``, with ``LABEL:`` or ``VARIANT@LABEL:`` before it if it is for a set.
+
+    Raises
+    ------
+    UsageError
+        If one is malformed.
+    """
+    everywhere: list[str] = []
+    sets: dict[str, ParameterSet] = {}
+
+    def named(label: str) -> ParameterSet:
+        variant, at, name = label.rpartition("@")
+        if not name or (at and not variant):
+            raise UsageError(
+                f"{label!r} is not a label of a parameter set: give LABEL or VARIANT@LABEL"
+            )
+        return sets.setdefault(label, ParameterSet(name, variant or None))
+
+    for word in files:
+        label, equals, file = word.partition("=")
+        if not (equals and file):
+            raise UsageError(f"--params expects LABEL=FILE, not {word!r}")
+        named(label).files.append(Path(file))
+    for word in assignments:
+        label = word.partition("=")[0].rpartition(":")[0]
+        if label:
+            named(label).assignments.append(word[len(label) + 1 :])
+        else:
+            everywhere.append(word)
+    return everywhere, list(sets.values())
+
+
+def check_sets(
+    variants: Sequence[Variant], everywhere: Iterable[str], sets: Iterable[ParameterSet]
+) -> None:
+    """Check that sets and assignments are for `variants`.
+
+    Raises
+    ------
+    InputError
+        If one is for none of them.
+    """
+    names = [variant.name for variant in variants]
+    for each in sets:
+        if not names:
+            raise InputError(
+                f"the parameter set {each.name} is for no variant: there are only baselines"
+            )
+        if each.variant is not None and each.variant not in names:
+            raise InputError(
+                f"the parameter set {each.variant}@{each.name} is for a variant that is not among "
+                f"--variants {','.join(names)}"
+            )
+    known = {name for variant in variants for name in settable(variant)}
+    for word in everywhere:
+        name = word.partition("=")[0]
+        if name not in known:
+            raise InputError(unknown_name(name, known))
+
+
+def fitting_sets(
+    variants: Sequence[Variant], sets: Iterable[ParameterSet]
+) -> tuple[dict[str, list[ParameterSet]], list[str]]:
+    """Return the sets that each variant can run with, and notes on those that it cannot.
+
+    Raises
+    ------
+    InputError
+        If a set fits no variant.
+    """
+    fitting: dict[str, list[ParameterSet]] = {variant.name: [] for variant in variants}
+    notes = []
+    for each in sets:
+        named = [variant for variant in variants if each.variant in {None, variant.name}]
+        misfits = {variant.name: _misfit(variant, each) for variant in named}
+        reasons = [reason for reason in misfits.values() if reason]
+        if len(reasons) == len(named):
+            raise InputError(reasons[0])
+        notes += reasons
+        for name, reason in misfits.items():
+            fitting[name] += [] if reason else [each]
+    return fitting, notes
+
+
+def configure(variant: Variant, parameter_set: ParameterSet) -> Configuration:
+    """Put a set over a variant's defaults.
+
+    Raises
+    ------
+    InputError
+        If a file, a name or a value does not fit.
+    """
+    configuration = Configuration.of(variant)
+    for file in parameter_set.files:
+        configuration = with_file(configuration, variant, file)
+    values = parse_assignments(settable(variant), parameter_set.assignments)
+    return configuration.updated(values)
+
+
+def settable(variant: Variant) -> dict[str, ParameterSpec]:
+    """Return the parameters that may differ between systems: neither seed nor target."""
+    table = {**specs(variant.parameters), **specs(SessionParameters)}
+    return {n: s for n, s in table.items() if n != "seed" and not n.startswith("target.")}
+
+
+def _misfit(variant: Variant, parameter_set: ParameterSet) -> str:
+    """Say why a variant cannot run with a set; empty if it can."""
+    try:
+        configure(variant, parameter_set)
+    except InputError as error:
+        return f"{variant.name} is not run with {parameter_set.name}: {error}"
+    return ""
 
 
 @dataclass(frozen=True, kw_only=True)

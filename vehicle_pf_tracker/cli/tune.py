@@ -19,14 +19,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli import parameter_options, system_options
-from vehicle_pf_tracker.cli.console import print_table, tell_notices
-from vehicle_pf_tracker.cli.parameter_options import settable
-from vehicle_pf_tracker.cli.requests import option, positional
-from vehicle_pf_tracker.cli.shared_options import MaxDiffOption, WorkersOption, natural, positive
-from vehicle_pf_tracker.cli.work_progress import stages, telling
+from vehicle_pf_tracker.cli import system_options
+from vehicle_pf_tracker.cli.console import print_table, stages, tell_notice, telling
+from vehicle_pf_tracker.cli.requests import (
+    MaxDiffOption,
+    WorkersOption,
+    natural,
+    option,
+    positional,
+    positive,
+)
+from vehicle_pf_tracker.cli.tracking_options import with_file
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
@@ -48,12 +52,10 @@ from vehicle_pf_tracker.evaluation.tuning.searching import (
     to_csv,
 )
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.table import parse_assignments
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
-
-if TYPE_CHECKING:
-    from vehicle_pf_tracker.parameters.configuration import Configuration
 
 TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100
 BEST, EVALUATION = "best", "evaluation"
@@ -120,7 +122,7 @@ def run(request: Request) -> int:
         with claimed(outputs, inputs, overwrite=True):
             return _tune(request, variant, configuration, what, recordings)
     except KeyboardInterrupt:
-        tell_notices(["interrupted; run the same command to resume"])
+        tell_notice("interrupted; run the same command to resume")
         raise
 
 
@@ -155,12 +157,10 @@ def _tune(
 
 
 def _configuration(variant: Variant, request: Request) -> Configuration:
-    from vehicle_pf_tracker.parameters.configuration import Configuration
-
     configuration = Configuration.of(variant)
     if request.params is not None:
-        configuration = parameter_options.with_file(configuration, variant, request.params)
-    values = parse_assignments(settable(variant), request.assignments)
+        configuration = with_file(configuration, variant, request.params)
+    values = parse_assignments(system_options.settable(variant), request.assignments)
     return configuration.updated(values)
 
 

@@ -33,7 +33,7 @@ Array: TypeAlias = npt.NDArray[np.float64]
 
 _FloatT = TypeVar("_FloatT", bound=np.floating[Any])
 
-_SERIAL = 1 << 18
+SERIAL = 1 << 18
 """Multiplications up to which OpenBLAS gives a product to one thread (its interface/gemm.c:
 SMP_THRESHOLD_MIN times GEMM_MULTITHREAD_THRESHOLD)."""
 
@@ -45,7 +45,7 @@ def product(left: npt.NDArray[_FloatT], right: npt.NDArray[_FloatT]) -> npt.NDAr
     """
     (rows, inner), columns = left.shape, right.shape[1]
     longer = max(rows, columns)
-    piece = max(_SERIAL * longer // max(rows * inner * columns, 1), 1)
+    piece = max(SERIAL * longer // max(rows * inner * columns, 1), 1)
     if piece >= longer:
         return np.asarray(left @ right)
     whole = np.empty((rows, columns), np.result_type(left, right))

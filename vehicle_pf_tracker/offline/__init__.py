@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What follows vehicles without ROS: the driver over a source, products, drawing, video."""
+"""Tracking without ROS: the drivers over a source, results, drawing and pictures."""

@@ -12,18 +12,23 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The detector that the parameters ask for.
-
-A network of the user's in an ONNX file, loaded with ONNX Runtime (the extra `onnx`).
-"""
+"""Sources of detections: the detector that the parameters ask for, and files of MOTChallenge."""
 
 from __future__ import annotations
 
 import importlib
+import math
+from array import array
 from collections.abc import Callable
+from functools import partial
+from itertools import islice
 from pathlib import Path
 
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.network_detector import Network, NetworkDetector
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, DetectorParameters
@@ -74,3 +79,93 @@ def detector_maker(parameters: DetectorParameters) -> Callable[[], Detector] | N
         network = NetworkDetector(open_network(path), str(path), parameters)
         return lambda: network  # it keeps nothing between images
     return None
+
+
+_COLUMNS = ("frame", "id", "left", "top", "width", "height", "score")
+_REQUIRED = 6
+"""Columns that a row must have; without a seventh, all detections score 1."""
+_LAST_FRAME = 10**9
+"""Largest number of a frame: a year of video."""
+_LONGEST_ROW = 1000
+"""Letters of a row, which is cut off there; one with ten numbers has sixty."""
+_SHOWN = 60
+"""Letters of a bad row that an error shows."""
+
+
+class DetectionFile:
+    """Detections by the number of their frame.
+
+    Parameters
+    ----------
+    path : Path
+        Text file with a row per detection: frame from 1, id (not used), left, top, width and height
+        in px, score; columns after these are not used. Rows may be in any order.
+
+    Attributes
+    ----------
+    notices : list of str
+        Irregularities, a sentence each.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or a row is not of this form; the row is named by its number.
+    """
+
+    def __init__(self, path: Path) -> None:
+        rows = _read_rows(path)
+        frames = rows[:, 0].astype(np.int64)
+        order = np.argsort(frames, kind="stable")
+        self.notices: list[str] = []
+        usable = np.isfinite(rows[order, 1:]).all(axis=1) & (rows[order, 3:5] > 0).all(axis=1)
+        if not usable.all():
+            self.notices.append(
+                f"{np.count_nonzero(~usable)} of {len(rows)} detections in {path} have no area, or "
+                "numbers that are not finite, and are left out"
+            )
+        self._frames, self._rows = frames[order][usable], rows[order][usable, 1:]
+
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    @property
+    def last_frame(self) -> int:
+        """Number of the last frame that has a detection; 0 without any."""
+        return int(self._frames[-1]) if len(self) else 0
+
+    def of(self, frame: int) -> Detections:
+        """Return the detections of a frame; one without rows is one without vehicles."""
+        begin, end = np.searchsorted(self._frames, [frame, frame + 1])
+        return Detections.make(self._rows[begin:end, :4], self._rows[begin:end, 4])
+
+
+def _read_rows(path: Path) -> Array:
+    """Return frame, left, top, width, height and score of every row, shape (N, 6)."""
+    numbers = array("d")  # 48 bytes per row: a list of a million rows would take ten times as much
+    try:
+        with path.open(encoding="utf-8-sig") as file:
+            for number, line in enumerate(iter(partial(file.readline, _LONGEST_ROW), ""), start=1):
+                if line.strip() and not line.lstrip().startswith("#"):
+                    numbers.extend(_row(line, f"row {number} of the detections {path}"))
+    except OSError as error:
+        raise InputError(f"cannot read the detections {path}: {error.strerror}") from error
+    except UnicodeDecodeError:
+        raise InputError(f"the detections {path} are not text") from None
+    return np.frombuffer(numbers, np.float64).reshape(-1, 6)
+
+
+def _row(line: str, what: str) -> tuple[float, ...]:
+    words = line.split(",")
+    if len(words) < _REQUIRED:
+        raise InputError(f"{what} is not {','.join(_COLUMNS)}: {line.strip()[:_SHOWN]!r}")
+    try:
+        values = [float(word) for word in islice(words, len(_COLUMNS))]
+    except ValueError:
+        raise InputError(
+            f"{what} has a word that is no number: {line.strip()[:_SHOWN]!r}"
+        ) from None
+    frame = values[0]
+    if not (math.isfinite(frame) and frame.is_integer() and 1 <= frame <= _LAST_FRAME):
+        raise InputError(f"{what} has the frame {words[0].strip()}; frames are integers from 1")
+    score = values[6] if len(values) > _REQUIRED else 1.0
+    return (frame, *values[2:6], score)

@@ -12,29 +12,21 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Estimates drawn over the images of a run: box, path and mode of each target.
-
-Words written into images.
-
-Outlines drawn into images.
-
-Pictures to read points of the road off an image, and to check a calibration with.
-"""
+"""Drawing into images: words, boxes, estimates of targets, and grids of pixels and of the road."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
 import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.offline.contact_sheet import clock_words
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.offline.estimates import EstimateRow, clock_words
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
@@ -99,16 +91,17 @@ def draw_box(picture: Frame, box: Box, colour: Colour, width: int, *, dashed: bo
     if not dashed:
         cv2.rectangle(picture, corners[0], corners[2], colour, width)
         return
-    for start, end in pairwise((*corners, corners[0])):
-        _draw_dashes(picture, np.array(start, float), np.array(end, float), colour, width)
+    for ends in dashes(corners, _DASH * width):
+        start, end = pixels_at(ends)
+        cv2.line(picture, start, end, colour, width)
 
 
-def _draw_dashes(picture: Frame, start: Array, end: Array, colour: Colour, width: int) -> None:
-    length = float(np.hypot(*(end - start)))
-    for along in np.arange(0.0, length, 2 * _DASH * width):
-        ends = start + (end - start) / length * np.array([[along], [along + _DASH * width]])
-        a, b = pixels_at(ends)
-        cv2.line(picture, a, b, colour, width)
+def dashes(corners: Sequence[Position], dash: float) -> Iterator[Array]:
+    """Yield the two ends (2, 2) of each dash of a closed line; `dash` is its length, px."""
+    for start, end in pairwise(np.array([*corners, corners[0]], float)):
+        length = float(np.hypot(*(end - start)))
+        for along in np.arange(0.0, length, 2 * dash):
+            yield start + (end - start) / length * np.array([[along], [min(along + dash, length)]])
 
 
 COLOURS: dict[str, Colour] = {
@@ -169,8 +162,13 @@ class Annotator:
 
     def words(self, row: EstimateRow) -> str:
         """Return the target's name, mode and confidence in one line."""
-        confidence = "" if row.confidence is None else f" {row.confidence:.2f}"
-        return f"{self._name} {row.mode}{confidence}".lstrip()
+        return estimate_words(self._name, row)
+
+
+def estimate_words(name: str, row: EstimateRow) -> str:
+    """Return name, mode and confidence of a target in one line; the name may be empty."""
+    confidence = "" if row.confidence is None else f" {row.confidence:.2f}"
+    return f"{name} {row.mode}{confidence}".lstrip()
 
 
 def annotated(

@@ -20,22 +20,35 @@ import itertools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeAlias
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.offline.drawing import Annotator, annotated
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.offline.estimates_recording import OnFrame
+from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
+from vehicle_pf_tracker.parameters.road import RoadParameters
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.continuity import StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.failures import TrackerError
 from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS, Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session
+
+Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
+"""Frames with their numbers in the source."""
+_DEFAULT_RATE = 30.0
+"""Frame rate of a video whose stamps state none, 1/s."""
+RATE_FRAMES = 30
+"""Frames whose stamps give the video's rate: the median of a second forgives a gap."""
 
 
 class OfflineTracker:
@@ -182,18 +195,97 @@ class OfflineTracker:
 
 
 def _localisation(session: Session) -> Localisation | None:
-    """Make the localisation where a road is set; its lens and pose cannot come from topics here."""
+    """Make the localisation where a road is set."""
     road = session.settings.road
-    if not road.is_set:
-        return None
-    if road.from_camera_info or road.from_tf:
+    return Localisation(session.variant.name, road) if is_road_given(road) else None
+
+
+def is_road_given(road: RoadParameters) -> bool:
+    """Return whether a road is set.
+
+    Raises
+    ------
+    InputError
+        If its lens or its pose are to come from topics, which only nodes have.
+    """
+    if road.is_set and (road.from_camera_info or road.from_tf):
         raise InputError(
             "road.from_camera_info and road.from_tf are for nodes; offline, give road.intrinsics, "
             "road.distortion and road.camera_pose"
         )
-    return Localisation(session.variant.name, road)
+    return road.is_set
 
 
 def with_target(settings: SessionParameters, box: Box) -> SessionParameters:
     """Return `settings` with the target `box`."""
     return replace(settings, target=TargetParameters(box.x, box.y, box.width, box.height))
+
+
+def follow(
+    trackers: Mapping[str, OfflineTracker],
+    frames: Numbered,
+    pictures: Pictures,
+    on_frame: OnFrame | None = None,
+) -> dict[str, list[EstimateRow]]:
+    """Track every target through the same frames, each decoded once.
+
+    Parameters
+    ----------
+    trackers : mapping of str to OfflineTracker
+        By the names of their targets.
+    frames : iterator of (int, StampedFrame)
+        Frames with their numbers, which follow each other.
+    pictures : Pictures
+        Pictures to make meanwhile.
+    on_frame : callable or None
+        Takes each frame with its rows.
+
+    Returns
+    -------
+    dict of str to list of EstimateRow
+        The rows of each target.
+
+    Raises
+    ------
+    InputError
+        If a target is invalid in its frame, or the video cannot be written.
+    """
+    # The rate is that of the first second, so this much is read ahead of the video.
+    ahead = list(itertools.islice(frames, RATE_FRAMES if pictures.video else 1))
+    rows: dict[str, list[EstimateRow]] = {name: [] for name in trackers}
+    if not ahead:
+        return rows
+    first, start_ns = ahead[0][0], ahead[0][1].stamp_ns
+    shown, *streams = itertools.tee(itertools.chain(ahead, frames), 1 + len(trackers))
+    runs = [
+        tracker.rows(((found.stamp_ns, found.frame) for _, found in stream), first)
+        for tracker, stream in zip(trackers.values(), streams, strict=True)
+    ]
+    annotators = [
+        Annotator(name if len(trackers) > 1 else "", particles=pictures.particles)
+        for name in trackers
+    ]
+    with pictures.drawing(frame_rate_of(ahead)) as take:
+        for (_, found), *of_frame in zip(shown, *runs, strict=True):
+            for name, row in zip(trackers, of_frame, strict=True):
+                rows[name].append(row)
+            if on_frame is not None:
+                on_frame(found, dict(zip(trackers, of_frame, strict=True)))
+            estimates = [tracker.estimate for tracker in trackers.values()]
+            for annotator, estimate in zip(annotators, estimates, strict=True):
+                annotator.follow(estimate)
+            if found.frame is None:
+                continue
+            states = list(zip(annotators, of_frame, estimates, strict=True))
+            draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
+            if not take(tuple(row.mode for row in of_frame), draw, found.frame):
+                break
+    return rows
+
+
+def frame_rate_of(frames: list[tuple[int, StampedFrame]]) -> float:
+    """Return the frame rate of `frames` by their stamps, 1/s."""
+    stamps = [found.stamp_ns for _, found in frames]
+    gaps = sorted(later - earlier for earlier, later in itertools.pairwise(stamps))
+    usual = gaps[len(gaps) // 2] if gaps else 0
+    return 1e9 / usual if usual > 0 else _DEFAULT_RATE

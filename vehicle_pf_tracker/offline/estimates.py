@@ -20,7 +20,7 @@ import csv
 import io
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
-from itertools import pairwise
+from itertools import groupby, pairwise
 from pathlib import Path
 from types import MappingProxyType
 from typing import TypeAlias
@@ -123,12 +123,9 @@ def write_estimates(
     InputError
         If it cannot be written.
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([*COLUMNS, *extra])
-    for row, *more in zip(rows, *extra.values(), strict=True):
-        writer.writerow([_text(value) for value in (*astuple(row), *more)])
-    write_text(path, text.getvalue())
+    found = zip(rows, *extra.values(), strict=True)
+    cells = ((*astuple(row), *more) for row, *more in found)
+    _write_table(path, [*COLUMNS, *extra], cells)
 
 
 def write_tracks(path: Path, rows: Mapping[str, Sequence[EstimateRow]]) -> None:
@@ -141,12 +138,21 @@ def write_tracks(path: Path, rows: Mapping[str, Sequence[EstimateRow]]) -> None:
     InputError
         If it cannot be written.
     """
+    cells = (
+        (name, *astuple(row))
+        for of_frame in zip(*rows.values(), strict=True)
+        for name, row in zip(rows, of_frame, strict=True)
+    )
+    _write_table(path, ["target", *COLUMNS], cells)
+
+
+def _write_table(
+    path: Path, header: Sequence[str], rows: Iterable[Sequence[float | str | None]]
+) -> None:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["target", *COLUMNS])
-    for of_frame in zip(*rows.values(), strict=True):
-        for name, row in zip(rows, of_frame, strict=True):
-            writer.writerow([name, *map(_text, astuple(row))])
+    writer.writerow(header)
+    writer.writerows(map(_text, row) for row in rows)
     write_text(path, text.getvalue())
 
 
@@ -238,3 +244,32 @@ def _between(first: EstimateRow, last: EstimateRow, stamp_ns: int) -> Point | No
     assert end is not None
     gone = (stamp_ns - first.stamp_ns) / (last.stamp_ns - first.stamp_ns)
     return start[0] + gone * (end[0] - start[0]), start[1] + gone * (end[1] - start[1])
+
+
+_MOST_SPANS = 12
+"""Spans in a summary; more are counted, since nobody reads a line of hundreds."""
+
+
+def summary(rows: Sequence[EstimateRow]) -> str:
+    """Return the modes of a run in one sentence, times in min:s after its first frame."""
+    if not rows:
+        return "no frames"
+    spans = [list(group) for _, group in groupby(rows, key=lambda row: row.mode)]
+    words = [_words(span, rows[0].stamp_ns, is_last=span is spans[-1]) for span in spans]
+    if len(spans) > _MOST_SPANS:
+        words[_MOST_SPANS:] = [f"and {len(spans) - _MOST_SPANS} more changes of the mode"]
+    tracked = sum(row.mode == Mode.TRACKING.value for row in rows)
+    return f"{', '.join(words)}; {tracked} of {len(rows)} frames tracked"
+
+
+def clock_words(nanoseconds: int) -> str:
+    """Return a time as min:s with tenths, as ``1:07.5``."""
+    tenths = round(nanoseconds / 1e8)
+    return f"{tenths // 600}:{tenths // 10 % 60:02d}.{tenths % 10}"
+
+
+def _words(span: Sequence[EstimateRow], start: int, *, is_last: bool) -> str:
+    """Return mode and times of consecutive rows of one mode."""
+    mode = span[0].mode
+    first, last = (clock_words(row.stamp_ns - start) for row in (span[0], span[-1]))
+    return f"LOST from {first}" if is_last and mode == Mode.LOST.value else f"{mode} {first}-{last}"

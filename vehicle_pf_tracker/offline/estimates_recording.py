@@ -12,28 +12,29 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Recordings of images, truth and the estimates of trackers, for Foxglove or evo.
-
-A run as a recording: images, truth, estimates and annotations, written while it tracks.
-
-Estimates as annotations that Foxglove draws over the images: box, path and words by mode.
-
-Lines and words over an image, as the message that Foxglove draws.
-"""
+"""Recordings of images, truth, estimates and annotations of them, for Foxglove or evo."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from vehicle_pf_tracker.core.box import Box
+import numpy as np
+
+from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.offline.drawing import COLOURS, NEUTRAL, line_width_of
+from vehicle_pf_tracker.offline.drawing import (
+    COLOURS,
+    NEUTRAL,
+    Colour,
+    dashes,
+    estimate_words,
+    line_width_of,
+)
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
@@ -52,78 +53,8 @@ from vehicle_pf_tracker.trackers.estimate import Mode
 LINE_LOOP, LINE_STRIP, LINE_LIST = 2, 3, 4
 """Ways to join points: to a closed line, to an open one, and in pairs."""
 
-Point: TypeAlias = tuple[float, float]
-"""Continuous position in px; (0, 0) is the corner of the image, as it is for Foxglove."""
-Colour: TypeAlias = tuple[int, int, int]
-"""Red, green, blue, 0 to 255."""
-
 _GROUND_OPACITY = 0.6
 """Opacity of the black behind words: they are legible on a bright road, which stays visible."""
-
-
-@dataclass(frozen=True, slots=True)
-class Line:
-    """A line: how its points are joined, the points, its colour, and its width in px."""
-
-    kind: int
-    points: Sequence[Point]
-    colour: Colour
-    thickness: float
-
-
-@dataclass(frozen=True, slots=True)
-class Label:
-    """Words: their lower left corner, their colour, and the size of the font in px."""
-
-    text: str
-    corner: Point
-    colour: Colour
-    height: float
-
-
-def image_annotations(stamp_ns: int, lines: Iterable[Line], labels: Iterable[Label]) -> Any:
-    """Make the annotations of the image with this stamp in ns."""
-    seconds, nanoseconds = divmod(stamp_ns, 1_000_000_000)
-    stamp = message_class("builtin_interfaces/msg/Time")(sec=seconds, nanosec=nanoseconds)
-    return message_class(IMAGE_ANNOTATIONS)(
-        circles=[],
-        points=[_points(stamp, line) for line in lines],
-        texts=[_text(stamp, label) for label in labels],
-    )
-
-
-def _points(stamp: Any, line: Line) -> Any:
-    return message_class("foxglove_msgs/msg/PointsAnnotation")(
-        timestamp=stamp,
-        type=line.kind,
-        points=[_point(point) for point in line.points],
-        outline_color=_colour(line.colour),
-        outline_colors=[],
-        fill_color=_colour((0, 0, 0), 0.0),
-        thickness=line.thickness,
-    )
-
-
-def _text(stamp: Any, label: Label) -> Any:
-    return message_class("foxglove_msgs/msg/TextAnnotation")(
-        timestamp=stamp,
-        position=_point(label.corner),
-        text=label.text,
-        font_size=label.height,
-        text_color=_colour(label.colour),
-        background_color=_colour((0, 0, 0), _GROUND_OPACITY),
-    )
-
-
-def _point(point: Point) -> Any:
-    return message_class("foxglove_msgs/msg/Point2")(x=float(point[0]), y=float(point[1]))
-
-
-def _colour(colour: Colour, opacity: float = 1.0) -> Any:
-    red, green, blue = (value / 255 for value in colour)
-    return message_class("foxglove_msgs/msg/Color")(r=red, g=green, b=blue, a=opacity)
-
-
 _PATH_LENGTH = 60
 """Positions in a path. Every message repeats them: 60 cost 1 kB, and show two seconds of video."""
 _DASH = 4
@@ -136,7 +67,7 @@ class ImageAnnotator:
     """Makes the annotations of one track; keeps its path.
 
     Every image gets words with the mode, so that a viewer which waits for annotations of the same
-    stamp shows images without an estimate too.
+    stamp shows images without an estimate too. Positions are continuous px, as in `Box`.
 
     Parameters
     ----------
@@ -152,49 +83,68 @@ class ImageAnnotator:
         self._name = name
         self._width = line_width_of(size)
         self._position = position
-        self._path: deque[Point] = deque(maxlen=_PATH_LENGTH)
+        self._path: deque[Position] = deque(maxlen=_PATH_LENGTH)
 
     def annotate(self, row: EstimateRow) -> Any:
         """Continue the path with `row`, and return the message for its image."""
         box = None if row.mode == Mode.LOST else row.box
         if box is None:
             self._path.clear()
-            return image_annotations(row.stamp_ns, [], [self._words(row, None)])
-        self._path.append(box.centre)
-        return image_annotations(row.stamp_ns, self._lines(row, box), [self._words(row, box)])
-
-    def _lines(self, row: EstimateRow, box: Box) -> Iterator[Line]:
-        colour = COLOURS[row.mode]
-        corners = [(float(x), float(y)) for x, y in box.corners]
-        if row.mode == Mode.OCCLUDED:
-            dashes = _dashes(corners, float(_DASH * self._width))
-            yield Line(LINE_LIST, dashes, colour, self._width)
         else:
-            yield Line(LINE_LOOP, corners, colour, self._width)
-        if len(self._path) > 1:
-            yield Line(LINE_STRIP, list(self._path), colour, self._width)
+            self._path.append(box.centre)
+        seconds, nanoseconds = divmod(row.stamp_ns, 1_000_000_000)
+        stamp = message_class("builtin_interfaces/msg/Time")(sec=seconds, nanosec=nanoseconds)
+        lines = () if box is None else self._lines(row, box)
+        return message_class(IMAGE_ANNOTATIONS)(
+            circles=[],
+            points=[self._line(stamp, row, kind, points) for kind, points in lines],
+            texts=[self._words(stamp, row, box)],
+        )
 
-    def _words(self, row: EstimateRow, box: Box | None) -> Label:
-        confidence = "" if row.confidence is None else f" {row.confidence:.2f}"
-        text = f"{self._name} {row.mode}{confidence}".lstrip()
+    def _lines(self, row: EstimateRow, box: Box) -> Iterator[tuple[int, Sequence[Position]]]:
+        """Yield the way to join the points of each line, and the points."""
+        if row.mode == Mode.OCCLUDED:
+            ends = np.concatenate(list(dashes(box.corners, _DASH * self._width)))
+            yield LINE_LIST, ends.tolist()
+        else:
+            yield LINE_LOOP, box.corners
+        if len(self._path) > 1:
+            yield LINE_STRIP, list(self._path)
+
+    def _line(self, stamp: Any, row: EstimateRow, kind: int, points: Sequence[Position]) -> Any:
+        return message_class("foxglove_msgs/msg/PointsAnnotation")(
+            timestamp=stamp,
+            type=kind,
+            points=[_point(*point) for point in points],
+            outline_color=_colour(COLOURS[row.mode]),
+            outline_colors=[],
+            fill_color=_colour((0, 0, 0), 0.0),
+            thickness=self._width,
+        )
+
+    def _words(self, stamp: Any, row: EstimateRow, box: Box | None) -> Any:
         height = float(_LETTERS * self._width)
         if box is None:
             corner = (height / 2, 1.5 * height * (self._position + 1))
         else:
             corner = (max(box.x, 0.0), max(box.y - 2.0 * self._width, height))
-        return Label(text, corner, COLOURS.get(row.mode, NEUTRAL), height)
+        return message_class("foxglove_msgs/msg/TextAnnotation")(
+            timestamp=stamp,
+            position=_point(*corner),
+            text=estimate_words(self._name, row),
+            font_size=height,
+            text_color=_colour(COLOURS.get(row.mode, NEUTRAL)),
+            background_color=_colour((0, 0, 0), _GROUND_OPACITY),
+        )
 
 
-def _dashes(corners: Sequence[Point], dash: float) -> list[Point]:
-    """Return the ends of the dashes of a closed line, in pairs."""
-    ends: list[Point] = []
-    for (x, y), (to_x, to_y) in zip(corners, [*corners[1:], corners[0]], strict=True):
-        length = max(abs(to_x - x), abs(to_y - y))  # the sides of a box are level or upright
-        for start in range(0, int(length / dash) + 1, 2):
-            for along in (start * dash, min((start + 1) * dash, length)):
-                share = along / length if length else 0.0
-                ends.append((x + share * (to_x - x), y + share * (to_y - y)))
-    return ends
+def _point(x: float, y: float) -> Any:
+    return message_class("foxglove_msgs/msg/Point2")(x=float(x), y=float(y))
+
+
+def _colour(colour: Colour, opacity: float = 1.0) -> Any:
+    red, green, blue = (value / 255 for value in colour)
+    return message_class("foxglove_msgs/msg/Color")(r=red, g=green, b=blue, a=opacity)
 
 
 _LEVELS = {Mode.OCCLUDED.value: messages.WARN, Mode.LOST.value: messages.ERROR}

@@ -104,13 +104,13 @@ def _end_with_parent() -> None:
     os._exit(1)
 
 
-_PATIENCE = 10.0
+PATIENCE = 10.0
 
 
 def wait_or_kill(process: subprocess.Popen[bytes] | subprocess.Popen[str]) -> int:
     """Wait for a process that was asked to end, and kill it after 10 s; returns its status."""
     try:
-        return process.wait(_PATIENCE)
+        return process.wait(PATIENCE)
     except subprocess.TimeoutExpired:
         process.kill()
         return process.wait()

@@ -62,23 +62,31 @@ class RunInfo:
 
 
 def describe_run(info: RunInfo, session: Session) -> dict[str, Any]:
-    """Make the content of `run.json`.
+    """Make the content of `run.json` for the run of one target.
 
     `seed` is the one in use: the drawn one where the parameter `seed` is -1; `kernels` likewise
     those that `auto` chose.
     """
-    box = session.settings.target.box
+    tracker, box = session.tracker, session.settings.target.box
+    return {
+        **describe(info, session.variant.name, tracker.seed, tracker.parameters, session.settings),
+        "kernels": tracker.kernels.name,
+        "target": None if box is None else [box.x, box.y, box.width, box.height],
+        "start_frame": info.start_frame,
+    }
+
+
+def describe(info: RunInfo, variant: str, seed: int, *parameters: object) -> dict[str, Any]:
+    """Make the part of `run.json` that every run has."""
+    values = [to_mapping(group) for group in parameters]
     return {
         "command": list(info.command),
         "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
         "recording": info.recording,
         "image_topic": info.image_topic,
-        "variant": session.variant.name,
-        "seed": session.tracker.seed,
-        "kernels": session.tracker.kernels.name,
-        "target": None if box is None else [box.x, box.y, box.width, box.height],
-        "start_frame": info.start_frame,
-        "parameters": {**to_mapping(session.tracker.parameters), **to_mapping(session.settings)},
+        "variant": variant,
+        "seed": seed,
+        "parameters": {name: value for group in values for name, value in group.items()},
         "versions": versions(),
         "notices": list(info.notices),
     }

@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Vehicles, lines and zones drawn into images.
-
-Picture of all paths of a run, each with the number of its vehicle.
-"""
+"""Vehicles, lines and zones drawn into images, and a picture of all paths of a run."""
 
 from __future__ import annotations
 
@@ -32,14 +29,19 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.offline.drawing import Colour, draw_box, line_width, pixels_at, write_words
+from vehicle_pf_tracker.offline.drawing import (
+    NEUTRAL,
+    Colour,
+    draw_box,
+    line_width,
+    pixels_at,
+    write_words,
+)
 from vehicle_pf_tracker.offline.output_files import write_picture
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.watches import ENTRY, EXIT
 
-NEUTRAL: Colour = (200, 200, 200)
-"""Colour of words, and of vehicles that are not confirmed."""
 _PLAN: Colour = (255, 255, 255)
 _GOLDEN = 0.6180339887498949
 """Golden ratio: multiples of it modulo 1 stay apart as far as their number allows."""

@@ -17,20 +17,18 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from types import MappingProxyType
-from typing import TypeAlias
 
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.offline.contact_sheet import clock_words
-from vehicle_pf_tracker.offline.following import RATE_FRAMES, Pictures, frame_rate_of
+from vehicle_pf_tracker.offline.driver import RATE_FRAMES, Numbered, frame_rate_of
+from vehicle_pf_tracker.offline.estimates import clock_words
+from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, annotated
-from vehicle_pf_tracker.offline.traffic_files import TrackFiles
-from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
+from vehicle_pf_tracker.offline.traffic_results import TrackFiles, TrafficSummary
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.failures import TrackerError
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
@@ -38,18 +36,8 @@ from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
-Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
-
 _MOST_NOTICES = 200
 """Notices kept: a camera without a clock gives one per frame, for hours."""
-
-
-@dataclass(frozen=True, slots=True)
-class Target:
-    """Vehicle given by hand: its name, "" without one, and its box in px."""
-
-    name: str
-    box: Box
 
 
 class TrafficRun:
@@ -63,8 +51,6 @@ class TrafficRun:
         Counts at lines and in zones.
     detections_of : callable or None
         Gives the detections of a frame by its number, from 1; None leaves them to the session.
-    targets : mapping of int to sequence of Target
-        Vehicles given by hand, by the numbers of their frames.
 
     Attributes
     ----------
@@ -80,7 +66,6 @@ class TrafficRun:
         counter: Counter | None = None,
         *,
         detections_of: Callable[[int], Detections] | None = None,
-        targets: Mapping[int, Sequence[Target]] = MappingProxyType({}),
     ) -> None:
         self.session = session
         self.counter = counter
@@ -90,7 +75,7 @@ class TrafficRun:
         self._more_notices = 0
         self._last_events: list[str] = []
         self._detections_of = detections_of
-        self._targets = targets
+        self._targets: Mapping[str, Mapping[int, Box]] = {}
         self._by_name: dict[str, int] = {}
         self._restarts = 0
 
@@ -106,15 +91,32 @@ class TrafficRun:
         else:
             self._more_notices += 1
 
-    def follow(self, frames: Numbered, files: TrackFiles, pictures: Pictures | None = None) -> None:
-        """Follow all vehicles through `frames`, which have their numbers in the source.
+    def follow(
+        self,
+        frames: Numbered,
+        files: TrackFiles,
+        pictures: Pictures | None = None,
+        targets: Mapping[str, Mapping[int, Box]] = MappingProxyType({}),
+    ) -> None:
+        """Follow all vehicles through `frames`.
+
+        Parameters
+        ----------
+        frames : iterator of (int, StampedFrame)
+            Frames with their numbers in the source.
+        files : TrackFiles
+            Files of the results.
+        pictures : Pictures or None
+            Pictures to make meanwhile.
+        targets : mapping of str to mapping of int to Box
+            Vehicles given by hand, by name: boxes in px by the numbers of their frames.
 
         Raises
         ------
         InputError
             If a target is invalid in its frame, or something cannot be written.
         """
-        pictures = pictures or Pictures()
+        pictures, self._targets = pictures or Pictures(), targets
         # The video's rate is that of the first second, so this much is read ahead of it.
         ahead = list(itertools.islice(frames, RATE_FRAMES if pictures.video else 1))
         if not ahead:
@@ -151,8 +153,7 @@ class TrafficRun:
         self._last_events = list(self.session.events)
         if self.session.restarts != self._restarts:
             self._begin_anew()
-        for target in self._targets.get(number, ()):
-            self._add(target, found.frame, number)
+        self._add_targets(found.frame, number)
         return estimates
 
     def _begin_anew(self) -> None:
@@ -162,16 +163,18 @@ class TrafficRun:
         if self.counter is not None:
             self.counter.forget_vehicles()
 
-    def _add(self, target: Target, frame: Frame, number: int) -> None:
-        """Follow a vehicle from this frame on; a name that comes again replaces the one before."""
-        try:
-            check_target(target.box, *frame_size(frame))
-        except InputError as error:
-            raise InputError(f"in frame {number}, {error}") from None
-        if target.name in self._by_name:
-            self.session.remove(self._by_name[target.name])
-        label = "" if target.name.isdecimal() else target.name
-        self._by_name[target.name] = self.session.add(target.box, label)
+    def _add_targets(self, frame: Frame, number: int) -> None:
+        """Follow the vehicles given for this frame; a name given again replaces the one before."""
+        for name, boxes in self._targets.items():
+            if number not in boxes:
+                continue
+            try:
+                box = check_target(boxes[number], *frame_size(frame))
+            except InputError as error:
+                raise InputError(f"in frame {number}, {error}") from None
+            if name in self._by_name:
+                self.session.remove(self._by_name[name])
+            self._by_name[name] = self.session.add(box, "" if name.isdecimal() else name)
 
     def _write(
         self,

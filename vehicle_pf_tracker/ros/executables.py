@@ -21,8 +21,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from vehicle_pf_tracker.core.address_space import check_address_space
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, check_address_space
 
 _NO_ROS = (
     "ROS 2 was not found (no module {}): source its setup.bash, or install this package with the "

@@ -35,7 +35,7 @@ from vehicle_pf_tracker.evaluation.report.filmstrip import (
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun, typical
 from vehicle_pf_tracker.offline.output_files import make_folder
-from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, has_encoder, video_writer
+from vehicle_pf_tracker.offline.pictures import NO_ENCODER, has_encoder, video_writer
 
 FOLDER = "videos"
 WIDTH = 640

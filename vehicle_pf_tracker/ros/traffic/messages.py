@@ -35,7 +35,8 @@ from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.traffic_drawing import NEUTRAL, identity_colour
+from vehicle_pf_tracker.offline.drawing import NEUTRAL
+from vehicle_pf_tracker.offline.traffic_drawing import identity_colour
 from vehicle_pf_tracker.ros.messages import (
     CLASS,
     LEVELS,

@@ -12,19 +12,155 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Summary of a run over many vehicles, for people and for `run.json`."""
+"""Results of a run over many vehicles: its files, written row by row, and its summary."""
 
 from __future__ import annotations
 
+import csv
+import math
 from collections import Counter as Tally
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, TextIO
 
-from vehicle_pf_tracker.offline.contact_sheet import clock_words
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
+from vehicle_pf_tracker.core.outputs import output_errors
+from vehicle_pf_tracker.offline.estimates import clock_words
+from vehicle_pf_tracker.offline.output_files import replacing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.watches import ENTRY, EXIT
+
+TRACKS, MOT_TRACKS, COUNTS = "tracks.csv", "tracks.txt", "counts.csv"
+
+TRACK_COLUMNS = (
+    "frame", "stamp_ns", "id", "x", "y", "width", "height", "vx", "vy", "mode", "confidence",
+    "label", "score", "age", "hidden_by",
+)  # fmt: skip
+"""Columns of `tracks.csv`: x and y are the centre of the box in px, vx and vy its velocity in px
+per nominal frame period, which is also the unit of age."""
+COUNT_COLUMNS = (
+    "frame", "stamp_ns", "place", "direction", "id", "label", "mode", "speed_px_s", "speed_kmh",
+)  # fmt: skip
+"""Columns of `counts.csv`: the stamp is that of the crossing, the frame the one it counted in."""
+
+_HIDDEN_CONFIDENCE = 0.5
+"""Share of its confidence that an occluded vehicle is written to `tracks.txt` with, so that a
+threshold of a half leaves no predicted box."""
+
+
+class TrackFiles:
+    """Writes the estimates of frame after frame.
+
+    Parameters
+    ----------
+    csv_file, mot_file : text streams
+        Files to write to.
+    counts_file : text stream or None
+        File for crossings; None where nothing is counted.
+    visible_only : bool
+        Leave occluded vehicles out of the MOTChallenge file.
+    """
+
+    def __init__(
+        self,
+        csv_file: TextIO,
+        mot_file: TextIO,
+        counts_file: TextIO | None,
+        *,
+        visible_only: bool = False,
+    ) -> None:
+        self._tracks = csv.writer(csv_file, lineterminator="\n")
+        self._mot = mot_file
+        self._counts = csv.writer(counts_file, lineterminator="\n") if counts_file else None
+        self._visible_only = visible_only
+        self._tracks.writerow(TRACK_COLUMNS)
+        if self._counts:
+            self._counts.writerow(COUNT_COLUMNS)
+
+    def write(
+        self,
+        frame: int,
+        stamp_ns: int,
+        estimates: Sequence[TrackEstimate],
+        crossings: Iterable[Crossing] = (),
+    ) -> None:
+        """Write what is known of a frame, whose number counts from 1."""
+        for one in estimates:
+            self._tracks.writerow(track_row(frame, stamp_ns, one))
+            if one.mode is TrackMode.TRACKING or (
+                one.mode is TrackMode.OCCLUDED and not self._visible_only
+            ):
+                self._mot.write(mot_row(frame, one) + "\n")
+        if self._counts:
+            self._counts.writerows(count_row(frame, one) for one in crossings)
+
+
+@contextmanager
+def track_files(
+    folder: Path, *, counting: bool = False, visible_only: bool = False
+) -> Iterator[TrackFiles]:
+    """Open the files of a run in `folder`; they appear under their names when all is written.
+
+    Until then, and if anything goes wrong, those of an earlier run stay as they are.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    names = [TRACKS, MOT_TRACKS, COUNTS] if counting else [TRACKS, MOT_TRACKS]
+    with ExitStack() as stack:
+        partials = [stack.enter_context(replacing(folder / name)) for name in names]
+        with ExitStack() as opened:
+            files = [
+                opened.enter_context(partial.open("w", encoding="utf-8", newline="\n"))
+                for partial in partials
+            ]
+            csv_file, mot_file, *counts = files
+            yield TrackFiles(
+                csv_file, mot_file, counts[0] if counts else None, visible_only=visible_only
+            )
+    if not counting:  # none of an earlier run beside the tracks of this one
+        with output_errors(folder / COUNTS):
+            (folder / COUNTS).unlink(missing_ok=True)
+
+
+def track_row(frame: int, stamp_ns: int, estimate: TrackEstimate) -> list[Any]:
+    """Return the row of an estimate, in the order of `TRACK_COLUMNS`, every digit kept."""
+    box, (x, y), (vx, vy) = estimate.box, estimate.box.centre, estimate.velocity
+    numbers = [x, y, box.width, box.height, vx, vy]
+    hidden_by = "" if estimate.hidden_by is None else str(estimate.hidden_by)
+    return [
+        frame, stamp_ns, estimate.identity, *map(_exact, numbers), estimate.mode.value,
+        _exact(estimate.confidence), estimate.label, _exact(estimate.score), _exact(estimate.age),
+        hidden_by,
+    ]  # fmt: skip
+
+
+def mot_row(frame: int, estimate: TrackEstimate) -> str:
+    """Return the MOTChallenge row of a tracked or occluded vehicle."""
+    is_hidden = estimate.mode is TrackMode.OCCLUDED
+    confidence = estimate.confidence * (_HIDDEN_CONFIDENCE if is_hidden else 1.0)
+    box = estimate.box
+    numbers = ",".join(f"{value:.2f}" for value in (box.x, box.y, box.width, box.height))
+    return f"{frame},{estimate.identity},{numbers},{confidence:.4f},-1,-1,-1"
+
+
+def count_row(frame: int, crossing: Crossing) -> list[Any]:
+    """Return the row of a crossing, in the order of `COUNT_COLUMNS`."""
+    speeds = [crossing.speed_px, crossing.speed_kmh]
+    return [
+        frame, crossing.stamp_ns, crossing.place, crossing.direction, crossing.identity,
+        crossing.label, crossing.mode.value,
+        *("" if speed is None else f"{speed:.2f}" for speed in speeds),
+    ]  # fmt: skip
+
+
+def _exact(value: float) -> str:
+    """Return a number with all its digits; "" for one that is not known."""
+    return "" if math.isnan(value) else repr(float(value))
 
 
 @dataclass(slots=True)
@@ -40,9 +176,9 @@ class VehicleLog:
     label : str
         Class; "" where it is unknown.
     survived : int
-        Occlusions after which it was seen under the same number.
+        Occlusions after which it was visible under the same number.
     is_hidden : bool
-        True from the beginning of an occlusion until it is seen again.
+        True from the beginning of an occlusion until it is visible again.
     """
 
     first_frame: int
@@ -109,12 +245,12 @@ class TrafficSummary:
 
     @property
     def survived(self) -> int:
-        """Occlusions after which a vehicle was seen under the same number."""
+        """Occlusions after which a vehicle was visible under the same number."""
         return sum(one.survived for one in self.vehicles.values())
 
     @property
     def ended_hidden(self) -> int:
-        """Vehicles that were not seen again after their last occlusion."""
+        """Vehicles that stayed invisible after their last occlusion."""
         return sum(one.is_hidden for one in self.vehicles.values())
 
     def sentences(self, counter: Counter | None = None) -> list[str]:

@@ -1,0 +1,316 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Options of the verbs that track: parameters, targets, and the part of the source to track in."""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+
+import yaml
+
+from vehicle_pf_tracker.cli.console import OnFrames
+from vehicle_pf_tracker.cli.requests import (
+    OverwriteOption,
+    SourceOptions,
+    VerbRequest,
+    option,
+    switch,
+)
+from vehicle_pf_tracker.cli.stopping import Stop
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.parameters.table import parse_assignments, specs, unknown_name
+from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.recordings.source import Moment, Source, numbered_part
+from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.parameters.configuration import Configuration
+
+EntryT = TypeVar("EntryT")
+
+_OF_ROS = ("use_sim_time", "start_type_description_service")
+_OF_ROS_PREFIX = "qos_overrides."
+
+
+@dataclass(frozen=True, kw_only=True)
+class ParameterOptions(VerbRequest):
+    """Options that choose parameters."""
+
+    params: Path | None = option(
+        type=Path, metavar="FILE", help="ROS parameter file, as `params` prints it"
+    )
+    assignments: Sequence[str] = option(
+        "--set", action="append", default=[], metavar="NAME=VALUE",
+        help="set a parameter, over the file; repeatable",
+    )  # fmt: skip
+    seed: int | None = option(
+        type=int, help="seed of the random numbers; -1 draws one and run.json keeps it"
+    )
+
+
+def parse_box(text: str) -> Box:
+    """Read ``x,y,w,h`` of a command line."""
+    try:
+        x, y, width, height = map(float, text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not x,y,w,h in px") from None
+    if not all(map(math.isfinite, (x, y, width, height))):
+        raise argparse.ArgumentTypeError(f"{text!r} has a number that is not finite")
+    return Box(x, y, width, height)
+
+
+def chosen(variant: Variant, request: ParameterOptions) -> Configuration:
+    """Collect the parameters that a request chooses.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used, or a name or a value does not fit.
+    """
+    from vehicle_pf_tracker.parameters.configuration import Configuration
+
+    configuration = Configuration.of(variant)
+    if request.params is not None:
+        configuration = with_file(configuration, variant, request.params)
+    # Those of the node alone would change nothing here, so they are refused as unknown.
+    table = {**specs(variant.parameters), **specs(type(configuration.session))}
+    configuration = configuration.updated(parse_assignments(table, request.assignments))
+    if request.seed is not None:
+        configuration = configuration.updated({"seed": request.seed})
+    return configuration
+
+
+def with_file(configuration: Configuration, variant: Variant, path: Path) -> Configuration:
+    """Put the parameters that a file has for the node of `variant` over a configuration.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used, or a name or a value does not fit.
+    """
+    values = read_yaml(path, f"{variant.name}_tracker")
+    known = configuration.specs()
+    own = [name for name in values if name not in _OF_ROS and not name.startswith(_OF_ROS_PREFIX)]
+    problems = [unknown_name(name, known) for name in own if name not in known]
+    if problems and (others := _variants_with(own, type(configuration))):
+        problems.append(f"it is a file for {', '.join(others)}")
+    try:
+        configuration = configuration.updated(values)
+    except InputError as error:
+        problems.append(str(error))
+    if problems:
+        raise InputError(f"the parameter file {path}: {'; '.join(problems)}")
+    return configuration
+
+
+def _variants_with(names: Iterable[str], kind: type[Configuration]) -> list[str]:
+    """Return the variants that have all these parameters."""
+    return [one.name for one in VARIANTS.values() if set(names) <= set(kind.of(one).specs())]
+
+
+_WORDS = re.compile(r"(?:(?P<name>[A-Za-z0-9_-]*)(?:@(?P<frame>[0-9]{1,9}))?:)?(?P<box>[^:@]*)")
+
+
+@dataclass(frozen=True, slots=True)
+class TargetOption:
+    """A target as it was given.
+
+    Attributes
+    ----------
+    box : Box
+        Box of the vehicle in px.
+    name : str
+        Name of the vehicle; empty for the next free number.
+    frame : int or None
+        Number of the frame, from 1; None is the first of the part that is tracked.
+    """
+
+    box: Box
+    name: str = ""
+    frame: int | None = None
+
+
+def parse_target(text: str) -> TargetOption:
+    """Read ``[NAME][@FRAME:]x,y,w,h`` of a command line."""
+    found = _WORDS.fullmatch(text)
+    if found is None:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not [NAME][@FRAME:]x,y,w,h, as 310,202,40,30 or van@130:310,202,40,30"
+        )
+    frame = int(found["frame"]) if found["frame"] else None
+    if frame == 0:
+        raise argparse.ArgumentTypeError(f"{text!r} has frame 0; frames are counted from 1")
+    return TargetOption(parse_box(found["box"]), found["name"] or "", frame)
+
+
+def read_targets(path: Path) -> list[TargetOption]:
+    """Read a file of targets, as `pick` writes it.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or an entry is not a target.
+    """
+    return read_list(path, "targets", "{name: van, frame: 1, box: [310, 202, 40, 30]}", _entry)
+
+
+def read_list(
+    path: Path, key: str, example: str, read: Callable[[dict[str, Any]], EntryT]
+) -> list[EntryT]:
+    """Read the list that a YAML file has under `key`, with `example` for a user to follow.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or `read` does not take an entry.
+    """
+    try:
+        return [read(entry) for entry in yaml.safe_load(path.read_text(encoding="utf-8"))[key]]
+    except OSError as error:
+        raise InputError(f"cannot read the {key} {path}: {error.strerror}") from error
+    except InputError as error:
+        raise InputError(f"the {key} {path}: {error}") from error
+    except (ValueError, KeyError, TypeError, RecursionError, yaml.YAMLError):
+        raise InputError(f"{path} holds no {key}; it must read {key}: [{example}]") from None
+
+
+def by_name(targets: Iterable[TargetOption], first: int) -> dict[str, dict[int, Box]]:
+    """Group targets: for each name the boxes by frame.
+
+    Targets without a name are named 1, 2, ...; a name that comes again is given to the tracker anew
+    at that frame.
+
+    Parameters
+    ----------
+    targets : iterable of TargetOption
+        The targets in the order given.
+    first : int
+        Number of the first frame tracked, for targets without one.
+
+    Raises
+    ------
+    InputError
+        If a box is smaller than a pixel, a name has two in one frame, or a frame lies before the
+        first.
+    """
+    groups: dict[str, dict[int, Box]] = {}
+    for target in targets:
+        name = target.name or next(n for n in map(str, range(1, 10**6)) if n not in groups)
+        frame = first if target.frame is None else target.frame
+        if target.box.width < 1 or target.box.height < 1:
+            raise InputError(f"the target {target.box} is smaller than one pixel")
+        boxes = groups.setdefault(name, {})
+        if frame in boxes:
+            raise InputError(f"the target {name} has two boxes in frame {frame}")
+        if frame < first:
+            raise InputError(f"the target {name} is in frame {frame}; tracking begins at {first}")
+        boxes[frame] = target.box
+    return groups
+
+
+def _entry(entry: dict[str, object]) -> TargetOption:
+    numbers = entry["box"]
+    if not isinstance(numbers, list):
+        raise TypeError(numbers)
+    frame, name = entry.get("frame", 1), str(entry.get("name", ""))
+    text = f"{name}@{frame}:{','.join(map(str, numbers))}"
+    try:
+        return parse_target(text)
+    except argparse.ArgumentTypeError as error:
+        raise InputError(str(error)) from None
+
+
+def _moment(text: str) -> Moment:
+    try:
+        return Moment.parse(text)
+    except InputError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
+    """Request to track in a source, or in a part of it."""
+
+    start: Moment | None = option(
+        type=_moment, metavar="AT",
+        help="first frame: its number, from 1, or its time in seconds, as 4.3s",
+    )  # fmt: skip
+    end: Moment | None = option(type=_moment, metavar="AT", help="last frame, likewise")
+    target: Sequence[TargetOption] = option(
+        type=parse_target, action="append", default=[], metavar="[NAME][@FRAME:]X,Y,W,H",
+        help="vehicle to follow: top-left corner and size of its box in px, in the first frame or "
+        "in FRAME; repeatable, for several vehicles or to correct one later; run starts on the "
+        "first true box otherwise, and traffic follows these beside those that it detects",
+    )  # fmt: skip
+    targets: Path | None = option(type=Path, metavar="FILE", help="targets that `pick` wrote")
+    video: Path | None = option(
+        type=Path, metavar="FILE", help="write the frames with all that is followed to FILE, an mp4"
+    )
+    show: bool = switch(help="show them in a window meanwhile; q ends the run")
+
+    @property
+    def inputs(self) -> tuple[str | Path | None, ...]:
+        """The source, and the files that options name."""
+        return self.source, self.params, self.targets
+
+    def given_targets(self) -> list[TargetOption]:
+        """Collect the targets of the command line and of the file."""
+        return [*self.target, *(read_targets(self.targets) if self.targets else [])]
+
+
+Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
+
+
+def numbered_frames(
+    source: Source, request: TrackingRequest, stop: Stop, progress: OnFrames
+) -> Numbered:
+    """Yield the frames from ``--start`` to ``--end`` with their numbers, until a stop comes."""
+    part = numbered_part(stop.until(source.frames()), request.start, request.end)
+    for number, found in part:
+        progress(number, source.frame_count)
+        yield number, found
+
+
+def peeked(frames: Numbered) -> tuple[tuple[int, StampedFrame], Numbered]:
+    """Return the first frame, and all frames.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    first = next(frames, None)
+    if first is None:
+        raise InputError("the source ended before its first image")
+    return first, itertools.chain([first], frames)
+
+
+def cut_short(stop: Stop, source: Source, done: int) -> list[str]:
+    """Say that a signal ended the run after `done` frames; empty if it is whole.
+
+    A live source ends by a signal, and so its run is whole then.
+    """
+    if not stop.came or source.frame_count is None:
+        return []
+    return [f"a signal ended the run after {done} of {source.frame_count} frames"]

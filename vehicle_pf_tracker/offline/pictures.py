@@ -1,0 +1,305 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Pictures of a run: a video that browsers play, a window, and a sheet of its key frames."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from fractions import Fraction
+from importlib import util
+from pathlib import Path
+from typing import Any, Protocol, TypeAlias
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.offline.output_files import make_folder, replacing, write_picture
+from vehicle_pf_tracker.recordings.video import quiet_opencv
+
+Draw: TypeAlias = Callable[[], Frame]
+
+SUFFIX = ".mp4"
+NO_ENCODER = (
+    "this video is MPEG-4 Part 2, which browsers do not play; for H.264 install the extra [video], "
+    "pip install 'vehicle_pf_tracker[video]'"
+)
+_QUALITY = {"preset": "veryfast", "crf": "23"}
+"""x264's own middle quality, with the preset that costs 4 ms for a frame of 640x360 px."""
+
+
+class VideoWriter(Protocol):
+    """Takes RGB frames of one size."""
+
+    def write(self, frame: Frame) -> None:
+        """Append a frame."""
+
+    def close(self) -> None:
+        """Complete the file."""
+
+    def is_complete(self) -> bool:
+        """Return whether the closed file has every frame."""
+
+
+@contextmanager
+def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[VideoWriter]:
+    """Open a video for writing; it appears under its name when it is complete.
+
+    It is H.264 where PyAV is installed, else MPEG-4 Part 2 by OpenCV.
+
+    Parameters
+    ----------
+    path : Path
+        The file, ``.mp4``; an existing one is replaced.
+    size : (int, int)
+        Width and height of the frames in px; odd ones lose their last row or column.
+    rate : float
+        Frames per second.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written, or its name ends otherwise.
+    """
+    if path.suffix != SUFFIX:
+        raise InputError(f"the video {path} must end in {SUFFIX}")
+    make_folder(path.parent)
+    even = size[0] // 2 * 2, size[1] // 2 * 2
+    with replacing(path) as partial:
+        kind = _H264Video if has_encoder() else _OpenCvVideo
+        writer: VideoWriter = kind(partial, even, rate)
+        try:
+            yield writer
+        finally:
+            writer.close()
+        if not writer.is_complete():
+            raise InputError(f"cannot write {path}: frames are missing; is the disk full?")
+
+
+def has_encoder() -> bool:
+    """Return whether videos will be ones that browsers play."""
+    return util.find_spec("av") is not None
+
+
+class _OpenCvVideo:
+    def __init__(self, path: Path, size: tuple[int, int], rate: float) -> None:
+        self._size, self._path, self._count = size, path, 0
+        self._writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"mp4v"), rate, size)
+        if not self._writer.isOpened():
+            raise InputError("this OpenCV cannot write mp4v videos")
+
+    def write(self, frame: Frame) -> None:
+        self._count += 1
+        with quiet_opencv():
+            self._writer.write(cv2.cvtColor(_cropped(frame, self._size), cv2.COLOR_RGB2BGR))
+
+    def close(self) -> None:
+        with quiet_opencv():
+            self._writer.release()
+
+    def is_complete(self) -> bool:
+        with quiet_opencv():  # its writer reports no failure, as that of a full disk
+            found = cv2.VideoCapture(str(self._path)).get(cv2.CAP_PROP_FRAME_COUNT)
+        return int(found) == self._count
+
+
+class _H264Video:
+    def __init__(self, path: Path, size: tuple[int, int], rate: float) -> None:
+        import av  # noqa: PLC0415 - an extra
+
+        self._size, self._frame_of = size, av.VideoFrame.from_ndarray
+        self._container: Any = av.open(str(path), "w")
+        exact = Fraction(rate).limit_denominator(1001)  # 30000/1001 is the oddest in use
+        self._stream = self._container.add_stream("libx264", rate=exact)
+        self._stream.width, self._stream.height = size
+        self._stream.pix_fmt, self._stream.options = "yuv420p", _QUALITY
+
+    def write(self, frame: Frame) -> None:
+        picture = self._frame_of(_cropped(frame, self._size), format="rgb24")
+        self._container.mux(self._stream.encode(picture))
+
+    def close(self) -> None:
+        self._container.mux(self._stream.encode())
+        self._container.close()
+
+    def is_complete(self) -> bool:
+        return True  # PyAV raises an error for each failure
+
+
+def _cropped(frame: Frame, size: tuple[int, int]) -> Frame:
+    cropped: Frame = np.ascontiguousarray(frame[: size[1], : size[0]])
+    return cropped
+
+
+def has_display() -> bool:
+    """Return whether windows can be shown."""
+    return os.name != "posix" or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
+
+
+class PictureWindow:
+    """Shows one frame after the other.
+
+    Parameters
+    ----------
+    title : str
+        Title of the window.
+
+    Raises
+    ------
+    InputError
+        If there is no display, or this OpenCV has no windows.
+    """
+
+    def __init__(self, title: str) -> None:
+        self._title = title
+        try:
+            # Without a display, Qt would end the program instead of raising.
+            if not has_display():
+                raise InputError("--show needs a display, and there is none; use --video FILE")
+            cv2.namedWindow(title, cv2.WINDOW_NORMAL)
+        except cv2.error:
+            raise InputError(
+                "--show needs an OpenCV with windows (opencv-python, not -headless); "
+                "use --video FILE"
+            ) from None
+
+    def show(self, picture: Frame) -> bool:
+        """Show a frame; False when the user presses q or Escape."""
+        cv2.imshow(self._title, cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+        return cv2.waitKey(1) & 0xFF not in (ord("q"), 27)
+
+
+THUMB_WIDTH = 400
+"""Width of a key frame on the sheet, px: three of them fill a page's width."""
+_COLUMNS = 3
+_MOST = 12
+"""Key frames on a sheet: four rows."""
+_KEPT = 200
+"""Key frames kept in memory, 50 MB of them, of which the sheet shows an even choice."""
+
+
+class ContactSheet:
+    """Keeps the first and the last frame, and those in which a mode changes."""
+
+    def __init__(self) -> None:
+        self._kept: list[Frame] = []
+        self._last: Callable[[], Frame] | None = None
+        self._modes: tuple[str, ...] | None = None
+
+    def add(self, modes: tuple[str, ...], draw: Callable[[], Frame]) -> None:
+        """Take the next frame: the mode of each target, and a function that draws it.
+
+        Before and after a change both frames are kept: an occlusion's way in and its way out.
+        """
+        changes = modes != self._modes
+        if changes and len(self._kept) < _KEPT:
+            if self._modes is not None and self._last is not None:
+                self._kept.append(_thumb(self._last()))
+            self._kept.append(_thumb(draw()))
+            self._last = None
+        else:
+            self._last = draw
+        self._modes = modes
+
+    def write(self, path: Path) -> bool:
+        """Write the sheet; False where there was no frame.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        thumbs = [*self._kept, *([] if self._last is None else [_thumb(self._last())])]
+        if not thumbs:
+            return False
+        chosen = np.unique(np.linspace(0, len(thumbs) - 1, min(len(thumbs), _MOST)).round())
+        write_picture(path, _tiled([thumbs[int(index)] for index in chosen]))
+        return True
+
+
+def _thumb(picture: Frame) -> Frame:
+    height = max(1, round(THUMB_WIDTH * picture.shape[0] / picture.shape[1]))
+    thumb: Frame = cv2.resize(picture, (THUMB_WIDTH, height), interpolation=cv2.INTER_AREA)  # type: ignore[assignment]
+    return thumb
+
+
+def _tiled(thumbs: list[Frame]) -> Frame:
+    height = max(thumb.shape[0] for thumb in thumbs)
+    columns = min(_COLUMNS, len(thumbs))
+    rows = -(-len(thumbs) // columns)
+    sheet: Frame = np.full((rows * height, columns * THUMB_WIDTH, 3), 24, np.uint8)
+    for index, thumb in enumerate(thumbs):
+        top, left = index // columns * height, index % columns * THUMB_WIDTH
+        sheet[top : top + thumb.shape[0], left : left + THUMB_WIDTH] = thumb
+    return sheet
+
+
+class Pictures:
+    """Annotated frames: a video, a window, and the key frames.
+
+    Parameters
+    ----------
+    video : Path or None
+        Video to write.
+    particles : bool
+        Draw the particles.
+    window : str
+        Title of a window that shows each annotated frame; empty for none. Its user can end the run.
+
+    Attributes
+    ----------
+    sheet : ContactSheet
+        The key frames.
+    """
+
+    def __init__(
+        self,
+        video: Path | None = None,
+        *,
+        particles: bool = False,
+        window: str = "",
+    ) -> None:
+        self.video = video
+        self.particles = particles
+        self.sheet = ContactSheet()
+        self._window = PictureWindow(window) if window else None
+
+    @property
+    def notices(self) -> list[str]:
+        """Shortcomings of the video, a sentence each."""
+        return [NO_ENCODER] if self.video and not has_encoder() else []
+
+    @contextmanager
+    def drawing(self, rate: float) -> Iterator[Callable[[tuple[str, ...], Draw, Frame], bool]]:
+        """Give a function that takes modes, drawing and image of each frame; False ends the run."""
+        with ExitStack() as stack:
+            video: VideoWriter | None = None
+
+            def take(modes: tuple[str, ...], draw: Draw, frame: Frame) -> bool:
+                nonlocal video
+                self.sheet.add(modes, draw)
+                if self.video is not None and video is None:
+                    writing = video_writer(self.video, frame_size(frame), rate)
+                    video = stack.enter_context(writing)
+                if video is not None:
+                    video.write(draw())
+                return self._window is None or self._window.show(draw())
+
+            yield take
