@@ -100,6 +100,9 @@ PROGRAMS = {
         ("baselines",),
     ),
     "laboratory.traffic_occluders": Program("{toy}/traffic", printed="traffic: "),
+    "laboratory.traffic_perturbed": Program(
+        "{toy}/traffic -o {out}", ("traffic.html",), "the report is", ("baselines",)
+    ),
     "laboratory.traffic_score": Program(
         "{toy}/traffic --baselines", printed="bytetrack", needs=("baselines",)
     ),

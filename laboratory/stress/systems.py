@@ -26,12 +26,12 @@ from typing import Any, Protocol
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.baselines.client import Baseline, BaselineAnswer
+from vehicle_pf_tracker.evaluation.baselines.client import Baseline, baseline_row
 from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, System, VariantSystem
 from vehicle_pf_tracker.evaluation.result_store import variant_modules
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, to_mapping
-from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 _BASELINES = "vehicle_pf_tracker.evaluation.baselines."
@@ -125,22 +125,15 @@ class BaselineFollower:
 
     def start(self, frame: Frame, box: Box) -> EstimateRow:
         """Start it; see `Follower`."""
-        return _row(self._baseline.start(frame, box))
+        return baseline_row(self._baseline.start(frame, box), 0, 0)
 
     def step(self, frame: Frame, _elapsed: float = 1.0) -> EstimateRow:
         """Step it; these trackers know no time."""
-        return _row(self._baseline.step(frame))
+        return baseline_row(self._baseline.step(frame), 0, 0)
 
     def close(self) -> None:
         """End its process."""
         self._baseline.close()
-
-
-def _row(answer: BaselineAnswer) -> EstimateRow:
-    x, y = answer.box.centre
-    mode = Mode.TRACKING if answer.found else Mode.LOST
-    size = answer.box.width, answer.box.height
-    return EstimateRow(0, 0, x, y, *size, mode.value, None, None, None)
 
 
 def variant_system(

@@ -30,7 +30,6 @@ from vehicle_pf_tracker.cli.console import (
     UsageError,
     counting,
     print_rows,
-    print_table,
     tell_error,
     tell_notices,
 )
@@ -58,7 +57,6 @@ _GRID_ONLY = (
     "figures",
 )  # fmt: skip
 """Options of the grid that do not apply."""
-PAGE = "traffic.html"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,11 +73,6 @@ class TrafficRequest(EvaluationRequest):
         metavar="NAME,…",
         help="only these files of det/, by name without .txt, and `motion` (default: all)",
     )  # fmt: skip
-    perturbations: str | None = option(
-        metavar="NAME,…",
-        help="only these of dropped, gap20, gap40, squared and halved; `none` for none "
-        "(default: all)",
-    )  # fmt: skip
 
 
 def check(request: TrafficRequest) -> None:
@@ -90,7 +83,7 @@ def check(request: TrafficRequest) -> None:
     UsageError
         If there is one.
     """
-    for name in _GRID_ONLY if request.traffic else ("detections", "perturbations"):
+    for name in _GRID_ONLY if request.traffic else ("detections",):
         if getattr(request, name):
             option = "--" + name.replace("_", "-")
             raise UsageError(
@@ -101,19 +94,12 @@ def check(request: TrafficRequest) -> None:
 def run_traffic(request: TrafficRequest) -> int:
     """Run the comparison, write its report, and print its tables."""
     from vehicle_pf_tracker.evaluation.baselines.traffic_client import TrafficWorker
-    from vehicle_pf_tracker.evaluation.report.traffic import traffic_page
     from vehicle_pf_tracker.evaluation.traffic.comparison import cases_of, compare
-    from vehicle_pf_tracker.evaluation.traffic.comparison_report import (
-        MARKDOWN,
-        by_case,
-        main_table,
-        write_traffic_report,
-    )
+    from vehicle_pf_tracker.evaluation.traffic.report import NAME, write_traffic_report
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
-    from vehicle_pf_tracker.offline.output_files import write_text
 
     sequences = [read_sequence(Path(source)) for source in request.sources]
-    cases = cases_of(sequences, _sources(request, sequences), _perturbations(request))
+    cases = cases_of(sequences, _sources(request, sequences))
     parameters = _parameters(request)
     seeds = range(request.first_seed, request.first_seed + (request.seeds or FEW_SEEDS))
     with (
@@ -127,11 +113,10 @@ def run_traffic(request: TrafficRequest) -> int:
             "set": request.assignments,
             **worker.versions,
         }
-    lines = write_traffic_report(results, request.output, options)
-    write_text(request.output / PAGE, traffic_page(lines, " ".join(request.command)))
-    for title, group in by_case(lines):
-        print_rows(*main_table(group), title)
-    print(f"the report is {request.output / PAGE}, and {MARKDOWN} beside it")
+    tables = write_traffic_report(results, request.output, options)
+    for title, table in tables.items():
+        print_rows(*table.texts(), title)
+    print(f"the report is {request.output / NAME}.html, and {NAME}.md beside it")
     return 0
 
 
@@ -141,25 +126,11 @@ def _sources(request: TrafficRequest, sequences: Sequence[TrafficSequence]) -> l
     if request.detections is None:
         return None
     known = {MOTION, *(name for sequence in sequences for name in sequence.detections)}
-    return _names(request.detections, known, "detections")
-
-
-def _perturbations(request: TrafficRequest) -> list[str]:
-    from vehicle_pf_tracker.evaluation.traffic.comparison import PERTURBATIONS, UNCHANGED
-
-    if request.perturbations is None:
-        return list(PERTURBATIONS)
-    if request.perturbations == "none":
-        return [UNCHANGED]
-    return [UNCHANGED, *_names(request.perturbations, set(PERTURBATIONS), "perturbations")]
-
-
-def _names(text: str, known: set[str], what: str) -> list[str]:
-    names = list(dict.fromkeys(text.split(",")))
+    names = list(dict.fromkeys(request.detections.split(",")))
     for name in names:
         if name not in known:
             raise InputError(
-                f"there are no {what} {name!r}{suggestion(name, known)}; choose from "
+                f"there are no detections {name!r}{suggestion(name, known)}; choose from "
                 f"{', '.join(sorted(known))}"
             )
     return names
@@ -278,7 +249,7 @@ def _runner(request: Request) -> Runner:
 
 
 def _show(summaries: Sequence[SystemSummary]) -> None:
-    print_table(grid_table(summaries))
+    print_rows(*grid_table(summaries))
     for summary in summaries:
         for reason in dict.fromkeys(summary.reasons):
             tell_notices([f"{summary.label} did not run everywhere: {reason}"])

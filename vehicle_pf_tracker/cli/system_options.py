@@ -194,7 +194,7 @@ def _baseline_system(
     build = ""
     try:
         with Baseline(name, python, files) as baseline:
-            build = baseline.opencv
+            build = baseline.versions["opencv"]
     except InputError as error:
         notes.append(f"{BASELINE}{name} cannot run: {error}")
     interpreter = "" if python is None else str(python.absolute())

@@ -178,6 +178,11 @@ class SystemEntry:
     parameters: Mapping[str, Any]
     seeds: tuple[int, ...] | None = None
 
+    @property
+    def effective(self) -> dict[str, Any]:
+        """All parameters in effect, those that were set first."""
+        return {**self.overrides, **self.parameters}
+
 
 @dataclass(frozen=True, slots=True)
 class Cell:

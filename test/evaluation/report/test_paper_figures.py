@@ -27,9 +27,9 @@ from vehicle_pf_tracker.cli.report import FIGURE_FORMATS
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report import paper_figures
 from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
-from vehicle_pf_tracker.evaluation.report.figures import PAGE
+from vehicle_pf_tracker.evaluation.report.figures import PAGE, PAPER
 from vehicle_pf_tracker.evaluation.report.page import styled
-from vehicle_pf_tracker.evaluation.report.paper_figures import PAPER, write_figures
+from vehicle_pf_tracker.evaluation.report.paper_figures import write_figures
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
 
 NAMES = {"intervals", "success", "precision", "normalised", *(f"errors_{name}" for name in HIDDEN)}

@@ -20,8 +20,11 @@ import shutil
 import pytest
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.report.page_tables import speed_note, speed_table
-from vehicle_pf_tracker.evaluation.report.robustness import robustness_sections
+from vehicle_pf_tracker.evaluation.report.robustness import (
+    robustness_sections,
+    speed_note,
+    speed_table,
+)
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.run_folder import seal
 
@@ -57,12 +60,12 @@ def write_cell(place, documents):
 
 
 def texts(table):
-    return {row.label: [cell.text for cell in row.cells] for row in table.rows}
+    return {label: [cell.text for cell in cells] for label, cells in table.rows.items()}
 
 
 def test_other_starts_by_hand(folder):
     evaluation = EvaluationFolder(folder)
-    shifted, frames, restarts = robustness_sections(evaluation, ORDER, {"pf": 0})
+    shifted, frames, restarts = robustness_sections(evaluation, ORDER)
     usual = [
         json.loads((folder / "cells" / name / "pf" / "seed-0" / "metrics.json").read_text())
         for name in ("free", "under_a_bridge")
@@ -79,21 +82,21 @@ def test_what_was_not_asked_for_is_not_shown(folder):
     plan = json.loads((folder / "evaluation.json").read_text())
     plan["options"] = {"shifted_starts": False, "start_frames": 0}
     (folder / "evaluation.json").write_text(json.dumps(plan))
-    assert robustness_sections(EvaluationFolder(folder), ORDER, {}) == []
+    assert robustness_sections(EvaluationFolder(folder), ORDER) == []
 
 
 def test_what_cannot_be_read_is_passed_over(folder):
     path = next(folder.glob("robustness/restarts/**/restarts.json"))
     path.write_text("{")
     seal(path.parent)
-    titles = [s.title for s in robustness_sections(EvaluationFolder(folder), ORDER, {})]
+    titles = [s.title for s in robustness_sections(EvaluationFolder(folder), ORDER)]
     assert titles == ["Shifted and scaled starts", "Other first frames"]
 
 
 def test_what_was_changed_is_passed_over(folder):
     path = next(folder.glob("robustness/restarts/**/restarts.json"))
     path.write_text(path.read_text().replace("3", "2"))
-    titles = [s.title for s in robustness_sections(EvaluationFolder(folder), ORDER, {})]
+    titles = [s.title for s in robustness_sections(EvaluationFolder(folder), ORDER)]
     assert titles == ["Shifted and scaled starts", "Other first frames"]
 
 
@@ -103,10 +106,8 @@ def test_speed_by_hand():
         {"recording": "b", "system": "pf", "step_ms_p50": 3.0, "step_ms_p95": None},
         {"recording": "a", "system": "ms", "step_ms_p50": None},
     ]
-    assert texts(speed_table({"cells": cells}, ORDER, {})) == {
-        "pf": ["2.00", "3.00", "3.00", "500"]
-    }
-    assert speed_table(None, ORDER, {}) is None
+    assert texts(speed_table({"cells": cells}, ORDER)) == {"pf": ["2.00", "3.00", "3.00", "500"]}
+    assert speed_table(None, ORDER) is None
 
 
 def test_the_speed_says_its_clock():

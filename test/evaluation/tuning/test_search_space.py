@@ -18,7 +18,7 @@ from types import SimpleNamespace
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.tuning.search_space import (
+from vehicle_pf_tracker.evaluation.search_space import (
     Dimension,
     default_search,
     search_space,

@@ -21,13 +21,11 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.tracking import CellResult
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.evaluation.tuning.search_space import search_space
-from vehicle_pf_tracker.evaluation.tuning.searching import (
-    OBJECTIVES,
+from vehicle_pf_tracker.evaluation.search_space import OBJECTIVES, mean_of_means, search_space
+from vehicle_pf_tracker.evaluation.tuning import (
     SearchTask,
     Trial,
     best_of,
-    mean_of_means,
     search,
     to_csv,
 )

@@ -167,7 +167,7 @@ class _BaselineFollower:
     def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]:
         python = Path(self._system.python) if self._system.python else None
         with Baseline(self._system.baseline, python, self._system.model_files()) as baseline:
-            self._opencv = baseline.opencv
+            self._opencv = baseline.versions["opencv"]
             for row in baseline_rows(baseline, frames, self._start):
                 if self._start_frame is None and row.mode not in {WAITING, REJECTED}:
                     self._start_frame = row.frame

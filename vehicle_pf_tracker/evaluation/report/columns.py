@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
@@ -39,8 +39,6 @@ class Column:
         Decimals shown to readers.
     higher_is_better : bool or None
         True if large values are best; None where neither end is.
-    value : callable
-        Reads it from the metrics of a run; None where a run has none.
     help : str
         Explanation, one sentence.
     by_recording : bool
@@ -53,7 +51,6 @@ class Column:
     unit: str
     decimals: int
     higher_is_better: bool | None
-    value: Callable[[Metrics], float | None]
     help: str
     by_recording: bool = True
 
@@ -62,90 +59,67 @@ class Column:
         """Label and unit."""
         return f"{self.label}, {self.unit}" if self.unit else self.label
 
+    def value(self, metrics: Metrics) -> float | None:
+        """Return the metric of a run; of occlusions the mean of those that have it."""
+        if hasattr(metrics, self.key) and self.key != "recovered":
+            value: float | None = getattr(metrics, self.key)
+            return None if value is None else float(value)
+        known = [
+            number
+            for occlusion in metrics.occlusions
+            if (number := getattr(occlusion, self.key)) is not None
+        ]
+        return sum(known) / len(known) if known else None
+
 
 OVERLAP, ERRORS, HIDDEN, CLAIMS, RUN = (
     "Overlap and precision", "Error of the centre", "Total occlusions", "Claims", "Run"
 )  # fmt: skip
 
-
-def _recovered(metrics: Metrics) -> float | None:
-    judged = [verdict for verdict in metrics.recovered if verdict is not None]
-    return sum(judged) / len(judged) if judged else None
-
-
-def _mean_over_occlusions(name: str) -> Callable[[Metrics], float | None]:
-    def value(metrics: Metrics) -> float | None:
-        known = [getattr(occlusion, name) for occlusion in metrics.occlusions]
-        known = [number for number in known if number is not None]
-        return sum(known) / len(known) if known else None
-
-    return value
-
-
-SUCCESS = Column(
-    "success_auc", OVERLAP, "success AUC", "", 3, True, lambda m: m.success_auc,
-    "Area under the success curve: share of frames whose overlap (intersection over union) is "
-    "above thresholds from 0 to 1.",
-)  # fmt: skip
-PRECISION = Column(
-    "precision_20px", OVERLAP, "precision at 20 px", "", 3, True, lambda m: m.precision_20px,
-    "Share of frames with an error of the centre of at most 20 px.",
-)  # fmt: skip
-RMSE = Column(
-    "rmse_px", ERRORS, "RMSE", "px", 1, False, lambda m: m.rmse_px,
-    "Root of the mean squared error of the centre, all scored frames.",
-)  # fmt: skip
-RECOVERED = Column(
-    "recovered", HIDDEN, "recovered", "", 2, True, _recovered,
-    "Share of the judged total occlusions after which the track was on the vehicle again; in "
-    "brackets how many of all runs.", False,
-)  # fmt: skip
-STEP = Column(
-    "step_ms_p50", RUN, "step", "ms", 2, False, lambda m: m.step_ms_p50,
-    "Median time of a step, measured while other cells of the grid may have run beside it.",
-)  # fmt: skip
-
 COLUMNS = (
-    SUCCESS,
-    PRECISION,
+    Column("success_auc", OVERLAP, "success AUC", "", 3, True,
+           "Area under the success curve: share of frames whose overlap (intersection over union) "
+           "is above thresholds from 0 to 1."),
+    Column("precision_20px", OVERLAP, "precision at 20 px", "", 3, True,
+           "Share of frames with an error of the centre of at most 20 px."),
     Column("normalised_precision_auc", OVERLAP, "normalised precision AUC", "", 3, True,
-           lambda m: m.normalised_precision_auc,
            "Area under the curve of the error in sizes of the true box, from 0 to 0.5.", False),
-    Column("p_error_lt_15px", OVERLAP, "below 15 px", "", 3, True, lambda m: m.p_error_lt_15px,
+    Column("p_error_lt_15px", OVERLAP, "below 15 px", "", 3, True,
            "Share of frames with an error below 15 px."),
-    Column("on_target", OVERLAP, "on target", "", 3, True, lambda m: m.on_target,
+    Column("on_target", OVERLAP, "on target", "", 3, True,
            "Share of visible frames with an error below half the true box's diagonal.", False),
-    RMSE,
+    Column("rmse_px", ERRORS, "RMSE", "px", 1, False,
+           "Root of the mean squared error of the centre, all scored frames."),
     Column("rmse_visible_px", ERRORS, "RMSE visible", "px", 1, False,
-           lambda m: m.rmse_visible_px,
            "The same over the frames that are not totally occluded."),
-    Column("median_px", ERRORS, "median", "px", 1, False, lambda m: m.median_px,
-           "Median error of the centre."),
-    Column("p95_px", ERRORS, "95\u00a0%", "px", 1, False, lambda m: m.p95_px,
+    Column("median_px", ERRORS, "median", "px", 1, False, "Median error of the centre."),
+    Column("p95_px", ERRORS, "95\u00a0%", "px", 1, False,
            "Error of the centre that 95 % of the frames stay below.", False),
-    Column("max_px", ERRORS, "largest", "px", 1, False, lambda m: m.max_px,
-           "Largest error of the centre."),
-    RECOVERED,
+    Column("max_px", ERRORS, "largest", "px", 1, False, "Largest error of the centre."),
+    Column("recovered", HIDDEN, "recovered", "", 2, True,
+           "Share of the judged total occlusions after which the track was on the vehicle again; "
+           "in brackets how many of all runs.", False),
     Column("frames_to_recover", HIDDEN, "return", "frames", 1, False,
-           _mean_over_occlusions("frames_to_recover"),
            "Frames from the last hidden one until the track stays on the vehicle, where it does.",
            False),
     Column("error_at_exit_px", HIDDEN, "error at exit", "px", 1, False,
-           _mean_over_occlusions("error_at_exit_px"),
            "Error in the first frame after a total occlusion.", False),
     Column("occluded_precision", CLAIMS, "OCCLUDED precision", "", 2, True,
-           lambda m: m.occluded_precision,
            "Share of the frames with the mode OCCLUDED that are totally occluded.", False),
-    Column("occluded_recall", CLAIMS, "OCCLUDED recall", "", 2, True, lambda m: m.occluded_recall,
+    Column("occluded_recall", CLAIMS, "OCCLUDED recall", "", 2, True,
            "Share of the totally occluded frames with the mode OCCLUDED; baselines have none.",
            False),
     Column("lost_visible", CLAIMS, "LOST though visible", "frames", 1, None,
-           lambda m: float(m.lost_visible),
            "Frames with the mode LOST while the vehicle can be seen."),
-    Column("failures", RUN, "failures", "", 1, False, lambda m: float(m.failures),
+    Column("failures", RUN, "failures", "", 1, False,
            "Times per run that the estimate came to have no overlap with a visible vehicle."),
-    STEP,
+    Column("step_ms_p50", RUN, "step", "ms", 2, False,
+           "Median time of a step, measured while other cells of the grid may have run beside it."),
 )  # fmt: skip
+_BY_KEY = {column.key: column for column in COLUMNS}
+SUCCESS, PRECISION, RMSE, RECOVERED, STEP = (
+    _BY_KEY[key] for key in ("success_auc", "precision_20px", "rmse_px", "recovered", "step_ms_p50")
+)
 
 RANKED = (SUCCESS, PRECISION, RMSE)
 """Metrics that systems are ranked by; the first one orders the tables."""

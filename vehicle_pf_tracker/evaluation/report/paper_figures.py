@@ -25,22 +25,17 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
-from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
-from vehicle_pf_tracker.evaluation.report.columns import RANKED
-from vehicle_pf_tracker.evaluation.report.figure_data import (
+from vehicle_pf_tracker.evaluation.report.figures import (
     CURVES,
+    PAPER,
     CurveLine,
     ErrorSeries,
     curve_lines,
-    error_series,
-    interval_rows,
-)
-from vehicle_pf_tracker.evaluation.report.figures import (
-    Look,
     draw_curves,
     draw_errors,
-    intervals_panel,
+    error_series,
+    intervals_figure,
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
 from vehicle_pf_tracker.offline.output_files import make_folder, replacing
@@ -55,23 +50,6 @@ _DPI = 300
 _PANEL_HEIGHT = 1.35
 """Height of a panel of errors over time, inches: three in a row are then about 5 to 3."""
 _PANELS_IN_A_ROW = 3
-
-PAPER = Look(
-    MappingProxyType(
-        {
-            "ink": "#000000",
-            "muted": "#404040",
-            "rule": "#b0b0b0",
-            "total": "#c9ced4",
-            "partial": "#e9ecef",
-            "accent": "#0a5c9e",
-            **{f"s{slot}": style.colour for slot, style in enumerate(STYLES)},
-        }
-    ),
-    8.0,  # as large as captions; the smallest that IEEE advises is 8
-    "path",
-)
-"""Dark letters on white, drawn as paths in SVG so that they are the same in every program."""
 
 _METADATA: Mapping[str, dict[str, Any]] = MappingProxyType(
     {
@@ -115,15 +93,13 @@ def _figures(
     evaluation: ScoredEvaluation, aggregates: Aggregates, slots: Mapping[str, int]
 ) -> dict[str, Figure]:
     figures = {}
-    if rows := interval_rows(aggregates):
-        figures["intervals"] = intervals_panel(rows, RANKED[0].title, PAPER, ONE_COLUMN)
+    if intervals := intervals_figure(aggregates, PAPER, ONE_COLUMN):
+        figures["intervals"] = intervals
     for name, (_, xlabel, ylabel) in CURVES.items():
         if lines := curve_lines(evaluation, aggregates.order, slots, name):
             figures[name] = _curves(lines, xlabel, ylabel)
     for entry in evaluation.recordings:
-        runs = {
-            label: some for label in aggregates.order if (some := evaluation.of(entry.name, label))
-        }
+        runs = evaluation.by_system(entry.name, aggregates.order)
         series = error_series(runs, evaluation.truths[entry.name])
         if series.errors:
             figures[f"errors_{safe_name(entry.name)}"] = _errors(series)
@@ -136,9 +112,8 @@ def _curves(lines: Sequence[CurveLine], xlabel: str, ylabel: str) -> Figure:
         styled = sum(line.slot is not None for line in lines)
         rows = -(-styled // 2)
         figure = Figure(figsize=(ONE_COLUMN, 2.2 + 0.16 * rows), layout="constrained")
-        axes = figure.add_subplot()
+        axes = figure.add_subplot(xlabel=xlabel, ylabel=ylabel)
         draw_curves(axes, lines, PAPER)
-        axes.set(xlabel=xlabel, ylabel=ylabel)
         handles, labels = axes.get_legend_handles_labels()  # drawn last to first
         figure.legend(
             handles[::-1], labels[::-1], loc="outside lower center", ncols=2, frameon=False,
@@ -156,8 +131,8 @@ def _errors(series: ErrorSeries) -> Figure:
     with rc_context(PAPER.settings):
         figure = Figure(figsize=(width, 0.3 + _PANEL_HEIGHT * rows), layout="constrained")
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-        for axes, (label, errors) in zip(grid.flat, series.errors.items(), strict=False):
-            draw_errors(axes, errors, series.spans, series.highest, PAPER)
+        for axes, label in zip(grid.flat, series.errors, strict=False):
+            draw_errors(axes, series, label, PAPER)
             axes.set_title(label, fontsize=PAPER.letters, loc="left", pad=2.0)
         for axes in list(grid.flat)[count:]:
             axes.remove()

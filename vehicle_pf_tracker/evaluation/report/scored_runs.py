@@ -134,6 +134,10 @@ class ScoredEvaluation:
             if recording in {None, run.recording} and system in {None, run.system}
         ]
 
+    def by_system(self, recording: str, order: Sequence[str]) -> dict[str, list[ScoredRun]]:
+        """Return the runs on a recording by their systems, of those in `order` that have any."""
+        return {label: runs for label in order if (runs := self.of(recording, label))}
+
 
 def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
     """Score all cells; those that cannot be read or scored are failed cells."""

@@ -16,10 +16,8 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -42,10 +40,14 @@ from vehicle_pf_tracker.evaluation.report.columns import (
     SUCCESS,
     Column,
     interval_text,
-    mean_and_spread_text,
     mean_text,
 )
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
+from vehicle_pf_tracker.evaluation.report.page_tables import (
+    overall_table,
+    ranks_table,
+    recording_table,
+)
 from vehicle_pf_tracker.evaluation.report.paper_figures import write_figures
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
@@ -55,7 +57,7 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
 )
 from vehicle_pf_tracker.evaluation.report.video import write_videos
 from vehicle_pf_tracker.evaluation.statistics import Summary
-from vehicle_pf_tracker.evaluation.tables import markdown
+from vehicle_pf_tracker.evaluation.tables import csv_text, markdown
 from vehicle_pf_tracker.offline.output_files import write_json, write_text
 
 ALL_RECORDINGS = "(all)"
@@ -70,20 +72,20 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     """Return the findings, the means, the ranks and each recording as Markdown."""
     parts = [f"# {title(evaluation)}\n"]
     parts.append("".join(f"- {line}\n" for line in findings(evaluation, aggregates)))
-    parts.append("## Means over recordings\n\n" + _metrics(aggregates.overall, spread=False))
-    parts.append("## Ranks\n\n" + _ranks(aggregates))
-    if power(aggregates):
-        parts.append(power(aggregates) + "\n")
-    for recording in evaluation.recordings:
-        table = {
-            label: found
-            for label in aggregates.order
-            if (found := aggregates.by_recording.get((recording.name, label))) is not None
-        }
-        parts.append(f"## {recording.name}\n\n" + _metrics(table, spread=True))
+    tables = {
+        "Means over recordings": overall_table(aggregates),
+        "Ranks": ranks_table(aggregates),
+        **{
+            entry.name: recording_table(aggregates, entry.name, COLUMNS)
+            for entry in evaluation.recordings
+        },
+    }
+    for heading, table in tables.items():
+        parts.append(f"## {heading}\n\n{markdown(*table.texts())}")
+        if heading == "Ranks" and power(aggregates):
+            parts.append(power(aggregates) + "\n")
     if evaluation.failed:
-        cells = [[_cell_text(c.system), c.recording, str(c.seed), _cell_text(c.reason)]
-                 for c in evaluation.failed]  # fmt: skip
+        cells = [[c.system, c.recording, str(c.seed), c.reason] for c in evaluation.failed]
         header = ["system", "recording", "seed", "reason"]
         parts.append("## Failed cells\n\n" + markdown(header, cells))
     return "\n".join(parts)
@@ -91,17 +93,21 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
 
 def summary_csv(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
     """Return every mean with its spread and interval, a line each, with every digit."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
+    everything = [(ALL_RECORDINGS, label, found) for label, found in aggregates.overall.items()]
+    everything += [
+        (name, label, found)
+        for entry in evaluation.recordings
+        for (name, label), found in aggregates.by_recording.items()
+        if name == entry.name
+    ]
+    rows = [
+        [recording, system, column.key, column.unit, *astuple(found)]
+        for recording, system, summaries in everything
+        for column in COLUMNS
+        if (found := summaries.get(column.key)) is not None
+    ]
     header = ("recording", "system", "metric", "unit", "count", "mean", "spread", "low", "high")
-    writer.writerow(header)
-    for recording, system, summaries in _all(evaluation, aggregates):
-        for column in COLUMNS:
-            found = summaries.get(column.key)
-            if found is not None:
-                values = (found.count, found.mean, found.spread, found.low, found.high)
-                writer.writerow([recording, system, column.key, column.unit, *values])
-    return text.getvalue()
+    return csv_text(header, rows)
 
 
 def summary_tex(aggregates: Aggregates) -> str:
@@ -177,55 +183,8 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
     }
 
 
-def _all(
-    evaluation: ScoredEvaluation, aggregates: Aggregates
-) -> Iterator[tuple[str, str, Summaries]]:
-    for label, summaries in aggregates.overall.items():
-        yield ALL_RECORDINGS, label, summaries
-    for entry in evaluation.recordings:
-        for (name, label), summaries in aggregates.by_recording.items():
-            if name == entry.name:
-                yield name, label, summaries
-
-
-def _metrics(table: Mapping[str, Summaries], *, spread: bool) -> str:
-    kept = [column for column in COLUMNS if any(row.get(column.key) for row in table.values())]
-    show = mean_and_spread_text if spread else mean_text
-    rows = (
-        [_cell_text(label), *(show(summaries.get(column.key), column) for column in kept)]
-        for label, summaries in table.items()
-    )
-    return markdown(["system", *(column.title for column in kept)], rows)
-
-
-def _ranks(aggregates: Aggregates) -> str:
-    ranked = [column for column in RANKED if column.key in aggregates.rankings]
-    places = {
-        column.key: {rank.system: rank for rank in aggregates.rankings[column.key].ranks}
-        for column in ranked
-    }
-    rows = []
-    for label in aggregates.order:
-        row = [_cell_text(label)]
-        for column in ranked:
-            rank = places[column.key].get(label)
-            tie = " =" if rank and rank.tied else ""
-            row.append(f"{rank.place}{tie} ({rank.mean_rank:.2f})" if rank else NO_VALUE)
-        rows.append(row)
-    header = ["system", *(f"{column.label}: place (mean rank)" for column in ranked)]
-    return markdown(header, rows)
-
-
 def _plain(summaries: Summaries) -> dict[str, dict[str, Any] | None]:
-    return {key: _numbers(found) for key, found in summaries.items()}
-
-
-def _numbers(found: Summary | None) -> dict[str, Any] | None:
-    return None if found is None else asdict(found)
-
-
-def _cell_text(text: str) -> str:
-    return text.replace("|", "\\|")
+    return {key: None if found is None else asdict(found) for key, found in summaries.items()}
 
 
 @dataclass(frozen=True, slots=True)

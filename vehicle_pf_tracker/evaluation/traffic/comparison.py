@@ -12,17 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The tracker of many vehicles and baselines on the same detections of scenes with truth.
-
-Detections made worse, or scored otherwise, by name.
-"""
+"""The tracker of many vehicles and baselines on the same detections of scenes with truth."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 
 import numpy as np
 
@@ -38,74 +34,13 @@ from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
-UNCHANGED = "unchanged"
-DROPPED = 0.2
-"""Share of detections that `dropped` leaves out."""
-_SEED = 20
-"""Seed of what is left out: the same for every system."""
-_PERIOD, _FIRST = 200, 100
-"""Frames from one gap to the next, and the first gap's first frame: the tracks before it are old
-enough, and the last clip has four gaps."""
-
-Perturbation = Callable[[Array], Array]
-"""Takes rows (frame, left, top, width, height, score) and returns others."""
-
-
-def _dropped(rows: Array) -> Array:
-    kept: Array = rows[np.random.default_rng(_SEED).uniform(size=len(rows)) >= DROPPED]
-    return kept
-
-
-def _with_gaps(length: int) -> Perturbation:
-    def without(rows: Array) -> Array:
-        late = rows[:, 0] - _FIRST
-        kept: Array = rows[(late < 0) | (late % _PERIOD >= length)]
-        return kept
-
-    return without
-
-
-def _scored(change: Callable[[Array], Array]) -> Perturbation:
-    return lambda rows: np.column_stack([rows[:, :5], change(rows[:, 5])])
-
-
-PERTURBATIONS: Mapping[str, Perturbation] = MappingProxyType(
-    {
-        UNCHANGED: lambda rows: rows,
-        "dropped": _dropped,
-        "gap20": _with_gaps(20),
-        "gap40": _with_gaps(40),
-        "squared": _scored(np.square),
-        "halved": _scored(lambda scores: scores / 2),
-    }
-)
-"""A fifth of the detections dropped; 20 and 40 of every 200 frames without any; other scores."""
-
-
 OURS = "traffic"
 MOTION = "motion"
 """Source of detections: the embedded detector, whose boxes the baselines get too."""
 
 Maker = Callable[[TrafficParameters], TrafficTracker]
-
-
-@dataclass(frozen=True, slots=True)
-class TrafficCase:
-    """A scene with one source of detections.
-
-    Attributes
-    ----------
-    sequence : TrafficSequence
-        The scene.
-    source : str
-        A key of its detections, or `MOTION`.
-    perturbation : str
-        A key of `PERTURBATIONS`.
-    """
-
-    sequence: TrafficSequence
-    source: str
-    perturbation: str = UNCHANGED
+Case = tuple[TrafficSequence, str]
+"""A scene with truth, and a key of its detections or `MOTION`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,52 +49,42 @@ class TrafficResult:
 
     Attributes
     ----------
-    scene, source, perturbation : str
-        The case.
-    system : str
-        `OURS` or a baseline.
+    scene, source, system : str
+        Name of the scene, source of detections, and `OURS` or a baseline.
     seed : int or None
         Seed; None for a baseline.
-    scores : dict of str to float
-        TrackEval's.
-    kept, occlusions : int
-        Total occlusions after which the identity is the same, and all that are judged.
-    counted, true : int
-        Crossings of the middle line.
-    step_ms : float
-        Mean processor time per frame, ms; without detection, but for `MOTION`.
+    values : dict of str to float
+        TrackEval's scores by name. ``kept``, percent of total occlusions with the same identity
+        afterwards, and ``count_error``, percent of the true crossings of the middle line, where
+        there are any. ``step_ms``, mean processor time per frame; without detection, except for
+        `MOTION`.
+    occlusions, true : int
+        Total occlusions that are judged, and true crossings.
     """
 
     scene: str
     source: str
-    perturbation: str
     system: str
     seed: int | None
-    scores: dict[str, float]
-    kept: int
+    values: dict[str, float]
     occlusions: int
-    counted: int
     true: int
-    step_ms: float
 
 
 def cases_of(
-    sequences: Sequence[TrafficSequence],
-    sources: Sequence[str] | None = None,
-    perturbations: Sequence[str] = tuple(PERTURBATIONS),
-) -> list[TrafficCase]:
-    """List the cases: each source as it is, and files of detections also perturbed."""
-    cases = []
-    for sequence in sequences:
-        for source in (*sequence.detections, MOTION):
-            if sources is None or source in sources:
-                kinds = perturbations if source != MOTION else (UNCHANGED,)
-                cases += [TrafficCase(sequence, source, kind) for kind in kinds]
-    return cases
+    sequences: Sequence[TrafficSequence], sources: Sequence[str] | None = None
+) -> list[Case]:
+    """List the cases: each scene with each of its detections and `MOTION`, or with `sources`."""
+    return [
+        (sequence, source)
+        for sequence in sequences
+        for source in (*sequence.detections, MOTION)
+        if sources is None or source in sources
+    ]
 
 
 def compare(
-    cases: Sequence[TrafficCase],
+    cases: Sequence[Case],
     worker: TrafficWorker,
     parameters: TrafficParameters,
     seeds: Sequence[int],
@@ -172,14 +97,14 @@ def compare(
 
     Parameters
     ----------
-    cases : sequence of TrafficCase
-        What to run on.
+    cases : sequence of Case
+        Scenes and detections to run on.
     worker : TrafficWorker
         Runs the baselines and scores.
     parameters : TrafficParameters
         Those of the tracker; the seed is replaced.
     seeds : sequence of int
-        Seeds of the tracker.
+        Seeds of the tracker, at least one.
     baselines : sequence of str
         Keys of `TRAFFIC_BASELINES`.
     make : callable
@@ -187,43 +112,34 @@ def compare(
     on_progress : callable
         Called with the number of frames done and of all.
     """
-    total, done = sum(case.sequence.frame_count for case in cases), 0
+    total, done = sum(sequence.frame_count for sequence, _ in cases), 0
     for case in cases:
         given: list[Array] = []
         for seed in seeds:
             tracks, detections, seconds = follow(case, replace(parameters, seed=seed), make)
             given.append(detections)
             yield judge(case, worker, OURS, seed, (tracks, seconds))
-        for name in baselines if given else ():
-            yield judge(case, worker, name, None, worker.track(name, case.sequence, given[0]))
-        done += case.sequence.frame_count
+        for name in baselines:
+            yield judge(case, worker, name, None, worker.track(name, case[0], given[0]))
+        done += case[0].frame_count
         on_progress(done, total)
 
 
 def judge(
-    case: TrafficCase,
-    worker: TrafficWorker,
-    system: str,
-    seed: int | None,
-    run: tuple[Array, float],
+    case: Case, worker: TrafficWorker, system: str, seed: int | None, run: tuple[Array, float]
 ) -> TrafficResult:
     """Score one run: its tracks, and processor time per frame in s."""
+    sequence, source = case
     tracks, seconds = run
-    kept, occlusions = kept_identities(case.sequence, tracks)
-    counted, true = counts(case.sequence, tracks)
-    return TrafficResult(
-        scene=case.sequence.name,
-        source=case.source,
-        perturbation=case.perturbation,
-        system=system,
-        seed=seed,
-        scores=worker.score(case.sequence, tracks),
-        kept=kept,
-        occlusions=occlusions,
-        counted=counted,
-        true=true,
-        step_ms=1e3 * seconds,
-    )
+    values = worker.score(sequence, tracks)
+    kept, occlusions = kept_identities(sequence, tracks)
+    counted, true = counts(sequence, tracks)
+    if occlusions:
+        values["kept"] = 100 * kept / occlusions
+    if true:
+        values["count_error"] = 100 * (counted / true - 1)
+    values["step_ms"] = 1e3 * seconds
+    return TrafficResult(sequence.name, source, system, seed, values, occlusions, true)
 
 
 class _Recorder(MotionDetector):
@@ -246,7 +162,7 @@ class _Recorder(MotionDetector):
 
 
 def follow(
-    case: TrafficCase, parameters: TrafficParameters, make: Maker = TrafficTracker
+    case: Case, parameters: TrafficParameters, make: Maker = TrafficTracker
 ) -> tuple[Array, Array, float]:
     """Follow all vehicles of a case with the tracker.
 
@@ -259,34 +175,28 @@ def follow(
     seconds : float
         Processor time per frame, s.
     """
-    sequence = case.sequence
+    sequence, source = case
     recorder = _Recorder()
-    is_motion = case.source == MOTION
+    given = None if source == MOTION else sequence.detections[source]
     session = TrafficSession(
         make(parameters),
-        (lambda: recorder) if is_motion else None,
+        (lambda: recorder) if given is None else None,
         frame_rate=sequence.frame_rate,
-    )
-    given = (
-        np.empty((0, 6))
-        if is_motion
-        else PERTURBATIONS[case.perturbation](sequence.detections[case.source])
     )
     tracks: list[list[float]] = []
     seconds = 0.0
     for number, frame in enumerate(sequence.frames(), start=1):
-        now = given[given[:, 0] == number]
-        detections = None if is_motion else Detections.make(now[:, 1:5], now[:, 5])
+        detections = None
+        if given is not None:
+            now = given[given[:, 0] == number]
+            detections = Detections.make(now[:, 1:5], now[:, 5])
         before = time.process_time()
         estimates = session.feed(frame, round(number * 1e9 / sequence.frame_rate), detections)
         seconds += time.process_time() - before
         tracks += _rows(number, estimates)
-    found = np.array(recorder.rows).reshape(-1, 6) if is_motion else given
-    return (
-        np.array(tracks, dtype=np.float64).reshape(-1, 6),
-        found,
-        seconds / sequence.frame_count,
-    )
+    found = np.array(recorder.rows).reshape(-1, 6) if given is None else given
+    rows = np.array(tracks, dtype=np.float64).reshape(-1, 6)
+    return rows, found, seconds / sequence.frame_count
 
 
 def _rows(number: int, estimates: Sequence[TrackEstimate]) -> Iterator[list[float]]:
