@@ -31,8 +31,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.evaluation.baselines.traffic_client import TrafficWorker
-from vehicle_pf_tracker.evaluation.traffic.comparison import compare
-from vehicle_pf_tracker.evaluation.traffic.report import write_traffic_report
+from vehicle_pf_tracker.evaluation.traffic.comparison import compare, write_traffic_report
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 

@@ -44,10 +44,10 @@ from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
 from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.grid.tracking import time_systems
-from vehicle_pf_tracker.evaluation.tables import SystemSummary, grid_table, summarise_grid
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
+    from vehicle_pf_tracker.evaluation.report import Report
     from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
     from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
@@ -94,8 +94,12 @@ def check(request: TrafficRequest) -> None:
 def run_traffic(request: TrafficRequest) -> int:
     """Run the comparison, write its report, and print its tables."""
     from vehicle_pf_tracker.evaluation.baselines.traffic_client import TrafficWorker
-    from vehicle_pf_tracker.evaluation.traffic.comparison import cases_of, compare
-    from vehicle_pf_tracker.evaluation.traffic.report import NAME, write_traffic_report
+    from vehicle_pf_tracker.evaluation.traffic.comparison import (
+        NAME,
+        cases_of,
+        compare,
+        write_traffic_report,
+    )
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 
     sequences = [read_sequence(Path(source)) for source in request.sources]
@@ -147,6 +151,8 @@ def _parameters(request: TrafficRequest) -> TrafficParameters:
 
 
 TIMING_FRAMES = 200
+_SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")
+"""Metrics of the table on the terminal, few enough for its width."""
 _STRESS_MOVED = (
     "the stress battery is no option of evaluate: in a clone of the repository, run "
     "`python -m laboratory stress REC… -o DIR`"
@@ -215,10 +221,7 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
     if request.timing:
         with telling("timing") as on_progress:
             time_systems(plan, request.output, request.timing_frames, on_progress)
-    summaries = summarise_grid(plan, request.output)
-    _show(summaries)
-    report.write(request.output, request)
-    return _judge(summaries, request.max_rmse)
+    return _judge(report.write(request.output, request), request.max_rmse)
 
 
 def _tell(notice: str) -> None:
@@ -248,27 +251,25 @@ def _runner(request: Request) -> Runner:
     return on_cluster(request.scheduler)
 
 
-def _show(summaries: Sequence[SystemSummary]) -> None:
-    print_rows(*grid_table(summaries))
-    for summary in summaries:
-        for reason in dict.fromkeys(summary.reasons):
-            tell_notices([f"{summary.label} did not run everywhere: {reason}"])
+def _judge(written: Report, limit: float | None) -> int:
+    """Print the means, and return the status that they give."""
+    from vehicle_pf_tracker.evaluation.report.page_tables import overall_table
 
-
-def _judge(summaries: Sequence[SystemSummary], limit: float | None) -> int:
-    if not any(summary.runs for summary in summaries):
+    evaluation, aggregates = written.evaluation, written.aggregates
+    for system, reason in dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed):
+        tell_notices([f"{system} did not run everywhere: {reason}"])
+    if not evaluation.runs:
         tell_error("no system could run; the report says why")
         return 1
+    print_rows(*overall_table(aggregates, _SHOWN).texts())
     status = 0
-    if failed := [summary.label for summary in summaries if summary.reasons]:
+    if failed := dict.fromkeys(cell.system for cell in evaluation.failed):
         tell_error(f"not every run succeeded: {', '.join(failed)}; the report says why")
         status = 1
-    if limit is None:
-        return status
-    means = {summary.label: summary.mean("rmse_px") for summary in summaries}
-    beyond = {name: mean for name, mean in means.items() if mean is not None and mean > limit}
-    if not beyond:
-        return status
-    told = ", ".join(f"{name} {mean:.1f} px" for name, mean in beyond.items())
-    tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {told}")
-    return 1
+    means = {label: found["rmse_px"] for label, found in aggregates.overall.items()}
+    beyond = [f"{label} {found.mean:.1f} px" for label, found in means.items()
+              if limit is not None and found is not None and found.mean > limit]  # fmt: skip
+    if beyond:
+        tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {', '.join(beyond)}")
+        status = 1
+    return status

@@ -61,23 +61,6 @@ OUTLINE = (Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal())
 """Keeps lines visible on any scenery."""
 
 
-def error_figure(runs: Mapping[str, Scores], title: str = "") -> Figure:
-    """Draw the error over time, with the occlusions shaded.
-
-    Parameters
-    ----------
-    runs : mapping of str to Scores
-        Runs on one recording, by the name in the legend.
-    title : str
-        Title above the figure.
-    """
-    figure = Figure(figsize=(9, 4), layout="constrained")
-    axes = figure.add_subplot()
-    draw_errors(axes, runs, title)
-    _add_legend(axes)
-    return figure
-
-
 def draw_errors(axes: Axes, runs: Mapping[str, Scores], title: str) -> None:
     """Draw the error over time, with the occlusions shaded and without a legend."""
     for scores in itertools.islice(runs.values(), 1):

@@ -18,18 +18,12 @@ from __future__ import annotations
 
 import csv
 import io
-import statistics
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
-from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
-from vehicle_pf_tracker.evaluation.grid.cells import GridCell
-from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
-from vehicle_pf_tracker.offline.run_folder import METRICS
 
 Cell: TypeAlias = float | int | bool | str | None
 NOTHING = "-"
@@ -204,81 +198,3 @@ def _text(cell: Cell, decimals: int) -> str:
     if isinstance(cell, bool):
         return "yes" if cell else "no"
     return f"{cell:.{decimals}f}" if isinstance(cell, float) else str(cell)
-
-
-Document = Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class SystemSummary:
-    """One system over all its cells.
-
-    Attributes
-    ----------
-    label : str
-        Label of the system.
-    metrics : mapping of str to list of mapping
-        `metrics.json` of every cell that ran, by recording.
-    reasons : tuple of str
-        Reasons why other cells did not run.
-    """
-
-    label: str
-    metrics: Mapping[str, Sequence[Document]]
-    reasons: tuple[str, ...]
-
-    def mean(self, name: str) -> float | None:
-        """Return the mean over recordings of the mean over their runs; None where there is none."""
-        means = []
-        for runs in self.metrics.values():
-            known = [run[name] for run in runs if run[name] is not None]
-            if known:
-                means.append(statistics.fmean(known))
-        return statistics.fmean(means) if means else None
-
-    @property
-    def runs(self) -> list[Document]:
-        """Metrics of all runs."""
-        return [run for runs in self.metrics.values() for run in runs]
-
-    def recovered(self) -> tuple[int, int]:
-        """Return the number of total occlusions recovered from, and judged."""
-        judged = [r for run in self.runs for r in run["recovered"] if r is not None]
-        return sum(judged), len(judged)
-
-
-def summarise_grid(plan: Plan, folder: Path) -> list[SystemSummary]:
-    """Summarise the cells of the grid by system."""
-    cells = [cell for cell in plan.cells() if not cell.start.kind]
-    return [
-        _summary(system.label, [cell for cell in cells if cell.system == system], folder)
-        for system in plan.systems
-    ]
-
-
-def _summary(label: str, cells: Sequence[GridCell], folder: Path) -> SystemSummary:
-    metrics: dict[str, list[Document]] = {}
-    reasons = []
-    for cell in cells:
-        path = cell.folder(folder)
-        if (path / METRICS).is_file():
-            metrics.setdefault(cell.source.name, []).append(read_document(path / METRICS))
-        elif (path / FAILED).is_file():
-            reasons.append(str(read_document(path / FAILED).get("reason")))
-    return SystemSummary(label, metrics, tuple(reasons))
-
-
-def grid_table(summaries: Sequence[SystemSummary]) -> tuple[list[str], Rows]:
-    """Return the means over seeds and then recordings, the best success AUC first."""
-    columns: dict[str, Callable[[SystemSummary], str]] = {
-        "": lambda s: s.label,
-        "RMSE, px": lambda s: _text(s.mean("rmse_px"), 1),
-        "median error, px": lambda s: _text(s.mean("median_px"), 1),
-        "on target while visible": lambda s: _text(s.mean("on_target"), 3),
-        "success AUC": lambda s: _text(s.mean("success_auc"), 3),
-        "recovered": lambda s: "{} of {}".format(*s.recovered()),
-        "failures": lambda s: _text(s.mean("failures"), 1),
-        "runs": lambda s: str(len(s.runs)) + (f" ({len(s.reasons)} failed)" * bool(s.reasons)),
-    }
-    order = sorted(summaries, key=lambda s: -(s.mean("success_auc") or 0.0))
-    return list(columns), [[cell(summary) for cell in columns.values()] for summary in order]

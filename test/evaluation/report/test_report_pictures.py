@@ -15,7 +15,6 @@
 """Stills, overlays and figures, each by itself."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,11 +26,12 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.plots import stretches
+from vehicle_pf_tracker.evaluation.report.figure_output import SvgMaker
 from vehicle_pf_tracker.evaluation.report.figures import (
     LEAST_ERROR,
     PAGE,
+    Drawn,
     ErrorSeries,
-    SvgMaker,
     draw_errors,
 )
 from vehicle_pf_tracker.evaluation.report.filmstrip import (
@@ -124,14 +124,6 @@ def test_stills_of_other_images_are_refused(made_evaluation):
         take_stills(replace(entry, width=640), [shot])
 
 
-def test_stills_of_a_recording_at_a_url(made_evaluation):
-    pytest.importorskip("fsspec", reason="fsspec is not installed")
-    (entry, _) = EvaluationFolder(made_evaluation).recordings
-    shot = Shot(3, "", BOX, ())
-    elsewhere = replace(entry, path=Path(entry.path).as_uri())
-    assert take_stills(elsewhere, [shot]) == take_stills(entry, [shot])
-
-
 def test_an_error_panel_draws_the_median_within_its_band():
     errors = np.array([[1.0, 4.0, np.nan], [3.0, 8.0, np.nan], [2.0, 6.0, np.nan]])
     axes = Figure().add_subplot()
@@ -147,7 +139,7 @@ def test_no_two_figures_of_a_page_share_an_id():
     for _ in range(2):
         figure = Figure()
         figure.add_subplot().plot([1, 2], [3, 4], color=PAGE["s1"])
-        svg = maker.make(figure, 'a "b" & c')
+        svg = maker.make(Drawn(figure, "", 'a "b" & c'))
         assert 'aria-label="a &quot;b&quot; &amp; c"' in svg
         assert "var(--s1)" in svg and "#0a0a01" not in svg
         ids += [part.split('"')[0] for part in svg.split(' id="')[1:]]

@@ -158,12 +158,6 @@ def test_latex_marks_the_best_and_the_second_as_printed(aggregates, means, cells
     assert tuple(printed(text, system)[3] for system in VARIANTS) == cells
 
 
-def test_latex_marks_the_largest_share(aggregates):
-    changed = with_means(aggregates, "success_auc", {"pf": 0.2, "ms": 0.4, "apf": 0.3})
-    shares = [printed(writing.summary_tex(changed), system)[0] for system in VARIANTS]
-    assert shares == ["0.200", r"\textbf{0.400}", r"\underline{0.300}"]
-
-
 def test_the_title_names_the_folder_once(evaluation, aggregates):
     assert writing.summary_markdown(evaluation, aggregates).startswith(
         "# Trackers compared: evaluation\n"

@@ -25,8 +25,8 @@ from vehicle_pf_tracker.evaluation.traffic.comparison import (
     cases_of,
     compare,
     follow,
+    write_traffic_report,
 )
-from vehicle_pf_tracker.evaluation.traffic.report import write_traffic_report
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene

@@ -14,16 +14,11 @@
 
 """Figures of a report: success and precision, intervals, errors over time.
 
-They are drawn with the colours and letters of a `Look`: for a page or for a paper. `SvgMaker` makes
-them stand in a page and take their colours from the page's scheme.
+They are drawn with the colours, letters and widths of a `Look`: for a page or for a paper.
 """
 
 from __future__ import annotations
 
-import html
-import io
-import itertools
-import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -37,6 +32,7 @@ from matplotlib.figure import Figure
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
@@ -56,11 +52,14 @@ class Look:
         Size of the letters, points.
     svg_letters : str
         ``none`` leaves the letters of an SVG to the reader's fonts, ``path`` draws them.
+    columns : (float, float)
+        Widths of a figure and of a row of panels, inches.
     """
 
     colours: Mapping[str, str]
     letters: float
     svg_letters: str
+    columns: tuple[float, float]
 
     def __getitem__(self, name: str) -> str:
         """Return the colour `name`."""
@@ -103,7 +102,7 @@ _INK: Mapping[str, str] = MappingProxyType(
 """Stand-ins for the page's colours: what is drawn in one of them is drawn in ``var(--name)``."""
 
 
-PAGE = Look(_INK, 8.0, "none")
+PAGE = Look(_INK, 8.0, "none", (3.9, 10.2))
 """Figures of the page, which are recoloured by its scheme."""
 
 
@@ -121,36 +120,9 @@ PAPER = Look(
     ),
     8.0,  # as large as captions; the smallest that IEEE advises is 8
     "path",
+    (3.5, 7.16),  # a column and the page in IEEE's two-column layout
 )
 """Dark letters on white, drawn as paths in SVG so that they are the same in every program."""
-
-
-class SvgMaker:
-    """Turns figures into SVG elements that can stand in one page: no two share an id."""
-
-    def __init__(self) -> None:
-        self._numbers = itertools.count(1)
-
-    def make(self, figure: Figure, label: str) -> str:
-        """Return `figure` as an SVG element that is read out as `label`."""
-        text = io.StringIO()
-        nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-        with rc_context(PAGE.settings):
-            figure.savefig(text, format="svg", transparent=True, metadata=nothing)
-        element = text.getvalue()
-        element = element[element.index("<svg") :]
-        element = re.sub(r"<metadata>.*?</metadata>\s*", "", element, flags=re.DOTALL)
-        element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.DOTALL)
-        prefix = f"f{next(self._numbers)}-"
-        for before in (' id="', 'href="#', "url(#"):
-            element = element.replace(before, before + prefix)
-        for name, colour in _INK.items():
-            element = element.replace(colour, f"var(--{name})")
-        size = re.search(r'viewBox="[^"]*"', element)
-        assert size is not None
-        head = f'<svg {size[0]} role="img" aria-label="{html.escape(label)}"'
-        head += ' xmlns:xlink="http://www.w3.org/1999/xlink"'
-        return re.sub(r"^<svg[^>]*", head, element).replace("\n", " ").replace("  ", " ")
 
 
 CURVES = {
@@ -159,14 +131,42 @@ CURVES = {
     "normalised": ("Normalised precision", "error threshold, box sizes", "share of frames below"),
 }
 """Title and names of the axes of each curve."""
+ERRORS = "errors_"
+"""Beginning of the names of figures of errors over time; the recording follows."""
 LEAST_ERROR = 0.5
 """Errors below this, in px, are drawn at the foot of the logarithmic scale."""
-_SMALL, _CURVE = (3.3, 1.75), (3.6, 2.6)
-_PLACE = (0.16, 0.235, 0.825, 0.74)
-"""Axes of a small figure: left, bottom, width and height, as shares of it."""
-_INTERVALS = 4.4
 _ROW = 0.19
-"""Height of a system's row in a figure of intervals, in inches."""
+"""Height of a system's row in a figure of intervals, inches."""
+_PANEL_HEIGHT = 1.35
+"""Height of a panel of errors over time, inches: three in a row are then about 5 to 3."""
+_PANELS_IN_A_ROW = 3
+
+
+class Drawn(NamedTuple):
+    """A figure, its caption, and the words that it is read out with."""
+
+    figure: Figure
+    caption: str
+    spoken: str
+
+
+def draw_all(
+    evaluation: ScoredEvaluation, aggregates: Aggregates, slots: Mapping[str, int], look: Look
+) -> dict[str, Drawn]:
+    """Draw every figure of an evaluation that there are numbers for, by name.
+
+    Systems in `slots` have the style of this number.
+    """
+    with rc_context(look.settings):
+        found = {"intervals": _intervals(aggregates, look)}
+        for name in CURVES:
+            lines = curve_lines(evaluation, aggregates.order, slots, name)
+            found[name] = _curves(name, lines, look)
+        for entry in evaluation.recordings:
+            runs = evaluation.by_system(entry.name, aggregates.order)
+            series = error_series(runs, evaluation.truths[entry.name])
+            found[ERRORS + safe_name(entry.name)] = _errors(series, look)
+    return {name: drawn for name, drawn in found.items() if drawn is not None}
 
 
 class CurveLine(NamedTuple):
@@ -208,39 +208,55 @@ def draw_curves(axes: Axes, lines: Sequence[CurveLine], look: Look) -> None:
     axes.set_axisbelow(True)
 
 
-def intervals_figure(
-    aggregates: Aggregates, look: Look, width: float = _INTERVALS
-) -> Figure | None:
-    """Draw the first ranked metric of all systems, with intervals; None without any.
+def _curves(name: str, lines: Sequence[CurveLine], look: Look) -> Drawn | None:
+    """Draw curves with a legend of the systems that have a style."""
+    if not lines:
+        return None
+    title, xlabel, ylabel = CURVES[name]
+    rows = -(-sum(line.slot is not None for line in lines) // 2)
+    figure = Figure(figsize=(look.columns[0], 2.2 + 0.16 * rows), layout="constrained")
+    axes = figure.add_subplot(xlabel=xlabel, ylabel=ylabel)
+    draw_curves(axes, lines, look)
+    handles, labels = axes.get_legend_handles_labels()  # drawn last to first
+    figure.legend(
+        handles[::-1], labels[::-1], loc="outside lower center", ncols=2, frameon=False,
+        handlelength=2.8,
+    )  # fmt: skip
+    areas = ", ".join(f"{line.label} {line.ys.mean():.3f}" for line in lines)
+    return Drawn(figure, title, f"{title}; areas: {areas}")
+
+
+def _intervals(aggregates: Aggregates, look: Look) -> Drawn | None:
+    """Draw the first ranked metric of all systems, with intervals.
 
     Small dots are the means on the recordings.
     """
-    key, title = RANKED[0].key, RANKED[0].title
-    overall = {label: aggregates.overall[label].get(key) for label in aggregates.order}
+    column = RANKED[0]
+    overall = {label: aggregates.overall[label].get(column.key) for label in aggregates.order}
     rows = {label: summary for label, summary in overall.items() if summary is not None}
     if not rows:
         return None
-    with rc_context(look.settings):
-        figure = Figure(figsize=(width, 0.55 + _ROW * len(rows)), layout="constrained")
-        axes = figure.add_subplot()
-        for position, (label, whole) in enumerate(rows.items()):
-            known = [
-                summary.mean
-                for (_, system), found in aggregates.by_recording.items()
-                if system == label and (summary := found.get(key)) is not None
-            ]
-            heights = [position] * len(known)
-            axes.plot(known, heights, ".", color=look["muted"], ms=4, alpha=0.8, mew=0)
-            if whole.low is not None and whole.high is not None:
-                axes.hlines(position, whole.low, whole.high, color=look["accent"], lw=2.2)
-            axes.plot([whole.mean], [position], "D", color=look["accent"], ms=4.2)
-        axes.set_yticks(range(len(rows)), list(rows))
-        axes.set(ylim=(len(rows) - 0.4, -0.6), xlabel=title)
-        axes.tick_params(axis="y", length=0, labelcolor=look["ink"])
-        axes.grid(axis="x", alpha=0.6)
-        axes.spines["left"].set_visible(False)
-        axes.set_axisbelow(True)
-    return figure
+    figure = Figure(figsize=(look.columns[0], 0.55 + _ROW * len(rows)), layout="constrained")
+    axes = figure.add_subplot(xlabel=column.title, ylim=(len(rows) - 0.4, -0.6))
+    for position, (label, whole) in enumerate(rows.items()):
+        known = [
+            summary.mean
+            for (_, system), found in aggregates.by_recording.items()
+            if system == label and (summary := found.get(column.key)) is not None
+        ]
+        heights = [position] * len(known)
+        axes.plot(known, heights, ".", color=look["muted"], ms=4, alpha=0.8, mew=0)
+        if whole.low is not None and whole.high is not None:
+            axes.hlines(position, whole.low, whole.high, color=look["accent"], lw=2.2)
+        axes.plot([whole.mean], [position], "D", color=look["accent"], ms=4.2)
+    axes.set_yticks(range(len(rows)), list(rows))
+    axes.tick_params(axis="y", length=0, labelcolor=look["ink"])
+    axes.grid(axis="x", alpha=0.6)
+    axes.spines["left"].set_visible(False)
+    axes.set_axisbelow(True)
+    words = ", ".join(f"{label} {found.mean:.{column.decimals}f}" for label, found in rows.items())
+    caption = f"{column.label}: mean, 95 % interval, and each recording"
+    return Drawn(figure, caption, f"{column.label}: {words}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -299,56 +315,24 @@ def draw_errors(axes: Axes, series: ErrorSeries, label: str, look: Look) -> None
     axes.minorticks_off()
 
 
-class Panel(NamedTuple):
-    """An SVG element and the words under it."""
-
-    svg: str
-    caption: str
-
-
-def curve_panels(
-    evaluation: ScoredEvaluation,
-    order: Sequence[str],
-    slots: Mapping[str, int],
-    maker: SvgMaker,
-) -> list[Panel]:
-    """Draw the three curves: means over the seeds of a recording, and then over recordings."""
-    panels = []
-    for name, (title, xlabel, ylabel) in CURVES.items():
-        lines = curve_lines(evaluation, order, slots, name)
-        if lines:
-            with rc_context(PAGE.settings):
-                figure = Figure(figsize=_CURVE, layout="constrained")
-                draw_curves(figure.add_subplot(xlabel=xlabel, ylabel=ylabel), lines, PAGE)
-            areas = ", ".join(f"{line.label} {line.ys.mean():.3f}" for line in lines)
-            panels.append(Panel(maker.make(figure, f"{title}; areas: {areas}"), title))
-    return panels
-
-
-def main_panel(aggregates: Aggregates, maker: SvgMaker) -> Panel | None:
-    """Draw the first ranked metric of all systems, with intervals; None without any."""
-    figure, column = intervals_figure(aggregates, PAGE), RANKED[0]
-    if figure is None:
+def _errors(series: ErrorSeries, look: Look) -> Drawn | None:
+    """Draw the errors over time, a panel for each system, on shared axes."""
+    count = len(series.errors)
+    if not count:
         return None
-    means = ((label, found.get(column.key)) for label, found in aggregates.overall.items())
-    words = ", ".join(f"{label} {s.mean:.{column.decimals}f}" for label, s in means if s)
-    svg = maker.make(figure, f"{column.label}: {words}")
-    return Panel(svg, f"{column.label}: mean, 95 % interval, and each recording")
-
-
-def error_panels(
-    runs: Mapping[str, Sequence[ScoredRun]], truths: Mapping[int, Truth], maker: SvgMaker
-) -> list[Panel]:
-    """Draw the error over time on one recording, one panel for each system."""
-    series = error_series(runs, truths)
-    panels = []
-    for label, errors in series.errors.items():
-        with rc_context(PAGE.settings):
-            figure = Figure(figsize=_SMALL)
-            # A fixed place: to lay out each figure takes longer than to draw it.
-            axes = figure.add_axes(_PLACE, xlabel="frame", ylabel="error, px")
-            draw_errors(axes, series, label, PAGE)
-        median = float(np.nanmedian(errors))
-        svg = maker.make(figure, f"Error of {label} over time; median {median:.1f} px")
-        panels.append(Panel(svg, label))
-    return panels
+    columns = min(count, _PANELS_IN_A_ROW)
+    rows = -(-count // columns)
+    size = look.columns[columns > 1], 0.3 + _PANEL_HEIGHT * rows
+    figure = Figure(figsize=size, layout="constrained")
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for axes, label in zip(grid.flat, series.errors, strict=False):
+        draw_errors(axes, series, label, look)
+        axes.set_title(label, fontsize=look.letters, loc="left", pad=2.0)
+    for axes in list(grid.flat)[count:]:
+        axes.remove()
+    for axes in list(grid.flat)[count - columns : count]:
+        axes.tick_params(labelbottom=True)
+    figure.supxlabel("frame", fontsize=look.letters, color=look["muted"])
+    figure.supylabel("error, px", fontsize=look.letters, color=look["muted"])
+    medians = (f"{label} {np.nanmedian(table):.1f} px" for label, table in series.errors.items())
+    return Drawn(figure, "Error over time", f"Error over time; medians: {', '.join(medians)}")

@@ -25,20 +25,16 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import Source
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report import filmstrip, page_tables
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, findings, power
 from vehicle_pf_tracker.evaluation.report.columns import COLUMNS, RANKED, counted, p_value_text
-from vehicle_pf_tracker.evaluation.report.figures import (
-    SvgMaker,
-    curve_panels,
-    error_panels,
-    main_panel,
-)
+from vehicle_pf_tracker.evaluation.report.figure_output import SvgMaker
+from vehicle_pf_tracker.evaluation.report.figures import CURVES, ERRORS, PAGE, draw_all
 from vehicle_pf_tracker.evaluation.report.filmstrip import Still
 from vehicle_pf_tracker.evaluation.report.robustness import (
-    robustness_sections,
+    robustness_tables,
     speed_note,
     speed_table,
 )
@@ -74,6 +70,10 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
     """
     slots = styled(aggregates)
     maker = SvgMaker()
+    figures = {
+        name: {"svg": maker.make(drawn), "caption": drawn.caption}
+        for name, drawn in draw_all(evaluation, aggregates, slots, PAGE).items()
+    }
     folder, order = evaluation.folder, aggregates.order
     timings = folder.timings()
     return render(
@@ -83,17 +83,16 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         findings=findings(evaluation, aggregates),
         slots=slots,
         overall=page_tables.overall_table(aggregates),
-        main=main_panel(aggregates, maker),
+        figures=figures,
         ranks=page_tables.ranks_table(aggregates),
         rank_notes=list(_rank_notes(aggregates)),
         pairs=page_tables.pairs_table(aggregates),
         power=power(aggregates),
-        curves=curve_panels(evaluation, order, slots, maker),
+        curves=[name for name in CURVES if name in figures],
         recordings=[
-            _section(evaluation, aggregates, entry, maker, images)
-            for entry in evaluation.recordings
+            _section(evaluation, aggregates, entry, images) for entry in evaluation.recordings
         ],
-        robustness=robustness_sections(folder, order),
+        robustness=robustness_tables(folder, order),
         speed=speed_table(timings, order),
         speed_note=speed_note(timings),
         systems=evaluation.systems,
@@ -141,7 +140,6 @@ def _section(
     evaluation: ScoredEvaluation,
     aggregates: Aggregates,
     entry: Source,
-    maker: SvgMaker,
     images: bool,
 ) -> dict[str, Any]:
     """Return the values of a recording's section of the template."""
@@ -154,7 +152,7 @@ def _section(
         "facts": _recording_facts(entry, truths),
         "table": page_tables.recording_table(aggregates, entry.name, shown),
         "occlusions": page_tables.occlusions_table(runs),
-        "panels": error_panels(runs, truths, maker),
+        "figure": ERRORS + safe_name(entry.name),
         "strips": strips,
         "note": note,
     }

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import itertools
 import statistics
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, Summaries
@@ -40,15 +40,19 @@ from vehicle_pf_tracker.evaluation.statistics import ALPHA, PairedTest, Summary
 from vehicle_pf_tracker.evaluation.tables import Header, Table, TableCell
 
 
-def overall_table(aggregates: Aggregates) -> Table:
-    """Show all metrics, as means over the recordings; recoveries with their number too."""
+def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -> Table:
+    """Show metrics, all if `keys` is None, as means over the recordings.
+
+    Recoveries stand with their number too.
+    """
 
     def text(label: str, summary: Summary | None, column: Column) -> str:
         mean = mean_text(summary, column)
         recovered, judged = aggregates.recoveries[label]
         return f"{mean} ({recovered}/{judged})" if column is RECOVERED and judged else mean
 
-    return _metrics_table(aggregates.overall, COLUMNS, text)
+    columns = [column for column in COLUMNS if keys is None or column.key in keys]
+    return _metrics_table(aggregates.overall, columns, text)
 
 
 def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Column]) -> Table:

@@ -17,18 +17,14 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     EvaluationFolder,
-    SystemEntry,
-    cell_folder,
     read_document,
     safe_name,
 )
@@ -37,29 +33,11 @@ from vehicle_pf_tracker.evaluation.report.page_tables import number_cell
 from vehicle_pf_tracker.evaluation.tables import Header, Table
 from vehicle_pf_tracker.offline.run_folder import METRICS, damage
 
+_SUCCESS = "success_auc"
 Documents = Mapping[str, Sequence[Mapping[str, Any]]]
 """JSON documents of one system, by recording."""
 Measure = Callable[[Documents, Documents], float | None]
 """Takes the documents of the robustness runs, and those of the usual start."""
-
-
-@dataclass(frozen=True, slots=True)
-class RobustnessSection:
-    """A table with a sentence about its runs."""
-
-    title: str
-    about: str
-    table: Table
-
-
-@dataclass(frozen=True, slots=True)
-class _Kind:
-    """A kind of robustness run: its words, its files below a seed's folder, and its columns."""
-
-    title: str
-    about: str
-    files: str
-    columns: tuple[tuple[Header, str, Measure], ...]
 
 
 def _mean(key: str) -> Measure:
@@ -67,16 +45,16 @@ def _mean(key: str) -> Measure:
 
 
 def _usual(found: Documents, usual: Documents) -> float | None:
-    return _mean("success_auc")({name: usual[name] for name in found if name in usual}, {})
+    return _mean(_SUCCESS)({name: usual[name] for name in found if name in usual}, {})
 
 
 def _change(found: Documents, usual: Documents) -> float | None:
-    other, own = _mean("success_auc")(found, usual), _usual(found, usual)
+    other, own = _mean(_SUCCESS)(found, usual), _usual(found, usual)
     return None if other is None or own is None else other - own
 
 
 def _worst(found: Documents, _: Documents) -> float | None:
-    values = [document["success_auc"] for some in found.values() for document in some]
+    values = [document[_SUCCESS] for some in found.values() for document in some]
     return min((value for value in values if value is not None), default=None)
 
 
@@ -92,112 +70,64 @@ def _runs(found: Documents, _: Documents) -> float:
     return sum(map(len, found.values()))
 
 
-_RUNS = (Header("runs"), "d", _runs)
-_KINDS: Mapping[str, _Kind] = MappingProxyType(
+_KINDS: Mapping[str, Mapping[Header, tuple[str, Measure]]] = MappingProxyType(
     {
-        SHIFTED: _Kind(
-            "Shifted and scaled starts",
-            "Started on the first true box moved by a tenth of its size in eight directions, and "
-            "scaled to 0.8, 0.9, 1.1 and 1.2 (OTB's spatial robustness), with the first seed.",
-            f"*/{METRICS}",
-            (
-                (Header("usual start", "success AUC"), ".3f", _usual),
-                (Header("other starts", "success AUC"), ".3f", _mean("success_auc")),
-                (Header("change", "success AUC"), "+.3f", _change),
-                (Header("worst run", "success AUC"), ".3f", _worst),
-                (
-                    Header("on target", "share of runs", "Runs on target in most visible frames."),
-                    ".2f",
-                    _on_target,
-                ),
-                _RUNS,
-            ),
-        ),
-        FRAMES: _Kind(
-            "Other first frames",
-            "Started on the true box of later frames, and scored from there on (OTB's temporal "
-            "robustness), with the first seed.",
-            f"*/{METRICS}",
-            (
-                (Header("success AUC"), ".3f", _mean("success_auc")),
-                (Header("precision at 20 px"), ".3f", _mean("precision_20px")),
-                (Header("RMSE", "px"), ".1f", _mean("rmse_px")),
-                _RUNS,
-            ),
-        ),
-        RESTARTS: _Kind(
-            "Failures and re-starts",
-            "In the manner of VOT: a track without overlap with the visible vehicle has failed, "
-            "and is started anew on the truth five frames later, once the vehicle is in full view.",
-            "restarts.json",
-            (
-                (
-                    Header("failures", "per run", "Times that the estimate lost all overlap and "
-                           "was restarted."),
-                    ".2f",
-                    _mean("failures"),
-                ),
-                (
-                    Header("accuracy", "mean overlap", "While it was tracked, from ten frames "
-                           "after a start."),
-                    ".3f",
-                    _mean("accuracy"),
-                ),
-                (
-                    Header("robustness", "", "The chance to live through 30 frames: "
-                           "exp(-30 failures / frames)."),
-                    ".3f",
-                    _mean("robustness"),
-                ),
-                _RUNS,
-            ),
-        ),
+        SHIFTED: {
+            Header("usual start", "success AUC"): (".3f", _usual),
+            Header("other starts", "success AUC"): (".3f", _mean(_SUCCESS)),
+            Header("change", "success AUC"): ("+.3f", _change),
+            Header("worst run", "success AUC"): (".3f", _worst),
+            Header("on target", "share of runs"): (".2f", _on_target),
+            Header("runs"): ("d", _runs),
+        },
+        FRAMES: {
+            Header("success AUC"): (".3f", _mean(_SUCCESS)),
+            Header("precision at 20 px"): (".3f", _mean("precision_20px")),
+            Header("RMSE", "px"): (".1f", _mean("rmse_px")),
+            Header("runs"): ("d", _runs),
+        },
+        RESTARTS: {
+            Header("failures", "per run"): (".2f", _mean("failures")),
+            Header("accuracy", "mean overlap"): (".3f", _mean("accuracy")),
+            Header("robustness"): (".3f", _mean("robustness")),
+            Header("runs"): ("d", _runs),
+        },
     }
-)  # fmt: skip
-"""Kinds of robustness runs, by the name of their folder and option."""
+)
+"""Columns of each kind of robustness run, by the name of its folder and option."""
 
 
-def robustness_sections(folder: EvaluationFolder, order: Sequence[str]) -> list[RobustnessSection]:
+def robustness_tables(folder: EvaluationFolder, order: Sequence[str]) -> dict[str, Table]:
     """Read what was asked for besides the grid; systems without a result there are left out."""
     asked = folder.plan.get("options", {})
     systems = {system.label: system for system in folder.systems}
-    sections = []
-    for name, kind in _KINDS.items():
+    tables = {}
+    for kind, columns in _KINDS.items():
+        files = "restarts.json" if kind == RESTARTS else f"*/{METRICS}"
         rows = {}
-        for label in order if asked.get(name) else ():
-            below = folder.path / BESIDE / name, f"seed-*/{kind.files}"
-            found = {
-                entry.name: documents
-                for entry in folder.recordings
-                if (documents := _read(below[0] / entry.name / safe_name(label), below[1]))
-            }
+        for label in order if asked.get(kind) else ():
+            system = safe_name(label)
+            found = _found(folder, f"{BESIDE}/{kind}", f"{system}/seed-*/{files}")
             if found:
-                usual = _usual_runs(folder, systems[label])
-                cells = [(measure(found, usual), form) for _, form, measure in kind.columns]
-                rows[label] = [number_cell(*cell) for cell in cells]
+                seed = folder.seeds_of(systems[label])[0]  # that of the robustness runs
+                usual = _found(folder, "cells", f"{system}/seed-{seed}/{METRICS}")
+                rows[label] = [
+                    number_cell(measure(found, usual), form) for form, measure in columns.values()
+                ]
         if rows:
-            table = Table([header for header, _, _ in kind.columns], rows)
-            sections.append(RobustnessSection(kind.title, kind.about, table))
-    return sections
+            tables[kind] = Table(list(columns), rows)
+    return tables
 
 
-def _usual_runs(folder: EvaluationFolder, system: SystemEntry) -> Documents:
-    """Read the metrics of the usual start, of the seed that robustness runs have."""
-    seed = folder.seeds_of(system)[0]
-    names = [entry.name for entry in folder.recordings]
-    roots = {name: cell_folder(folder.path, name, system.label, seed) for name in names}
-    return {name: found for name, root in roots.items() if (found := _read(root, METRICS))}
-
-
-def _read(root: Path, pattern: str) -> list[dict[str, Any]]:
-    return list(_documents(root, pattern))
-
-
-def _documents(root: Path, pattern: str) -> Iterator[dict[str, Any]]:
-    for path in sorted(root.glob(pattern)):
-        with suppress(InputError):  # a cell that is being written
-            if not damage(path.parent):
-                yield read_document(path)
+def _found(folder: EvaluationFolder, above: str, below: str) -> Documents:
+    """Read the documents of each recording that has any: ``above/recording/below``."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    for entry in folder.recordings:
+        for path in sorted((folder.path / above / entry.name).glob(below)):
+            with suppress(InputError):  # a cell that is being written
+                if not damage(path.parent):
+                    found.setdefault(entry.name, []).append(read_document(path))
+    return found
 
 
 def _mean_of_means(

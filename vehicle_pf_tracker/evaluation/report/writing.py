@@ -16,10 +16,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import (
@@ -42,13 +42,13 @@ from vehicle_pf_tracker.evaluation.report.columns import (
     interval_text,
     mean_text,
 )
+from vehicle_pf_tracker.evaluation.report.figure_output import write_figures
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
 from vehicle_pf_tracker.evaluation.report.page_tables import (
     overall_table,
     ranks_table,
     recording_table,
 )
-from vehicle_pf_tracker.evaluation.report.paper_figures import write_figures
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
     score_folder,
@@ -112,30 +112,39 @@ def summary_csv(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
 
 def summary_tex(aggregates: Aggregates) -> str:
     """Return the main means as a LaTeX table: the best bold, the second underlined."""
-    lines = [
-        "% Means over recordings, with the 95 % interval of the first metric. The best are bold,",
-        "% the second are underlined. Needs the package booktabs.",
-        rf"\begin{{tabular}}{{l{'r' * (len(_PAPER) + 1)}}}",
-        r"\toprule",
-        " & ".join(["system", SUCCESS.title, "interval",
-                    *(column.title.translate(_LATEX) for column in _PAPER[1:])]) + r" \\",
-        r"\midrule",
-    ]  # fmt: skip
     marks = {column.key: _marks(aggregates, column) for column in _PAPER}
+    rows = []
     for label, summaries in aggregates.overall.items():
-        within = interval_text(summaries.get(SUCCESS.key), SUCCESS).replace(" to ", "--") or "--"
-        cells = [_marked(summaries.get(column.key), column, marks[column.key]) for column in _PAPER]
-        line = " & ".join([label.translate(_LATEX), cells[0], within, *cells[1:]])
-        lines.append(line.replace(NO_VALUE, "--") + r" \\")
-    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}"]) + "\n"
+        interval = interval_text(summaries.get(SUCCESS.key), SUCCESS).replace(" to ", "--")
+        first, *others = (_marked(summaries[column.key], column, marks[column.key])
+                          for column in _PAPER)  # fmt: skip
+        rows.append([label, first, interval or NO_VALUE, *others])
+    header = ["system", SUCCESS.title, "interval", *(column.title for column in _PAPER[1:])]
+    return "".join(
+        [
+            "% Means over recordings, with the 95 % interval of the first metric. The best are\n"
+            "% bold, the second are underlined. Needs the package booktabs.\n"
+            rf"\begin{{tabular}}{{l{'r' * len(header[1:])}}}",
+            "\n\\toprule\n",
+            _tex_line(header),
+            "\\midrule\n",
+            *map(_tex_line, rows),
+            "\\bottomrule\n\\end{tabular}\n",
+        ]
+    )
+
+
+def _tex_line(cells: Sequence[str]) -> str:
+    escaped = (cell if cell.startswith("\\") else cell.translate(_LATEX) for cell in cells)
+    return " & ".join(escaped).replace(NO_VALUE, "--") + " \\\\\n"
 
 
 def _marks(aggregates: Aggregates, column: Column) -> dict[float, str]:
     """Return LaTeX's commands for the best and the second-best mean, as they are printed."""
-    found = [summaries.get(column.key) for summaries in aggregates.overall.values()]
+    found = [summaries[column.key] for summaries in aggregates.overall.values()]
     values = [round(summary.mean, column.decimals) for summary in found if summary is not None]
     order = sorted(set(values), reverse=bool(column.higher_is_better))
-    if column.higher_is_better is None or len(order) < 2:
+    if len(order) < 2:
         return {}
     # Two that share the first place leave no second.
     commands = (r"\textbf", r"\underline") if values.count(order[0]) == 1 else (r"\textbf",)
@@ -202,7 +211,7 @@ class ReportOptions:
     trajectories : bool
         True for TUM files of the truth and of all runs, in ``trajectories/``.
     figures : tuple of str
-        Formats of the figures' files, of `paper_figures.FORMATS`, in ``figures/``.
+        Formats of the figures' files, of `figure_output.FORMATS`, in ``figures/``.
     """
 
     images: bool = True
@@ -212,13 +221,21 @@ class ReportOptions:
     figures: tuple[str, ...] = ()
 
 
+class Report(NamedTuple):
+    """A report that was written: its files, the page first, and the results it shows."""
+
+    paths: Sequence[Path]
+    evaluation: ScoredEvaluation
+    aggregates: Aggregates
+
+
 def write_report(
     folder: Path,
     options: ReportOptions | None = None,
     notify: Callable[[str], object] = lambda _: None,
     on_stage: Callable[[str], object] = lambda _: None,
-) -> list[Path]:
-    """Write the report of the evaluation in `folder` there; returns what was written, page first.
+) -> Report:
+    """Write the report of the evaluation in `folder` there.
 
     The same folder gives the same files.
 
@@ -255,7 +272,7 @@ def write_report(
         written += write_estimate_recordings(evaluation, notify, on_stage)
     if options.video:
         written += write_videos(evaluation, styled(aggregates), notify, on_stage)
-    return written
+    return Report(written, evaluation, aggregates)
 
 
 def _write_summaries(

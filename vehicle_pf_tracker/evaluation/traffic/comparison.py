@@ -12,21 +12,39 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The tracker of many vehicles and baselines on the same detections of scenes with truth."""
+"""The tracker of many vehicles and baselines on the same detections of scenes with truth.
+
+The report of a comparison is a page, Markdown, CSV and JSON.
+"""
 
 from __future__ import annotations
 
+import statistics
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.baselines.traffic_client import TRAFFIC_BASELINES, TrafficWorker
+from vehicle_pf_tracker.evaluation.report.page import render
+from vehicle_pf_tracker.evaluation.tables import (
+    NOTHING,
+    Header,
+    Table,
+    TableCell,
+    csv_text,
+    markdown,
+)
 from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.offline.run_folder import versions
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
@@ -45,14 +63,14 @@ Case = tuple[TrafficSequence, str]
 
 @dataclass(frozen=True, slots=True)
 class TrafficResult:
-    """Result of one system in one case.
+    """Result of one system in one case, or the mean of several runs.
 
     Attributes
     ----------
     scene, source, system : str
         Name of the scene, source of detections, and `OURS` or a baseline.
     seed : int or None
-        Seed; None for a baseline.
+        Seed; None for a baseline or a mean.
     values : dict of str to float
         TrackEval's scores by name. ``kept``, percent of total occlusions with the same identity
         afterwards, and ``count_error``, percent of the true crossings of the middle line, where
@@ -60,6 +78,8 @@ class TrafficResult:
         `MOTION`.
     occlusions, true : int
         Total occlusions that are judged, and true crossings.
+    runs : int
+        Number of runs.
     """
 
     scene: str
@@ -69,6 +89,7 @@ class TrafficResult:
     values: dict[str, float]
     occlusions: int
     true: int
+    runs: int = 1
 
 
 def cases_of(
@@ -204,3 +225,137 @@ def _rows(number: int, estimates: Sequence[TrackEstimate]) -> Iterator[list[floa
         if one.mode in {TrackMode.TRACKING, TrackMode.OCCLUDED}:
             box = one.box
             yield [number, one.identity, box.x, box.y, box.width, box.height]
+
+
+NAME = "traffic"
+"""Name of the files without their suffix."""
+
+COLUMNS: Mapping[str, tuple[str, int]] = MappingProxyType(
+    {
+        "HOTA": ("HOTA", 1),
+        "DetA": ("DetA", 1),
+        "AssA": ("AssA", 1),
+        "IDF1": ("IDF1", 1),
+        "MOTA": ("MOTA", 1),
+        "IDSW": ("switches", 1),
+        "Frag": ("fragm.", 1),
+        "kept": ("identity kept", 0),
+        "count_error": ("count error", 1),
+        "step_ms": ("ms", 1),
+    }
+)
+"""Measures, with their headings and decimals."""
+_LOWER_IS_BETTER = ("IDSW", "Frag", "step_ms")
+
+RULES = """\
+HOTA, DetA, AssA, IDF1 and MOTA (percent), identity switches and fragmentations are TrackEval's, at
+an overlap of a half where they need one; means over seeds. Totally hidden vehicles are not scored.
+*Identity kept*: share of total occlusions after which a vehicle has the identity it had before.
+*Count error*: crossings of a line through the middle of the image, against the true ones. *ms* is
+processor time per frame: of `traffic` with its work on pixels, of the baselines for boxes alone.
+"-low" are baselines with thresholds lowered by hand for CenterNet's scores.
+"""
+
+
+def means(results: Sequence[TrafficResult]) -> list[TrafficResult]:
+    """Average the seeds of every system in every case, in the order of the results."""
+    groups: dict[tuple[str, str, str], list[TrafficResult]] = {}
+    for one in results:
+        groups.setdefault((one.scene, one.source, one.system), []).append(one)
+    return [
+        replace(
+            runs[0],
+            seed=None,
+            values={name: statistics.fmean(run.values[name] for run in runs)
+                    for name in COLUMNS if name in runs[0].values},
+            runs=len(runs),
+        )
+        for runs in groups.values()
+    ]  # fmt: skip
+
+
+def write_traffic_report(
+    results: Sequence[TrafficResult], folder: Path, options: Mapping[str, Any]
+) -> dict[str, Table]:
+    """Write the four files, and return their tables.
+
+    Parameters
+    ----------
+    results : sequence of TrafficResult
+        Results of all systems.
+    folder : Path
+        Made where it is missing.
+    options : mapping
+        Plain values that say how the comparison was made; ``command`` is its command line.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written.
+    """
+    make_folder(folder)
+    lines = means(results)
+    shown = tables(lines)
+    page = render("traffic.html", tables=shown, about=RULES, command=" ".join(options["command"]))
+    parts = [f"## {title}\n\n{markdown(*table.texts())}" for title, table in shown.items()]
+    rows = [
+        [line.scene, line.source, line.system, line.runs,
+         *(line.values.get(name) for name in COLUMNS), line.occlusions, line.true]
+        for line in lines
+    ]  # fmt: skip
+    header = ["scene", "detections", "system", "runs", *COLUMNS, "occlusions", "true"]
+    texts = {
+        "html": page,
+        "md": "\n".join(["# Many vehicles\n", RULES, *parts]),
+        "csv": csv_text(header, rows),
+    }
+    for suffix, text in texts.items():
+        write_text(folder / f"{NAME}.{suffix}", text)
+    document = {
+        "options": dict(options),
+        "versions": versions(),
+        "lines": [asdict(line) for line in lines],
+        "results": [asdict(result) for result in results],
+    }
+    write_json(folder / f"{NAME}.json", document)
+    return shown
+
+
+def tables(lines: Sequence[TrafficResult]) -> dict[str, Table]:
+    """Make a table of each scene and source of detections, by their names."""
+    cases: dict[str, list[TrafficResult]] = {}
+    for line in lines:
+        cases.setdefault(f"{line.scene}, {line.source}", []).append(line)
+    return {title: _table(group) for title, group in cases.items()}
+
+
+def _table(lines: Sequence[TrafficResult]) -> Table:
+    names = [name for name in COLUMNS if any(name in line.values for line in lines)]
+    best = {
+        name: max(_rated(line.values[name], name) for line in lines if name in line.values)
+        for name in names
+    }
+    rows = {line.system: [_cell(line, name, best[name]) for name in names] for line in lines}
+    return Table([Header(COLUMNS[name][0]) for name in names], rows)
+
+
+def _cell(line: TrafficResult, name: str, best: float) -> TableCell:
+    value = line.values.get(name)
+    if value is None:
+        return TableCell(NOTHING)
+    decimals = COLUMNS[name][1]
+    text = f"{value:.{decimals}f}"
+    if name == "kept":
+        text += f" % of {line.occlusions}"
+    elif name == "count_error":
+        text = f"{value:+.{decimals}f} % of {line.true}"
+    elif name in {"IDSW", "Frag"} and value == int(value):
+        text = str(int(value))
+    return TableCell(text, value, best=_rated(value, name) == best)
+
+
+def _rated(value: float, name: str) -> float:
+    """Return a number that is larger where the value is better."""
+    if name == "count_error":
+        return -abs(value)
+    return -value if name in _LOWER_IS_BETTER else value
