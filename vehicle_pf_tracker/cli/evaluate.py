@@ -93,7 +93,7 @@ def check(request: TrafficRequest) -> None:
 
 def run_traffic(request: TrafficRequest) -> int:
     """Run the comparison, write its report, and print its tables."""
-    from vehicle_pf_tracker.evaluation.baselines.traffic_client import TrafficWorker
+    from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
     from vehicle_pf_tracker.evaluation.traffic.comparison import (
         NAME,
         cases_of,

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report import Report
 
 FIGURE_FORMATS = ("pdf", "svg", "png")
-"""Those of `figure_output.FORMATS`, which loads matplotlib."""
+"""Those of `evaluation.report.writing.FORMATS`, which loads matplotlib."""
 
 
 def _formats(text: str) -> tuple[str, ...]:

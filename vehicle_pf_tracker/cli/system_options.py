@@ -33,7 +33,7 @@ from vehicle_pf_tracker.cli.parameter_options import (
 from vehicle_pf_tracker.cli.requests import option, positional, switch
 from vehicle_pf_tracker.cli.shared_options import WorkersOption, natural, positive
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Baseline, unknown_baseline
+from vehicle_pf_tracker.evaluation.baselines import MODELS, Baseline, unknown_baseline
 from vehicle_pf_tracker.evaluation.grid.cells import BASELINE, BaselineSystem, System, VariantSystem
 from vehicle_pf_tracker.parameters.table import Value, parse_assignments, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant

@@ -26,8 +26,9 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.baselines import client, worker
-from vehicle_pf_tracker.evaluation.baselines.client import (
+from vehicle_pf_tracker.evaluation import baseline_worker as worker
+from vehicle_pf_tracker.evaluation import baselines as client
+from vehicle_pf_tracker.evaluation.baselines import (
     DEFAULT,
     MODELS,
     VARIABLE,

@@ -26,10 +26,10 @@ from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.report import FIGURE_FORMATS
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
-from vehicle_pf_tracker.evaluation.report.figure_output import FORMATS, write_figures
 from vehicle_pf_tracker.evaluation.report.figures import PAGE, PAPER
 from vehicle_pf_tracker.evaluation.report.page import styled
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
+from vehicle_pf_tracker.evaluation.report.writing import FORMATS, write_figures
 
 NAMES = {"intervals", "success", "precision", "normalised", *(f"errors_{name}" for name in HIDDEN)}
 

@@ -20,7 +20,7 @@ import shutil
 import pytest
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.report.robustness import (
+from vehicle_pf_tracker.evaluation.report.page_tables import (
     robustness_tables,
     speed_note,
     speed_table,

@@ -26,7 +26,6 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.plots import stretches
-from vehicle_pf_tracker.evaluation.report.figure_output import SvgMaker
 from vehicle_pf_tracker.evaluation.report.figures import (
     LEAST_ERROR,
     PAGE,
@@ -44,6 +43,7 @@ from vehicle_pf_tracker.evaluation.report.filmstrip import (
     plan_strips,
     take_stills,
 )
+from vehicle_pf_tracker.evaluation.report.page import SvgMaker
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
 
 BOX = Box(100, 60, 20, 10)

@@ -23,9 +23,9 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baselines import client
-from vehicle_pf_tracker.evaluation.baselines.client import DEFAULT, VARIABLE
-from vehicle_pf_tracker.evaluation.baselines.traffic_client import TRAFFIC_BASELINES, TrafficWorker
+from vehicle_pf_tracker.evaluation import baselines as client
+from vehicle_pf_tracker.evaluation.baselines import DEFAULT, VARIABLE
+from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
 PYTHON = Path(sys.executable)

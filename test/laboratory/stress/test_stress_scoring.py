@@ -17,7 +17,6 @@
 from collections import namedtuple
 
 import pytest
-from hypothesis import strategies as st
 
 from laboratory.stress import Reliability, score_estimates
 from laboratory.stress.report import write_report
@@ -107,9 +106,6 @@ def test_calibration_by_hand():
     assert visible.diagram()[1] == {"frames": 2, "confidence": 0.85, "on_target": 0.5}
     assert score.reliability_hidden.counts == (0, 0, 0, 0, 1, 0, 0, 0, 0, 0)
     assert Reliability().calibration_error is None
-
-
-pairs = st.lists(st.tuples(st.floats(0, 1), st.booleans()), min_size=1, max_size=40)
 
 
 Stub = namedtuple("Stub", "name sequence camera kind labels")

@@ -281,9 +281,9 @@ BESIDE = "robustness"
 
 _PACKAGE = "vehicle_pf_tracker"
 _SHARED = frozenset({f"{_PACKAGE}.recordings.reader"})
-_OURS = frozenset({f"{_PACKAGE}.evaluation.offline"})
-_BASELINES = frozenset(f"{_PACKAGE}.evaluation.baselines.{name}" for name in ("client", "worker"))
-_STARTS = frozenset({f"{_PACKAGE}.evaluation.grid.cells", f"{_PACKAGE}.evaluation.failures"})
+_OURS = frozenset({f"{_PACKAGE}.offline.driver"})
+_BASELINES = frozenset(f"{_PACKAGE}.evaluation.{name}" for name in ("baselines", "baseline_worker"))
+_STARTS = frozenset({f"{_PACKAGE}.evaluation.grid.cells", f"{_PACKAGE}.evaluation.occlusions"})
 
 
 @dataclass(frozen=True, slots=True)

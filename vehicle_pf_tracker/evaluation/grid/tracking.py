@@ -42,7 +42,7 @@ from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.baselines.client import Baseline, baseline_rows
+from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import TIMINGS, Source
 from vehicle_pf_tracker.evaluation.grid.cells import (
     RESTARTS,

@@ -16,12 +16,17 @@
 
 from __future__ import annotations
 
+import html
+import io
+import itertools
+import re
 import shlex
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from matplotlib import rc_context
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
@@ -30,14 +35,8 @@ from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report import filmstrip, page_tables
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, findings, power
 from vehicle_pf_tracker.evaluation.report.columns import COLUMNS, RANKED, counted, p_value_text
-from vehicle_pf_tracker.evaluation.report.figure_output import SvgMaker
-from vehicle_pf_tracker.evaluation.report.figures import CURVES, ERRORS, PAGE, draw_all
+from vehicle_pf_tracker.evaluation.report.figures import CURVES, ERRORS, PAGE, Drawn, draw_all
 from vehicle_pf_tracker.evaluation.report.filmstrip import Still
-from vehicle_pf_tracker.evaluation.report.robustness import (
-    robustness_tables,
-    speed_note,
-    speed_table,
-)
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     FailedCell,
     ScoredEvaluation,
@@ -56,6 +55,34 @@ def render(template: str, **values: Any) -> str:
         lstrip_blocks=True,
     )
     return environment.get_template(template).render(values)
+
+
+class SvgMaker:
+    """Turns figures into SVG elements that can stand in one page: no two share an id."""
+
+    def __init__(self) -> None:
+        self._numbers = itertools.count(1)
+
+    def make(self, drawn: Drawn) -> str:
+        """Return a figure as an SVG element that is read out."""
+        text = io.StringIO()
+        nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+        with rc_context(PAGE.settings):
+            drawn.figure.savefig(text, format="svg", transparent=True, metadata=nothing)
+        element = text.getvalue()
+        element = element[element.index("<svg") :]
+        element = re.sub(r"<metadata>.*?</metadata>\s*", "", element, flags=re.DOTALL)
+        element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.DOTALL)
+        prefix = f"f{next(self._numbers)}-"
+        for before in (' id="', 'href="#', "url(#"):
+            element = element.replace(before, before + prefix)
+        for name, colour in PAGE.colours.items():
+            element = element.replace(colour, f"var(--{name})")
+        size = re.search(r'viewBox="[^"]*"', element)
+        assert size is not None
+        head = f'<svg {size[0]} role="img" aria-label="{html.escape(drawn.spoken)}"'
+        head += ' xmlns:xlink="http://www.w3.org/1999/xlink"'
+        return re.sub(r"^<svg[^>]*", head, element).replace("\n", " ").replace("  ", " ")
 
 
 def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: bool = True) -> str:
@@ -92,9 +119,9 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         recordings=[
             _section(evaluation, aggregates, entry, images) for entry in evaluation.recordings
         ],
-        robustness=robustness_tables(folder, order),
-        speed=speed_table(timings, order),
-        speed_note=speed_note(timings),
+        robustness=page_tables.robustness_tables(folder, order),
+        speed=page_tables.speed_table(timings, order),
+        speed_note=page_tables.speed_note(timings),
         systems=evaluation.systems,
         sources=evaluation.recordings,
         seeds=folder.seeds,

@@ -19,7 +19,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
+
+from matplotlib import rc_context
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import (
@@ -42,7 +45,7 @@ from vehicle_pf_tracker.evaluation.report.columns import (
     interval_text,
     mean_text,
 )
-from vehicle_pf_tracker.evaluation.report.figure_output import write_figures
+from vehicle_pf_tracker.evaluation.report.figures import PAPER, draw_all
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
 from vehicle_pf_tracker.evaluation.report.page_tables import (
     overall_table,
@@ -58,7 +61,7 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
 from vehicle_pf_tracker.evaluation.report.video import write_videos
 from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import csv_text, markdown
-from vehicle_pf_tracker.offline.output_files import write_json, write_text
+from vehicle_pf_tracker.offline.output_files import make_folder, replacing, write_json, write_text
 
 ALL_RECORDINGS = "(all)"
 """Stands for the name of a recording where values are means over all of them."""
@@ -196,6 +199,50 @@ def _plain(summaries: Summaries) -> dict[str, dict[str, Any] | None]:
     return {key: None if found is None else asdict(found) for key, found in summaries.items()}
 
 
+FORMATS = ("pdf", "svg", "png")
+FIGURES = "figures"
+_DPI = 300
+"""Resolution of PNG files, which IEEE asks of colour pictures."""
+
+_METADATA: Mapping[str, dict[str, Any]] = MappingProxyType(
+    {
+        "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+        "svg": {"Date": None, "Creator": None},
+        "png": {"Software": None},
+    }
+)
+"""No date and no version, so that the same folder gives the same files."""
+
+
+def write_figures(
+    evaluation: ScoredEvaluation,
+    aggregates: Aggregates,
+    slots: Mapping[str, int],
+    formats: Sequence[str],
+) -> list[Path]:
+    """Write every figure of the page to ``figures/``, in each of the formats.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    folder = make_folder(evaluation.folder.path / FIGURES)
+    written = []
+    for name, drawn in draw_all(evaluation, aggregates, slots, PAPER).items():
+        figure = drawn.figure
+        with rc_context(PAPER.settings):
+            # Laid out once: each drawing moves a constrained layout a little further.
+            figure.draw_without_rendering()
+            figure.set_layout_engine("none")
+        for kind in formats:
+            path = folder / f"{name}.{kind}"
+            with replacing(path) as partial, rc_context(PAPER.settings):
+                figure.savefig(partial, format=kind, dpi=_DPI, metadata=_METADATA[kind])
+            written.append(path)
+    return written
+
+
 @dataclass(frozen=True, slots=True)
 class ReportOptions:
     """Parts of a report besides the page and the summaries.
@@ -211,7 +258,7 @@ class ReportOptions:
     trajectories : bool
         True for TUM files of the truth and of all runs, in ``trajectories/``.
     figures : tuple of str
-        Formats of the figures' files, of `figure_output.FORMATS`, in ``figures/``.
+        Formats of the figures' files, of `FORMATS`, in ``figures/``.
     """
 
     images: bool = True

@@ -31,7 +31,6 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.baselines.traffic_client import TRAFFIC_BASELINES, TrafficWorker
 from vehicle_pf_tracker.evaluation.report.page import render
 from vehicle_pf_tracker.evaluation.tables import (
     NOTHING,
@@ -41,6 +40,7 @@ from vehicle_pf_tracker.evaluation.tables import (
     csv_text,
     markdown,
 )
+from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Trackers to compare with on our data, in a process and an environment of their own (`worker`)."""
+"""OpenCV's trackers to compare with, in an environment of their own (`baseline_worker`)."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 DEFAULT = Path(".venv-baselines/bin/python")
 """Interpreter that `make baselines` builds, below the working directory."""
 
-WORKER = Path(__file__).with_name("worker.py")
+WORKER = Path(__file__).with_name("baseline_worker.py")
 Self = TypeVar("Self", bound="Worker")
 
 
@@ -69,7 +69,7 @@ def baseline_python(chosen: Path | None = None) -> Path:
 
 
 class Worker:
-    """A process of `worker`; a context manager.
+    """A process of `baseline_worker`; a context manager.
 
     Parameters
     ----------

@@ -12,19 +12,19 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Trackers to compare with, behind a pipe; started by `client` in an environment of its own.
+"""Trackers to compare with, behind a pipe; started by `baselines` in an environment of its own.
 
 It imports nothing of the package: two OpenCV packages overwrite each other. Requests are lines of
 JSON on standard input, and so are the answers on standard output: ``error`` for what cannot be
 answered. The first answer names the versions.
 
-``worker.py NAME [MODEL=FILE ...]`` runs one of OpenCV's trackers. A request (``height``, ``width``;
-``box`` to start on this frame, as x, y, width, height) is followed by the frame's
+``baseline_worker.py NAME [MODEL=FILE ...]`` runs one of OpenCV's trackers. A request (``height``,
+``width``; ``box`` to start on this frame, as x, y, width, height) is followed by the frame's
 ``height * width * 3`` bytes of RGB. The answer has ``box`` (null when given up) and ``seconds`` of
 this thread's CPU: the frame is turned to BGR before the clock starts, and one thread does all work.
 
-``worker.py traffic`` scores and tracks many vehicles. Rows are (frame from 1, identity, left, top,
-width, height), those of detections (frame, left, top, width, height, score):
+``baseline_worker.py traffic`` scores and tracks many vehicles. Rows are (frame from 1, identity,
+left, top, width, height), those of detections (frame, left, top, width, height, score):
 
 ``{"score": {"frames": F, "truth": rows, "tracks": rows}}``
     TrackEval's scores by name, of all rows.

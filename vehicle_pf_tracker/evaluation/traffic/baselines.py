@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""TrackEval's scores and baselines of many vehicles, from a process of their own (`worker`)."""
+"""TrackEval's scores and baselines of many vehicles, from a `baseline_worker`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.evaluation.baselines.client import Worker, unknown_baseline
+from vehicle_pf_tracker.evaluation.baselines import Worker, unknown_baseline
 from vehicle_pf_tracker.evaluation.traffic.identities import scorable
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
