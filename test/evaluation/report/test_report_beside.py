@@ -22,7 +22,6 @@ import pytest
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.page_tables import (
     robustness_tables,
-    speed_note,
     speed_table,
 )
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
@@ -100,8 +99,3 @@ def test_speed_by_hand():
     ]
     assert texts(speed_table({"cells": cells}, ORDER)) == {"pf": ["2.00", "3.00", "3.00", "500"]}
     assert speed_table(None, ORDER) is None
-
-
-def test_the_speed_says_its_clock():
-    note = speed_note({"clock": "processor time", "processor": ["x86_64", 2]})
-    assert "processor time. Processor: x86_64 with 2 cores." in note

@@ -27,8 +27,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     read_document,
 )
 from vehicle_pf_tracker.evaluation.report import writing
-from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
-from vehicle_pf_tracker.evaluation.report.columns import COLUMNS
+from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, aggregate
 from vehicle_pf_tracker.evaluation.report.page_tables import overall_table
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
 

@@ -35,8 +35,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
-from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
-from vehicle_pf_tracker.evaluation.report.columns import RANKED
+from vehicle_pf_tracker.evaluation.report.aggregates import RANKED, Aggregates
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 
 

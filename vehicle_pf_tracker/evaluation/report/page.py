@@ -33,8 +33,15 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report import filmstrip, page_tables
-from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, findings, power
-from vehicle_pf_tracker.evaluation.report.columns import COLUMNS, RANKED, counted, p_value_text
+from vehicle_pf_tracker.evaluation.report.aggregates import (
+    COLUMNS,
+    RANKED,
+    Aggregates,
+    counted,
+    findings,
+    p_value_text,
+    power,
+)
 from vehicle_pf_tracker.evaluation.report.figures import CURVES, ERRORS, PAGE, Drawn, draw_all
 from vehicle_pf_tracker.evaluation.report.filmstrip import Still
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
@@ -121,7 +128,7 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         ],
         robustness=page_tables.robustness_tables(folder, order),
         speed=page_tables.speed_table(timings, order),
-        speed_note=page_tables.speed_note(timings),
+        timings=timings,
         systems=evaluation.systems,
         sources=evaluation.recordings,
         seeds=folder.seeds,

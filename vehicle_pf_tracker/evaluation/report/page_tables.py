@@ -31,13 +31,14 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
 )
 from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, FRAMES, RESTARTS, SHIFTED
 from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
-from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, Summaries
-from vehicle_pf_tracker.evaluation.report.columns import (
+from vehicle_pf_tracker.evaluation.report.aggregates import (
     COLUMNS,
     NO_VALUE,
     RANKED,
     RECOVERED,
+    Aggregates,
     Column,
+    Summaries,
     counted,
     interval_text,
     listing,
@@ -341,13 +342,3 @@ def speed_table(timings: Mapping[str, Any] | None, order: Sequence[str]) -> Tabl
         Header("rate", "frames/s", "One second over the mean median step."),
     ]
     return Table(headers, rows) if rows else None
-
-
-def speed_note(timings: Mapping[str, Any] | None) -> str:
-    """Describe the measurement and the machine."""
-    clock = (timings or {}).get("clock", "time of a step")
-    processor = " with ".join(map(str, (timings or {}).get("processor", []) or ["unknown"]))
-    return (
-        f"Measured in a serial pass of its own: {clock}. Processor: {processor} cores. "
-        "Compare systems by their ratios; other machines have other times."
-    )

@@ -26,13 +26,6 @@ from matplotlib import rc_context
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import (
-    Aggregates,
-    Summaries,
-    aggregate,
-    findings,
-    power,
-)
-from vehicle_pf_tracker.evaluation.report.columns import (
     COLUMNS,
     NO_VALUE,
     PRECISION,
@@ -41,9 +34,14 @@ from vehicle_pf_tracker.evaluation.report.columns import (
     RMSE,
     STEP,
     SUCCESS,
+    Aggregates,
     Column,
+    Summaries,
+    aggregate,
+    findings,
     interval_text,
     mean_text,
+    power,
 )
 from vehicle_pf_tracker.evaluation.report.figures import PAPER, draw_all
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
