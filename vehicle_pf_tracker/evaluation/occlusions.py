@@ -104,15 +104,10 @@ def threshold(frame: FrameScore) -> float:
 
 
 def _hidden_stretches(counted: Sequence[FrameScore]) -> Iterator[tuple[int, int]]:
-    begin: int | None = None
-    for index, frame in enumerate(counted):
-        if frame.hidden and begin is None:
-            begin = index
-        if not frame.hidden and begin is not None:
-            yield begin, index
-            begin = None
-    if begin is not None:
-        yield begin, len(counted)
+    for hidden, group in itertools.groupby(enumerate(counted), lambda pair: pair[1].hidden):
+        if hidden:
+            indices = [index for index, _ in group]
+            yield indices[0], indices[-1] + 1
 
 
 def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> OcclusionScore:

@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -49,17 +48,6 @@ OBJECTIVES: Mapping[str, Objective] = MappingProxyType(
     }
 )
 """Objectives by the name of the metric."""
-
-
-def mean_of_means(runs: Mapping[str, Sequence[float | None]]) -> float | None:
-    """Return the mean over recordings of the mean over their runs; None if a run has no value."""
-    means = []
-    for values in runs.values():
-        known = [value for value in values if value is not None]
-        if len(known) < len(values) or not known:
-            return None
-        means.append(statistics.fmean(known))
-    return statistics.fmean(means) if means else None
 
 
 FACTOR = 4.0

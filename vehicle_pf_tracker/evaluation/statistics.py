@@ -120,6 +120,17 @@ def recording_means(runs: Mapping[RunKey, float]) -> dict[str, float]:
     return {recording: statistics.fmean(values) for recording, values in by_recording.items()}
 
 
+def mean_of_means(runs: Mapping[str, Sequence[float | None]]) -> float | None:
+    """Return the mean over recordings of the mean over their runs; None if a run has no value."""
+    means = []
+    for values in runs.values():
+        known = [value for value in values if value is not None]
+        if len(known) < len(values) or not known:
+            return None
+        means.append(statistics.fmean(known))
+    return statistics.fmean(means) if means else None
+
+
 def paired_differences(
     first: Mapping[RunKey, float], second: Mapping[RunKey, float]
 ) -> dict[str, float]:

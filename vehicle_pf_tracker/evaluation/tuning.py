@@ -37,7 +37,8 @@ from vehicle_pf_tracker.evaluation.grid.cells import GridCell, VariantSystem, se
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.running import Runner
 from vehicle_pf_tracker.evaluation.result_store import ResultStore, scoring_digest
-from vehicle_pf_tracker.evaluation.search_space import Dimension, Objective, mean_of_means
+from vehicle_pf_tracker.evaluation.search_space import Dimension, Objective
+from vehicle_pf_tracker.evaluation.statistics import mean_of_means
 from vehicle_pf_tracker.evaluation.tables import NOTHING, csv_text
 from vehicle_pf_tracker.offline.processes import OnProgress, Progress
 from vehicle_pf_tracker.offline.run_folder import METRICS

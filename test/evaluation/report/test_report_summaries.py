@@ -85,7 +85,7 @@ def test_recoveries_are_counted_over_all_runs(aggregates, evaluation):
     assert aggregates.recoveries["pf"] == (sum(judged), len(judged))
     assert len(judged) == len(SEEDS)  # one occlusion in one of the recordings
     cells = overall_table(aggregates).rows["pf"]
-    assert f"({sum(judged)}/{len(judged)})" in " ".join(cell.text for cell in cells)
+    assert f"{sum(judged)} of {len(judged)}" in [cell.text for cell in cells]
 
 
 def test_csv_has_a_line_for_each_mean(evaluation, aggregates):

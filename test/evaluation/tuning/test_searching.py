@@ -21,7 +21,8 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.tracking import CellResult
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.evaluation.search_space import OBJECTIVES, mean_of_means, search_space
+from vehicle_pf_tracker.evaluation.search_space import OBJECTIVES, search_space
+from vehicle_pf_tracker.evaluation.statistics import mean_of_means
 from vehicle_pf_tracker.evaluation.tuning import (
     SearchTask,
     Trial,

@@ -109,8 +109,8 @@ COLUMNS = (
            "Error of the centre that 95 % of the frames stay below.", False),
     Column("max_px", ERRORS, "largest", "px", 1, False, "Largest error of the centre."),
     Column("recovered", HIDDEN, "recovered", "", 2, True,
-           "Share of the judged total occlusions after which the track was on the vehicle again; "
-           "in brackets how many of all runs.", False),
+           "Judged total occlusions after which the track was on the vehicle again: their number "
+           "over all runs, or their mean share.", False),
     Column("frames_to_recover", HIDDEN, "return", "frames", 1, False,
            "Frames from the last hidden one until the track stays on the vehicle, where it does.",
            False),
@@ -217,65 +217,61 @@ class Aggregates:
 
 def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     """Summarise all runs."""
-    labels = [system.label for system in evaluation.systems if evaluation.of(system=system.label)]
-    by_recording = {
-        (recording.name, label): {
-            column.key: summarise([column.value(run.metrics) for run in runs]) for column in COLUMNS
-        }
-        for recording in evaluation.recordings
-        for label in labels
-        if (runs := evaluation.of(recording.name, label))
+    runs = {s.label: some for s in evaluation.systems if (some := evaluation.of(system=s.label))}
+    values = {
+        label: {column.key: _values(some, column) for column in COLUMNS}
+        for label, some in runs.items()
     }
-    rankings = _rankings(evaluation, labels)
-    order = _order(labels, rankings)
-    main = {label: run_values(evaluation, label, RANKED[0]) for label in order}
+    means = {
+        label: {key: recording_means(found) for key, found in columns.items()}
+        for label, columns in values.items()
+    }
+    rankings = {
+        column.key: ranking
+        for column in RANKED
+        if (
+            ranking := rank_systems(
+                {label: columns[column.key] for label, columns in means.items()},
+                higher_is_better=bool(column.higher_is_better),
+            )
+        )
+    }
+    main = RANKED[0].key
+    ranked = [rank.system for rank in rankings[main].ranks] if main in rankings else []
+    order = (*ranked, *(label for label in runs if label not in ranked))
     return Aggregates(
         order=order,
-        by_recording=by_recording,
-        overall={label: _over_recordings(evaluation, label) for label in order},
+        by_recording={
+            (entry.name, label): {
+                key: summarise([found[run] for run in found if run.recording == entry.name])
+                for key, found in columns.items()
+            }
+            for entry in evaluation.recordings
+            for label, columns in values.items()
+            if evaluation.of(entry.name, label)
+        },
+        overall={
+            label: {key: summarise(list(found.values())) for key, found in means[label].items()}
+            for label in order
+        },
         rankings=rankings,
-        pairs=tuple(compare_pairs(main)),
-        recoveries={label: _recoveries(evaluation.of(system=label)) for label in order},
+        pairs=tuple(compare_pairs({label: values[label][main] for label in order})),
+        recoveries={label: _recoveries(runs[label]) for label in order},
     )
 
 
-def run_values(evaluation: ScoredEvaluation, system: str, column: Column) -> dict[RunKey, float]:
-    """Return a metric of a system's runs, where they have it."""
-    values = {
-        RunKey(run.recording, run.seed): column.value(run.metrics)
-        for run in evaluation.of(system=system)
+def _values(runs: Sequence[ScoredRun], column: Column) -> dict[RunKey, float]:
+    """Return a metric of runs, where they have it."""
+    return {
+        RunKey(run.recording, run.seed): value
+        for run in runs
+        if (value := column.value(run.metrics)) is not None
     }
-    return {key: value for key, value in values.items() if value is not None}
 
 
 def _recoveries(runs: Sequence[ScoredRun]) -> tuple[int, int]:
     judged = [verdict for run in runs for verdict in run.metrics.recovered if verdict is not None]
     return sum(judged), len(judged)
-
-
-def _over_recordings(evaluation: ScoredEvaluation, system: str) -> dict[str, Summary | None]:
-    return {
-        column.key: summarise(
-            list(recording_means(run_values(evaluation, system, column)).values())
-        )
-        for column in COLUMNS
-    }
-
-
-def _rankings(evaluation: ScoredEvaluation, labels: Sequence[str]) -> dict[str, Ranking]:
-    rankings = {}
-    for column in RANKED:
-        values = {label: recording_means(run_values(evaluation, label, column)) for label in labels}
-        ranking = rank_systems(values, higher_is_better=bool(column.higher_is_better))
-        if ranking is not None:
-            rankings[column.key] = ranking
-    return rankings
-
-
-def _order(labels: Sequence[str], rankings: Mapping[str, Ranking]) -> tuple[str, ...]:
-    ranking = rankings.get(RANKED[0].key)
-    ranked = [rank.system for rank in ranking.ranks] if ranking else []
-    return (*ranked, *(label for label in labels if label not in ranked))
 
 
 def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:

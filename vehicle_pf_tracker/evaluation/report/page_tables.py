@@ -47,7 +47,7 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     p_value_text,
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
-from vehicle_pf_tracker.evaluation.statistics import ALPHA, PairedTest, Summary
+from vehicle_pf_tracker.evaluation.statistics import ALPHA, PairedTest, Summary, mean_of_means
 from vehicle_pf_tracker.evaluation.tables import Header, Table, TableCell
 from vehicle_pf_tracker.offline.run_folder import METRICS, damage
 
@@ -55,13 +55,13 @@ from vehicle_pf_tracker.offline.run_folder import METRICS, damage
 def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -> Table:
     """Show metrics, all if `keys` is None, as means over the recordings.
 
-    Recoveries stand with their number too.
+    Recoveries are counted over all runs.
     """
 
     def text(label: str, summary: Summary | None, column: Column) -> str:
-        mean = mean_text(summary, column)
         recovered, judged = aggregates.recoveries[label]
-        return f"{mean} ({recovered}/{judged})" if column is RECOVERED and judged else mean
+        is_count = column is RECOVERED and judged
+        return f"{recovered} of {judged}" if is_count else mean_text(summary, column)
 
     columns = [column for column in COLUMNS if keys is None or column.key in keys]
     return _metrics_table(aggregates.overall, columns, text)
@@ -301,11 +301,12 @@ def _found(folder: EvaluationFolder, above: str, below: str) -> Documents:
 def _mean_of_means(
     found: Documents, value: Callable[[Mapping[str, Any]], float | None]
 ) -> float | None:
-    """Return the mean over recordings of the means over their runs."""
-    by_recording = ([value(document) for document in documents] for documents in found.values())
-    known = ([number for number in values if number is not None] for values in by_recording)
-    means = [statistics.fmean(values) for values in known if values]
-    return statistics.fmean(means) if means else None
+    """Return the mean over recordings of the means over those of their runs that have a value."""
+    known = {
+        name: [number for document in documents if (number := value(document)) is not None]
+        for name, documents in found.items()
+    }
+    return mean_of_means({name: values for name, values in known.items() if values})
 
 
 def speed_table(timings: Mapping[str, Any] | None, order: Sequence[str]) -> Table | None:
