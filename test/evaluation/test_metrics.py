@@ -88,12 +88,6 @@ def test_claims_of_an_occlusion_by_hand():
     assert (metrics.lost_hidden, metrics.lost_visible) == (1, 2)
 
 
-def test_step_times():
-    rows = [row(i, 100.0, step_ms=float(i)) for i in range(1, 22)]
-    metrics = measure(score_frames(rows, []))
-    assert (metrics.step_ms_p50, metrics.step_ms_p95) == (11.0, 20.0)
-
-
 def test_waiting_frames_and_frames_without_truth_are_counted_and_not_scored():
     rows = [EstimateRow.without(1, PERIOD_NS, WAITING), row(2, 103.0), row(3, 500.0)]
     metrics = measure(score_frames(rows, [truth(1), truth(2), truth(9)]))

@@ -88,9 +88,3 @@ def test_runs_without_truth_can_be_drawn(tmp_path, runs):
 def test_a_picture_that_cannot_be_written_is_named(tmp_path):
     with pytest.raises(InputError, match=r"cannot write .*missing/error\.png"):
         save(overview_figure(FRAME, RUNS), tmp_path / "missing" / "error.png")
-
-
-def test_the_overview_has_both():
-    path, error = overview_figure(FRAME, RUNS).axes
-    assert path.get_ylabel() == "y, px"
-    assert error.get_yscale() == "log"

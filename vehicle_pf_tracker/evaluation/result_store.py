@@ -14,7 +14,7 @@
 
 """Results on disk, added one by one, so that interrupted work continues.
 
-Cache keys of results: a digest of everything that decides a result, its code included.
+The cache key of a result is a digest of everything that determines it, its code included.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What others read: evo, video players, Foxglove."""
+"""Exports for other tools: evo, video players, Foxglove."""
 
 import shutil
 from types import SimpleNamespace

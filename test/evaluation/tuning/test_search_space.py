@@ -88,11 +88,6 @@ def test_ranges_come_from_the_table_or_the_user(name, word, expected):
     assert space_of(name, word) == [expected]
 
 
-def test_ranges_are_around_where_the_search_begins():
-    (dimension,) = space_of("pf", "sigma", sigma=4.0)
-    assert (dimension.low, dimension.high) == (1.0, 16.0)
-
-
 @pytest.mark.parametrize(
     ("word", "said"),
     [

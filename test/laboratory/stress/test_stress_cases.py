@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What becomes of images and truth, to the pixel."""
+"""Changes of images and truth, to the pixel."""
 
 import numpy as np
 import pytest

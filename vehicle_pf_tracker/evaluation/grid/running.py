@@ -14,7 +14,7 @@
 
 """Run the cells that an evaluation lacks, and keep each as soon as its result is there.
 
-Run the grid on a Dask cluster whose workers have this package and can read the recordings.
+They run on this machine, or on a Dask cluster whose workers can read the recordings.
 """
 
 from __future__ import annotations

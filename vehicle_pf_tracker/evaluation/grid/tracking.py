@@ -12,13 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Run a cell of the grid.
+"""Run a cell of the grid, and measure the speed of all systems in a serial pass of its own.
 
-Measure the speed of all systems, in a serial pass of its own.
-
-Each frame is given to all systems before the next one is, so that whatever slows the machine down
-for a while slows all of them alike, and nothing of ours runs beside. What counts is the processor
-time of the thread that tracks; decoding and the way to a baseline's process are left out.
+The serial pass gives each frame to all systems before the next one, so that a slow moment of the
+machine slows all of them alike. It measures the processor time of the tracking thread, without
+decoding and the transfer to a baseline's process.
 """
 
 from __future__ import annotations

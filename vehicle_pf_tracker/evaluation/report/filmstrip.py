@@ -14,7 +14,7 @@
 
 """Stills of a recording: around its occlusions, and where each system was worst.
 
-Boxes drawn over images: the truth as corners in white, estimates in colour with a number.
+The truth is drawn as white corners, an estimate as a box in colour with a number.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@
 
 """Cells of an evaluation, scored against the truth.
 
-The evaluation's runs for other tools: TUM trajectories for evo, recordings for Foxglove.
+They are exported for other tools: as TUM trajectories for evo, as recordings for Foxglove.
 """
 
 from __future__ import annotations

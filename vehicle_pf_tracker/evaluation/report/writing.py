@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The tables of a report as files: for documents, for spreadsheets, for papers and for programs."""
+"""The files of a report: its page, tables, figures and exports."""
 
 from __future__ import annotations
 
