@@ -44,7 +44,7 @@ from laboratory.stress.footage import StressFootage, open_footage
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.baselines.client import Baseline
+from vehicle_pf_tracker.evaluation.baselines import Baseline
 from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.offline.output_files import write_text
 

@@ -36,7 +36,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.evaluation.baselines.traffic_client import TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import stream

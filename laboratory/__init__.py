@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What fits, judges and compares the trackers; not installed."""
+"""Programs that fit, judge and compare the trackers; not installed."""

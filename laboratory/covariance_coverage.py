@@ -21,6 +21,7 @@ from dataclasses import astuple
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 from scipy.optimize import minimize
 
 from vehicle_pf_tracker.core.array import Array
@@ -66,12 +67,12 @@ class Runs:
         return column
 
     @property
-    def is_visible(self) -> Array:
+    def is_visible(self) -> npt.NDArray[np.bool_]:
         """True where the tracker claims TRACKING."""
         return np.asarray(self["mode"] == 0)
 
     @property
-    def is_occluded(self) -> Array:
+    def is_occluded(self) -> npt.NDArray[np.bool_]:
         """True where the vehicle is truly out of sight."""
         return np.asarray(self["occlusion"] == Occlusion.TOTAL)
 
@@ -144,7 +145,7 @@ def fit(runs: Runs) -> Calibration:
     return Calibration(_fit(runs, runs.is_visible), _fit(runs, ~runs.is_visible))
 
 
-def _fit(runs: Runs, used: Array) -> Spread:
+def _fit(runs: Runs, used: npt.NDArray[np.bool_]) -> Spread:
     def cost(logarithms: Array) -> float:
         squares, areas = runs.squares(Spread(*np.exp(logarithms).tolist()))
         tail = (_TAIL + 2) / 2 * np.log1p(squares[used] / _TAIL)
@@ -221,7 +222,7 @@ def _coverage_row(
     return (f"`{name}`", *shares, *radii)
 
 
-def _percent(inside: Array) -> str:
+def _percent(inside: npt.NDArray[np.bool_]) -> str:
     return f"{100 * inside.mean():.1f} %" if len(inside) else NOTHING
 
 

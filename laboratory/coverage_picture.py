@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 
@@ -64,8 +65,9 @@ def _draw_levels(axes: Axes, runs: Mapping[str, Runs]) -> None:
     for name, one in runs.items():
         squares, _ = one.calibrated(CALIBRATIONS[name])
         shares = [(squares <= bound).mean() for bound in bounds]
-        shown = {"color": _SHOWN[name], "label": name, "lw": 2} if name in _SHOWN else {}
-        axes.plot(_LEVELS, shares, **{"color": "0.75", "lw": 0.8, **shown})
+        style: dict[str, Any] = {"color": "0.75", "lw": 0.8}
+        style |= {"color": _SHOWN[name], "label": name, "lw": 2} if name in _SHOWN else {}
+        axes.plot(_LEVELS, shares, **style)
     axes.plot([0, 1], [0, 1], "k:", lw=1)
     axes.fill_between([0.94, 0.96], 0.9, 0.99, color="tab:green", alpha=0.4, lw=0)
     axes.set(xlabel="level of the ellipse", ylabel="frames whose truth it holds",

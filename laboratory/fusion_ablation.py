@@ -12,7 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What each part of `fusion` buys: one change each, on the same cases, with intervals over cameras.
+"""Contribution of each part of `fusion`: one change each, on the same cases, with intervals.
+
+The intervals are over cameras.
 
     python -m laboratory.fusion_ablation SEQUENCES -o results/fusion_ablation
 

@@ -137,7 +137,7 @@ def listed_cases(
     path = options.output / f"{name}.pickle"
     if not path.exists():
         sources = find_sequences(options.sequences, options.cameras)
-        cases = list_cases(sources, kinds=kinds, seed=options.seed, **limits)  # type: ignore[arg-type]
+        cases = list_cases(sources, kinds=kinds, seed=options.seed, **limits)
         path.write_bytes(pickle.dumps(cases))
     cases = pickle.loads(path.read_bytes())  # noqa: S301 - written by the run before
     return list(cases)

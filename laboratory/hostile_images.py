@@ -41,7 +41,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.compressed_image import read_compressed
 
 _SMALLER = 0.97
-"""Of a file that is refused, its next try has this many times the side."""
+"""Factor on the side of the image after a refusal."""
 
 _DECODE = """
 import re, sys, time, numpy as np, cv2

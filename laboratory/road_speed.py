@@ -30,6 +30,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -157,7 +158,7 @@ def _session(variant: str, box: Box, seed: int) -> Session:
 def roads_of(camera: RoadCamera, seed: int) -> Mapping[str, RoadParameters]:
     """Return the parameters of the road: exact, and by pairs that were read off."""
     lens = camera.lens
-    values = {
+    values: dict[str, Any] = {
         "intrinsics": ",".join(map(repr, (*lens.focal, *lens.centre))),
         "distortion_model": lens.model,
         "distortion": ",".join(map(repr, lens.coefficients)),

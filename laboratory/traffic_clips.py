@@ -33,6 +33,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.evaluation.traffic.identities import overlaps
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
@@ -81,7 +82,7 @@ def follow(clip: Path, parameters: TrafficParameters) -> list[np.ndarray]:
     session = TrafficSession(
         TrafficTracker(parameters), lambda: MotionDetector(parameters.seed), frame_rate=rate
     )
-    found = []
+    found: list[Array] = []
     while True:
         read, image = video.read()
         if not read:

@@ -38,7 +38,7 @@ import numpy as np
 
 from laboratory.traffic_spread import HEAD, judged, shortened, summary
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baselines.traffic_client import TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder

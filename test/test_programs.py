@@ -26,7 +26,7 @@ import pytest
 
 from reproduction.catalogue import EXPERIMENTS
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baselines.client import VARIABLE, baseline_python
+from vehicle_pf_tracker.evaluation.baselines import VARIABLE, baseline_python
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
@@ -100,6 +100,9 @@ PROGRAMS = {
         ("baselines",),
     ),
     "laboratory.traffic_occluders": Program("{toy}/traffic", printed="traffic: "),
+    "laboratory.traffic_perturbed": Program(
+        "{toy}/traffic -o {out}", ("traffic.html",), "the report is", ("baselines",)
+    ),
     "laboratory.traffic_score": Program(
         "{toy}/traffic --baselines", printed="bytetrack", needs=("baselines",)
     ),

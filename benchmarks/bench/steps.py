@@ -23,7 +23,7 @@ from pathlib import Path
 from benchmarks.bench.case import Case
 from benchmarks.bench.effort import Effort
 from benchmarks.bench.turns import Follower, Own, Theirs, follow
-from vehicle_pf_tracker.evaluation.baselines.client import Baseline
+from vehicle_pf_tracker.evaluation.baselines import Baseline
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 BASELINES = ("csrt", "kcf", "mil")

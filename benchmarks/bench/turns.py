@@ -23,7 +23,7 @@ from typing import Any, Protocol
 from benchmarks.bench.material import drive, enlarged
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.baselines.client import Baseline
+from vehicle_pf_tracker.evaluation.baselines import Baseline
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 

@@ -26,15 +26,15 @@ from typing import Any, Protocol
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.baselines.client import Baseline, BaselineAnswer
+from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_row
 from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, System, VariantSystem
 from vehicle_pf_tracker.evaluation.result_store import variant_modules
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, to_mapping
-from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import find_variant
 
-_BASELINES = "vehicle_pf_tracker.evaluation.baselines."
+_EVALUATION = "vehicle_pf_tracker.evaluation"
 
 
 class Follower(Protocol):
@@ -81,7 +81,7 @@ class StressSystem:
         """Put a variant with its parameters, or a baseline, to the test."""
         if isinstance(system, BaselineSystem):
             facts = {name: value for name, value in system.facts(0).items() if name != "seed"}
-            code = (f"{_BASELINES}client", f"{_BASELINES}worker", __name__)
+            code = (f"{_EVALUATION}.baselines", f"{_EVALUATION}.baseline_worker", __name__)
             make = functools.partial(BaselineFollower, system)
             return cls(system.label, make, facts, code, is_deterministic=True)
         facts = {"variant": system.variant, "parameters": dict(system.parameters)}
@@ -125,22 +125,15 @@ class BaselineFollower:
 
     def start(self, frame: Frame, box: Box) -> EstimateRow:
         """Start it; see `Follower`."""
-        return _row(self._baseline.start(frame, box))
+        return baseline_row(self._baseline.start(frame, box), 0, 0)
 
     def step(self, frame: Frame, _elapsed: float = 1.0) -> EstimateRow:
         """Step it; these trackers know no time."""
-        return _row(self._baseline.step(frame))
+        return baseline_row(self._baseline.step(frame), 0, 0)
 
     def close(self) -> None:
         """End its process."""
         self._baseline.close()
-
-
-def _row(answer: BaselineAnswer) -> EstimateRow:
-    x, y = answer.box.centre
-    mode = Mode.TRACKING if answer.found else Mode.LOST
-    size = answer.box.width, answer.box.height
-    return EstimateRow(0, 0, x, y, *size, mode.value, None, None, None)
 
 
 def variant_system(

@@ -53,7 +53,7 @@ QUICK = ["--variants", "pf,ms", "--seeds", "2", "--set", "num_particles=30"]
 def test_a_folder_of_recordings_is_evaluated(bags, tmp_path, capsys):
     assert evaluate(tmp_path / "out", bags, *QUICK) == 0
     out = capsys.readouterr().out
-    assert "RMSE, px" in out
+    assert "RMSE, px" in out and "success AUC" in out
     assert f"the report is {tmp_path / 'out' / 'report.html'}" in out
     plan = json.loads((tmp_path / "out" / "evaluation.json").read_text())
     assert [entry["name"] for entry in plan["recordings"]] == ["one", "two"]

@@ -19,7 +19,7 @@ import sys
 import pytest
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation.baselines import traffic_client
+from vehicle_pf_tracker.evaluation import baselines as client
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
 
@@ -49,10 +49,10 @@ def evaluate(*words):
 def test_a_comparison_is_written_and_shown(folder, tmp_path, monkeypatch, capsys):
     script = tmp_path / "worker.py"
     script.write_text(WORKER)
-    monkeypatch.setattr(traffic_client, "_WORKER", script)
+    monkeypatch.setattr(client, "WORKER", script)
     out = tmp_path / "out"
     words = ["--baselines-python", sys.executable, "--detections", "good,motion"]
-    words += ["--perturbations", "dropped", "--set", "lost_after=1.5"]
+    words += ["--set", "lost_after=1.5"]
     assert evaluate("--traffic", folder, "-o", out, *words) == 0
     shown = capsys.readouterr().out
     assert "pair, good" in shown
@@ -61,7 +61,7 @@ def test_a_comparison_is_written_and_shown(folder, tmp_path, monkeypatch, capsys
     assert {path.name for path in out.iterdir()} == {
         "traffic.html", "traffic.md", "traffic.csv", "traffic.json"
     }  # fmt: skip
-    assert "| `ocsort-low` | 1.5 / 1.5 / 1.5 |" in (out / "traffic.md").read_text()
+    assert "| ocsort-low | 1.5 | 1.5 |" in (out / "traffic.md").read_text()
     assert '"lost_after=1.5"' in (out / "traffic.json").read_text()
 
 
@@ -70,9 +70,8 @@ def test_a_comparison_is_written_and_shown(folder, tmp_path, monkeypatch, capsys
     [
         (["--traffic", "{folder}", "--timing"], 2, "--timing does not go with --traffic"),
         (["{folder}", "--stress", "quick"], 2, "the stress battery is no option of evaluate"),
-        (["{folder}", "--perturbations", "none"], 2, "--perturbations does not go without --traf"),
+        (["{folder}", "--detections", "good"], 2, "--detections does not go without --traffic"),
         (["--traffic", "{folder}", "--detections", "god"], 1, "there are no detections 'god' (did"),
-        (["--traffic", "{folder}", "--perturbations", "x"], 1, "there are no perturbations 'x'"),
         (["--traffic", "{folder}", "--set", "lost=1"], 1, "lost"),
         (["--traffic", "{folder}/img1"], 1, "is not a MOTChallenge folder: it has no seqinfo.ini"),
     ],

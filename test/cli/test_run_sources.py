@@ -19,6 +19,7 @@ import os
 import resource
 import signal
 import threading
+from contextlib import contextmanager
 
 import cv2
 import numpy as np
@@ -194,24 +195,25 @@ def test_a_run_that_fails_leaves_no_video(run, tmp_path):
     assert not made.parent.exists()
 
 
-@pytest.fixture
+@contextmanager
 def little_space():
     """Let no file grow beyond 8 kB: writing fails then as it does on a full disk."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    yield lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8192, before[1]))
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8192, before[1]))
+    try:
+        yield
+    finally:  # before pytest reports: its own output may be a file
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 @pytest.mark.parametrize("encoder", [False, pytest.param(True, marks=pytest.mark.skipif(
     not pictures.has_encoder(), reason="PyAV is an extra"))])  # fmt: skip
-def test_a_video_that_finds_no_space_is_an_error_and_is_not_left(
-    tmp_path, monkeypatch, little_space, encoder
-):
+def test_a_video_that_finds_no_space_is_an_error_and_is_not_left(tmp_path, monkeypatch, encoder):
     monkeypatch.setattr(pictures, "has_encoder", lambda: encoder)
     path = tmp_path / "made.mp4"
     noise = np.random.default_rng(0).integers(0, 256, (30, 120, 160, 3), np.uint8)
-    little_space()
     with (
+        little_space(),
         pytest.raises(InputError, match=f"cannot write {path}"),
         pictures.video_writer(path, (160, 120), 25.0) as writer,
     ):

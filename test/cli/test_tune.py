@@ -67,7 +67,7 @@ def test_the_best_is_written_for_the_node_and_compared_on_what_was_held_out(bags
         ("held out", "two"),
         ("held out", "mean of 1"),
     }
-    assert "tuned on | one | success_auc" in (out / "tuning.md").read_text()
+    assert "tuned on: one | success_auc" in (out / "tuning.md").read_text()
     assert (out / "evaluation" / "report.html").is_file()
     run = tmp_path / "run"
     yaml = ["--params", str(out / "best.yaml")]

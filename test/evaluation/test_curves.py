@@ -58,12 +58,6 @@ def test_normalised_precision_by_hand():
     assert metrics.normalised_precision_auc == pytest.approx((51 + 26) * 0.5 / 51)
 
 
-def test_frames_before_the_first_estimate_never_pass():
-    frames = [scored(1, None, mode="REJECTED"), scored(2, 0)]
-    for curve in (precision_curve, normalised_precision_curve, success_curve):
-        assert curve(frames).shares.max() == 0.5
-
-
 def test_no_frames_no_curves():
     assert precision_curve([]) is success_curve([]) is normalised_precision_curve([]) is None
 

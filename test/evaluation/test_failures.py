@@ -69,12 +69,6 @@ def test_a_restart_waits_five_frames_and_for_a_full_view():
     assert restart_index(frames[:12], 3) is None
 
 
-def test_a_run_without_failures_by_hand():
-    score = score_restarts(frames_of((10, 0, NONE), (20, 12, NONE)), [0])
-    assert (score.failures, score.frames, score.robustness) == (0, 30, 1)
-    assert score.accuracy == pytest.approx(1 / 3)  # the burn-in's overlap of 1 is left out
-
-
 def test_a_run_with_a_restart_by_hand():
     # 20 good frames, failure in frame index 20, started anew at 25, good until the end at 45.
     frames = frames_of((20, 0, NONE), (5, 90, NONE), (20, 12, NONE))
@@ -82,11 +76,6 @@ def test_a_run_with_a_restart_by_hand():
     assert (score.failures, score.frames) == (1, 40)
     assert score.accuracy == pytest.approx((10 * 1 + 10 / 3) / 20)
     assert score.robustness == pytest.approx(math.exp(-30 / 40))
-
-
-def test_a_last_failure_without_a_restart_counts():
-    score = score_restarts(frames_of((20, 0, NONE), (9, 90, NONE)), [0])
-    assert (score.failures, score.frames, score.accuracy) == (1, 20, 1)
 
 
 def test_hidden_frames_say_nothing_about_accuracy():

@@ -91,3 +91,8 @@ def test_one_variant_does_not_decide_another():
     root = Path(vehicle_pf_tracker.__file__).parents[1]
     found = result_store.imported_modules("vehicle_pf_tracker.trackers.session", root, ours)
     assert "vehicle_pf_tracker.trackers.registry" in found
+
+
+def test_a_start_that_is_not_there_is_an_error(root):
+    with pytest.raises(ModuleNotFoundError, match=r"made\.gone"):
+        digest(root, "made.gone")

@@ -12,7 +12,6 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-import pytest
 
 from vehicle_pf_tracker.offline.estimates import (
     REJECTED,
@@ -48,10 +47,6 @@ def test_time_divides_the_line_between_the_last_and_the_next_seen():
     assert points == [(0, 0), (2, 20), (4, 40), (8, 80), (9, 90)]
 
 
-def test_frames_in_tracking_keep_their_position():
-    assert xs((0, 1.0, T), (1, 5.0, T), (2, 2.0, T)) == [1, 5, 2]
-
-
 def test_rejected_frames_are_filled_too():
     assert xs((0, 0.0, T), (1, None, REJECTED), (2, 4.0, T)) == [0, 2, 4]
 
@@ -66,10 +61,6 @@ def test_no_line_is_drawn_where_time_goes_back():
     assert xs((5, 0.0, T), (0, 1.0, H), (7, 4.0, T)) == [0, None, 4]
 
 
-def test_nothing_gives_nothing():
-    assert interpolate_occlusions([]) == []
-
-
 def test_the_columns_are_written_last_and_are_not_read_as_estimates(tmp_path):
     made = rows((0, 0.0, T), (1, 7.0, H), (2, 4.0, T))
     path = tmp_path / "estimates.csv"
@@ -78,8 +69,3 @@ def test_the_columns_are_written_last_and_are_not_read_as_estimates(tmp_path):
     assert header.endswith("step_ms,x_interpolated,y_interpolated")
     assert occluded.endswith(",2.0,20.0")
     assert read_estimates(path) == made
-
-
-def test_columns_must_have_a_value_for_every_row(tmp_path):
-    with pytest.raises(ValueError, match="zip"):
-        write_estimates(tmp_path / "e.csv", rows((0, 0.0, T)), {"more": []})

@@ -88,22 +88,6 @@ def test_claims_of_an_occlusion_by_hand():
     assert (metrics.lost_hidden, metrics.lost_visible) == (1, 2)
 
 
-def test_claims_that_are_not_made_have_no_precision():
-    metrics = metrics_of(scored(1, 0), scored(2, 0, mode="LOST"))
-    assert metrics.occluded_precision is metrics.occluded_recall is None
-
-
-def test_quantiles_of_the_error():
-    metrics = metrics_of(*(scored(i, i) for i in range(1, 22)))
-    assert (metrics.median_px, metrics.p95_px, metrics.max_px) == (11, 20, 21)
-
-
-def test_step_times():
-    rows = [row(i, 100.0, step_ms=float(i)) for i in range(1, 22)]
-    metrics = measure(score_frames(rows, []))
-    assert (metrics.step_ms_p50, metrics.step_ms_p95) == (11.0, 20.0)
-
-
 def test_waiting_frames_and_frames_without_truth_are_counted_and_not_scored():
     rows = [EstimateRow.without(1, PERIOD_NS, WAITING), row(2, 103.0), row(3, 500.0)]
     metrics = measure(score_frames(rows, [truth(1), truth(2), truth(9)]))
@@ -126,10 +110,6 @@ def test_an_estimate_that_is_not_finite_is_a_miss():
     metrics = metrics_of(scored(1, 4), scored(2, math.nan), scored(3, math.inf))
     assert metrics.rmse_px == metrics.max_px == 4
     assert metrics.on_target == pytest.approx(1 / 3)
-
-
-def test_modes_of_others_are_counted_too():
-    assert metrics_of(scored(1, 0, mode="DROPPED")).frames_by_mode["DROPPED"] == 1
 
 
 def test_without_truth_there_are_no_errors_but_modes_and_times():

@@ -22,10 +22,6 @@ def judged(*parts):
     return score_occlusions(run_of(*parts).counted)
 
 
-def test_no_occlusion_no_score():
-    assert judged((20, 1, NONE)) == judged((20, 1, PARTIAL)) == judged() == ()
-
-
 def test_one_occlusion_by_hand():
     # Hidden 11 to 20; 15 frames later is frame 35, so that 35 to 44 are judged.
     (score,) = judged((10, 0, NONE), (10, 30, TOTAL), (14, 99, PARTIAL), (10, 7, NONE))
@@ -80,11 +76,6 @@ def test_the_next_occlusion_ends_what_is_judged():
     assert (second.judged_frames, second.error_after_px, second.recovered) == (26, 30, False)
 
 
-def test_two_occlusions_close_together_leave_the_first_unjudged():
-    first, second = judged((4, 0, TOTAL), (12, 0, NONE), (7, 0, TOTAL), (40, 0, NONE))
-    assert (first.recovered, second.recovered) == (None, True)
-
-
 def test_frames_are_counted_by_number_where_truth_is_missing():
     # Frames 2 to 20 have no truth; 16 is the first that would be judged.
     frames = [scored(1, 0, TOTAL), *(scored(n, 2) for n in range(21, 26))]
@@ -105,19 +96,6 @@ def test_exit_and_return_by_hand():
     assert (score.error_at_exit_px, score.frames_to_recover) == (40, 4)
 
 
-def test_an_error_at_the_threshold_is_off_the_vehicle():
-    # Half the diagonal is 20 px.
-    (score,) = judged((5, 0, TOTAL), (30, 20, NONE))
-    assert (score.recovered, score.frames_to_recover) == (False, None)
-    (score,) = judged((5, 0, TOTAL), (30, 19.9, NONE))
-    assert (score.recovered, score.frames_to_recover) == (True, 1)
-
-
-def test_at_once_is_one_frame():
-    (score,) = judged((5, 0, TOTAL), (30, 2, NONE))
-    assert (score.error_at_exit_px, score.frames_to_recover) == (2, 1)
-
-
 def test_a_pass_over_the_vehicle_is_no_return():
     (score,) = judged((5, 0, TOTAL), (4, 2, NONE), (1, 90, NONE), (4, 2, NONE), (9, 90, NONE))
     assert score.frames_to_recover is None
@@ -128,8 +106,3 @@ def test_a_pass_over_the_vehicle_is_no_return():
 def test_the_next_occlusion_ends_the_search():
     first, second = judged((1, 0, TOTAL), (4, 2, NONE), (2, 0, TOTAL), (5, 2, NONE))
     assert (first.frames_to_recover, second.frames_to_recover) == (None, 1)
-
-
-def test_an_occlusion_until_the_end_has_no_exit():
-    (score,) = judged((5, 3, TOTAL))
-    assert (score.error_at_exit_px, score.frames_to_recover) == (None, None)

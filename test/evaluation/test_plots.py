@@ -18,7 +18,7 @@ import pytest
 from scoring_samples import NONE, PARTIAL, TOTAL, row, run_of, scored
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.plots import error_figure, overview_figure, save
+from vehicle_pf_tracker.evaluation.plots import overview_figure, save
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 
 FRAME = np.full((240, 320, 3), 128, np.uint8)
@@ -28,21 +28,25 @@ RUNS = {
 }
 
 
-def named_lines(figure):
-    return {line.get_label(): line for line in figure.axes[0].lines if line.get_label()[0] != "_"}
+def errors_of(runs):
+    return overview_figure(FRAME, runs).axes[1]
+
+
+def named_lines(axes):
+    return {line.get_label(): line for line in axes.lines if line.get_label()[0] != "_"}
 
 
 def test_errors_are_drawn_by_frame_on_a_scale_that_has_a_foot():
-    line = named_lines(error_figure(RUNS))["two"]
+    line = named_lines(errors_of(RUNS))["two"]
     assert list(line.get_xdata()) == list(range(1, 31))
     assert line.get_ydata()[0] == 2
     assert line.get_ydata()[-1] == 0.5
 
 
 def test_occlusions_are_shaded_once():
+    axes = errors_of(RUNS)
     spans = [
         (patch.get_label(), patch.get_extents().transformed(axes.transData.inverted()))
-        for axes in error_figure(RUNS).axes
         for patch in axes.patches
     ]
     found = {label: (round(box.x0, 3), round(box.x1, 3)) for label, box in spans}
@@ -51,7 +55,7 @@ def test_occlusions_are_shaded_once():
 
 
 def test_runs_differ_in_colour_and_in_line():
-    lines = named_lines(error_figure(RUNS))
+    lines = named_lines(errors_of(RUNS))
     assert lines["one"].get_color() != lines["two"].get_color()
     assert lines["one"].get_linestyle() != lines["two"].get_linestyle()
 
@@ -77,17 +81,10 @@ def test_a_gap_breaks_the_path():
 
 @pytest.mark.parametrize("runs", [{}, {"no truth": score_frames([row(1, 5.0), row(2, 6.0)], [])}])
 def test_runs_without_truth_can_be_drawn(tmp_path, runs):
-    save(error_figure(runs), tmp_path / "error.png")
     save(overview_figure(FRAME, runs), tmp_path / "path.png")
     assert cv2.imread(str(tmp_path / "path.png")).shape[1] == 1350
 
 
 def test_a_picture_that_cannot_be_written_is_named(tmp_path):
     with pytest.raises(InputError, match=r"cannot write .*missing/error\.png"):
-        save(error_figure(RUNS), tmp_path / "missing" / "error.png")
-
-
-def test_the_overview_has_both():
-    path, error = overview_figure(FRAME, RUNS).axes
-    assert path.get_ylabel() == "y, px"
-    assert error.get_yscale() == "log"
+        save(overview_figure(FRAME, RUNS), tmp_path / "missing" / "error.png")

@@ -15,9 +15,9 @@
 import csv
 import io
 
-from rich.console import Console
 from scoring_samples import NONE, TOTAL, row, run_of
 
+from vehicle_pf_tracker.cli.console import show
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
@@ -69,11 +69,9 @@ def test_csv_keeps_every_digit():
     assert ["hidden 11-15: recovered", "", "True", "False"] in rows
 
 
-def test_on_a_terminal_brackets_are_no_styles():
-    table = Comparison(("[bold]",), (MetricRow("[red]label", "px", (1.26,)),))
-    console = Console(file=io.StringIO(), width=60)
-    console.print(table.to_rich())
-    text = console.file.getvalue()
+def test_on_a_terminal_brackets_are_no_styles(capsys):
+    show(Comparison(("[bold]",), (MetricRow("[red]label", "px", (1.26,)),)))
+    text = capsys.readouterr().out
     assert "[bold]" in text
     assert "[red]label, px" in text
     assert "1.3" in text

@@ -21,8 +21,8 @@ import pytest
 
 pytest.importorskip("scipy", reason="the extra evaluation is not installed")
 
-from laboratory.covariance_coverage import COLUMNS, INSIDE, Runs, fit, fitted_table, report, runs_of
-from laboratory.road_speed import quaternion, roads_of, settings_of
+from laboratory.covariance_coverage import COLUMNS, INSIDE, Runs, fit, fitted_table, runs_of
+from laboratory.road_speed import roads_of, settings_of
 from laboratory.uncertainty import rows_of
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
@@ -98,13 +98,6 @@ def test_the_table_is_a_module_that_says_the_same(tmp_path):
     assert scope["CALIBRATIONS"]["pf"] == fit(Runs(runs_of(tmp_path)["pf"]))
 
 
-def test_report_of_runs(tmp_path):
-    made(tmp_path, "pf", 0)
-    header, _, row = report(tmp_path).splitlines()
-    assert row.startswith("| `pf` |")
-    assert header.count("|") == row.count("|")
-
-
 def test_folders_without_runs(tmp_path):
     with pytest.raises(InputError, match="has no runs"):
         runs_of(tmp_path)
@@ -121,13 +114,6 @@ def test_the_roads_of_a_scene_are_those_of_its_camera(mount):
     read = roads["pairs"].plane(roads["pairs"].lens, None)
     assert read.to_road(pixels) == pytest.approx(points, abs=0.8)
     assert not np.allclose(read.to_road(pixels), points, atol=1e-3)
-
-
-def test_a_quaternion_by_hand():
-    quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    x, y, z, w = quaternion(quarter)
-    assert (x, y) == pytest.approx((0, 0))
-    assert z / w == pytest.approx(1)
 
 
 def test_scenes_take_turns():

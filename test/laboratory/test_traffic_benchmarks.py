@@ -21,6 +21,7 @@ from benchmarks.traffic_cost import made, place
 from laboratory.traffic_clips import Row, read_truth, report
 from laboratory.traffic_fit import draw_settings, fitted
 from laboratory.traffic_occluders import judged
+from laboratory.traffic_perturbed import PERTURBATIONS
 from laboratory.traffic_spread import Run, summary
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
@@ -104,3 +105,28 @@ def test_the_best_quarter_is_averaged():
 def test_a_spread_is_a_mean_and_a_standard_deviation():
     runs = [Run(60, 80, 1, float("nan"), 0), Run(62, 84, 1, float("nan"), 4)]
     assert summary(runs) == "61.0 (1.4) | 82.0 (2.8) | 1.0 (0.0) | – | 2.0 (2.8)"
+
+
+def rows():
+    numbers = np.arange(1, 821, dtype=float)
+    return np.column_stack([np.repeat(numbers, 5), np.ones((4100, 4)), np.full(4100, 0.6)])
+
+
+def test_a_fifth_is_dropped_and_always_the_same():
+    kept = PERTURBATIONS["dropped"](rows())
+    assert len(kept) / 4100 == pytest.approx(0.8, abs=0.02)
+    assert (PERTURBATIONS["dropped"](rows()) == kept).all()
+
+
+@pytest.mark.parametrize(("name", "length"), [("gap20", 20), ("gap40", 40)])
+def test_gaps_begin_every_two_hundred_frames(name, length):
+    missing = sorted(set(range(1, 821)) - set(PERTURBATIONS[name](rows())[:, 0].astype(int)))
+    starts = (100, 300, 500, 700)
+    assert missing == [frame for start in starts for frame in range(start, start + length)]
+
+
+def test_scores_are_squared_or_halved_and_boxes_stay():
+    assert (PERTURBATIONS["squared"](rows())[:, 5] == 0.6**2).all()
+    halved = PERTURBATIONS["halved"](rows())
+    assert (halved[:, 5] == 0.3).all()
+    assert (halved[:, :5] == rows()[:, :5]).all()

@@ -61,7 +61,7 @@ def tell_notices(sentences: Iterable[str]) -> None:
 
 def show(table: Comparison) -> None:
     """Print a table on stdout."""
-    print_table(table.to_rich())
+    print_rows(*table.texts())
 
 
 def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: str = "") -> None:
@@ -70,8 +70,8 @@ def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: st
     from rich.text import Text
 
     table = Table(title=title or None)
-    for heading in headings:
-        table.add_column(Text(heading), justify="right")
+    for number, heading in enumerate(headings):
+        table.add_column(Text(heading), justify="right" if number else "left")
     for row in rows:
         table.add_row(*map(Text, row))
     print_table(table)

@@ -30,7 +30,6 @@ from vehicle_pf_tracker.cli.console import (
     UsageError,
     counting,
     print_rows,
-    print_table,
     stages,
     tell_error,
     tell_notice,
@@ -53,10 +52,10 @@ from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
 from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.grid.tracking import time_systems
-from vehicle_pf_tracker.evaluation.tables import SystemSummary, grid_table, summarise_grid
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
+    from vehicle_pf_tracker.evaluation.report import Report
     from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
     from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
@@ -66,7 +65,6 @@ _GRID_ONLY = (
     "figures",
 )  # fmt: skip
 """Options of the grid that do not apply."""
-PAGE = "traffic.html"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,11 +81,6 @@ class TrafficRequest(EvaluationRequest):
         metavar="NAME,…",
         help="only these files of det/, by name without .txt, and `motion` (default: all)",
     )  # fmt: skip
-    perturbations: str | None = option(
-        metavar="NAME,…",
-        help="only these of dropped, gap20, gap40, squared and halved; `none` for none "
-        "(default: all)",
-    )  # fmt: skip
 
 
 def check(request: TrafficRequest) -> None:
@@ -98,7 +91,7 @@ def check(request: TrafficRequest) -> None:
     UsageError
         If there is one.
     """
-    for name in _GRID_ONLY if request.traffic else ("detections", "perturbations"):
+    for name in _GRID_ONLY if request.traffic else ("detections",):
         if getattr(request, name):
             option = "--" + name.replace("_", "-")
             raise UsageError(
@@ -108,20 +101,17 @@ def check(request: TrafficRequest) -> None:
 
 def run_traffic(request: TrafficRequest) -> int:
     """Run the comparison, write its report, and print its tables."""
-    from vehicle_pf_tracker.evaluation.baselines.traffic_client import TrafficWorker
-    from vehicle_pf_tracker.evaluation.report.traffic import traffic_page
-    from vehicle_pf_tracker.evaluation.traffic.comparison import cases_of, compare
-    from vehicle_pf_tracker.evaluation.traffic.comparison_report import (
-        MARKDOWN,
-        by_case,
-        main_table,
+    from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
+    from vehicle_pf_tracker.evaluation.traffic.comparison import (
+        NAME,
+        cases_of,
+        compare,
         write_traffic_report,
     )
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
-    from vehicle_pf_tracker.offline.output_files import write_text
 
     sequences = [read_sequence(Path(source)) for source in request.sources]
-    cases = cases_of(sequences, _sources(request, sequences), _perturbations(request))
+    cases = cases_of(sequences, _sources(request, sequences))
     parameters = _parameters(request)
     seeds = range(request.first_seed, request.first_seed + (request.seeds or FEW_SEEDS))
     with (
@@ -135,11 +125,10 @@ def run_traffic(request: TrafficRequest) -> int:
             "set": request.assignments,
             **worker.versions,
         }
-    lines = write_traffic_report(results, request.output, options)
-    write_text(request.output / PAGE, traffic_page(lines, " ".join(request.command)))
-    for title, group in by_case(lines):
-        print_rows(*main_table(group), title)
-    print(f"the report is {request.output / PAGE}, and {MARKDOWN} beside it")
+    tables = write_traffic_report(results, request.output, options)
+    for title, table in tables.items():
+        print_rows(*table.texts(), title)
+    print(f"the report is {request.output / NAME}.html, and {NAME}.md beside it")
     return 0
 
 
@@ -149,25 +138,11 @@ def _sources(request: TrafficRequest, sequences: Sequence[TrafficSequence]) -> l
     if request.detections is None:
         return None
     known = {MOTION, *(name for sequence in sequences for name in sequence.detections)}
-    return _names(request.detections, known, "detections")
-
-
-def _perturbations(request: TrafficRequest) -> list[str]:
-    from vehicle_pf_tracker.evaluation.traffic.comparison import PERTURBATIONS, UNCHANGED
-
-    if request.perturbations is None:
-        return list(PERTURBATIONS)
-    if request.perturbations == "none":
-        return [UNCHANGED]
-    return [UNCHANGED, *_names(request.perturbations, set(PERTURBATIONS), "perturbations")]
-
-
-def _names(text: str, known: set[str], what: str) -> list[str]:
-    names = list(dict.fromkeys(text.split(",")))
+    names = list(dict.fromkeys(request.detections.split(",")))
     for name in names:
         if name not in known:
             raise InputError(
-                f"there are no {what} {name!r}{suggestion(name, known)}; choose from "
+                f"there are no detections {name!r}{suggestion(name, known)}; choose from "
                 f"{', '.join(sorted(known))}"
             )
     return names
@@ -184,6 +159,8 @@ def _parameters(request: TrafficRequest) -> TrafficParameters:
 
 
 TIMING_FRAMES = 200
+_SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")
+"""Metrics of the table on the terminal, few enough for its width."""
 _STRESS_MOVED = (
     "the stress battery is no option of evaluate: in a clone of the repository, run "
     "`python -m laboratory stress REC… -o DIR`"
@@ -252,10 +229,7 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
     if request.timing:
         with telling("timing") as on_progress:
             time_systems(plan, request.output, request.timing_frames, on_progress)
-    summaries = summarise_grid(plan, request.output)
-    _show(summaries)
-    report.write(request.output, request)
-    return _judge(summaries, request.max_rmse)
+    return _judge(report.write(request.output, request), request.max_rmse)
 
 
 def _plan(request: Request, sources: Sequence[str]) -> Plan:
@@ -281,27 +255,25 @@ def _runner(request: Request) -> Runner:
     return on_cluster(request.scheduler)
 
 
-def _show(summaries: Sequence[SystemSummary]) -> None:
-    print_table(grid_table(summaries))
-    for summary in summaries:
-        for reason in dict.fromkeys(summary.reasons):
-            tell_notice(f"{summary.label} did not run everywhere: {reason}")
+def _judge(written: Report, limit: float | None) -> int:
+    """Print the means, and return the status that they give."""
+    from vehicle_pf_tracker.evaluation.report.page_tables import overall_table
 
-
-def _judge(summaries: Sequence[SystemSummary], limit: float | None) -> int:
-    if not any(summary.runs for summary in summaries):
+    evaluation, aggregates = written.evaluation, written.aggregates
+    for system, reason in dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed):
+        tell_notices([f"{system} did not run everywhere: {reason}"])
+    if not evaluation.runs:
         tell_error("no system could run; the report says why")
         return 1
+    print_rows(*overall_table(aggregates, _SHOWN).texts())
     status = 0
-    if failed := [summary.label for summary in summaries if summary.reasons]:
+    if failed := dict.fromkeys(cell.system for cell in evaluation.failed):
         tell_error(f"not every run succeeded: {', '.join(failed)}; the report says why")
         status = 1
-    if limit is None:
-        return status
-    means = {summary.label: summary.mean("rmse_px") for summary in summaries}
-    beyond = {name: mean for name, mean in means.items() if mean is not None and mean > limit}
-    if not beyond:
-        return status
-    told = ", ".join(f"{name} {mean:.1f} px" for name, mean in beyond.items())
-    tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {told}")
-    return 1
+    means = {label: found["rmse_px"] for label, found in aggregates.overall.items()}
+    beyond = [f"{label} {found.mean:.1f} px" for label, found in means.items()
+              if limit is not None and found is not None and found.mean > limit]  # fmt: skip
+    if beyond:
+        tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {', '.join(beyond)}")
+        status = 1
+    return status

@@ -19,13 +19,17 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import stages, tell_notice
 from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, switch
 from vehicle_pf_tracker.core.outputs import Products, claimed
 
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.evaluation.report import Report
+
 FIGURE_FORMATS = ("pdf", "svg", "png")
-"""Those of `paper_figures.FORMATS`, which loads matplotlib."""
+"""Those of `evaluation.report.writing.FORMATS`, which loads matplotlib."""
 
 
 def _formats(text: str) -> tuple[str, ...]:
@@ -79,7 +83,7 @@ def run(request: Request) -> int:
     return 0
 
 
-def write(folder: Path, request: ReportParts) -> None:
+def write(folder: Path, request: ReportParts) -> Report:
     """Write the report of `folder` with the parts that are asked for."""
     from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
 
@@ -87,5 +91,6 @@ def write(folder: Path, request: ReportParts) -> None:
         request.images, request.video, request.recordings, request.trajectories, request.figures
     )
     with stages("report") as on_stage:
-        page, *_ = write_report(folder, options, tell_notice, on_stage)
-    print(f"the report is {page}")
+        report = write_report(folder, options, tell_notice, on_stage)
+    print(f"the report is {report.paths[0]}")
+    return report

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.cli.requests import (
 )
 from vehicle_pf_tracker.cli.tracking_options import with_file
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baselines.client import MODELS, Baseline, unknown_baseline
+from vehicle_pf_tracker.evaluation.baselines import MODELS, Baseline, unknown_baseline
 from vehicle_pf_tracker.evaluation.grid.cells import BASELINE, BaselineSystem, System, VariantSystem
 from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.parameters.table import (
@@ -331,7 +331,7 @@ def _baseline_system(
     build = ""
     try:
         with Baseline(name, python, files) as baseline:
-            build = baseline.opencv
+            build = baseline.versions["opencv"]
     except InputError as error:
         notes.append(f"{BASELINE}{name} cannot run: {error}")
     interpreter = "" if python is None else str(python.absolute())

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli import system_options
-from vehicle_pf_tracker.cli.console import print_table, stages, tell_notice, telling
+from vehicle_pf_tracker.cli.console import print_rows, stages, tell_notice, telling
 from vehicle_pf_tracker.cli.requests import (
     MaxDiffOption,
     WorkersOption,
@@ -41,15 +41,18 @@ from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.report import write_report
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.evaluation.tuning import comparison
-from vehicle_pf_tracker.evaluation.tuning.search_space import default_search, search_space
-from vehicle_pf_tracker.evaluation.tuning.searching import (
-    OBJECTIVES,
+from vehicle_pf_tracker.evaluation.search_space import OBJECTIVES, default_search, search_space
+from vehicle_pf_tracker.evaluation.tables import markdown
+from vehicle_pf_tracker.evaluation.tuning import (
+    ComparedMetric,
     SearchTask,
     Trial,
     best_of,
+    compare,
     search,
+    texts,
     to_csv,
+    verdict,
 )
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.parameters.configuration import Configuration
@@ -136,10 +139,10 @@ def _tune(
     output = make_folder(request.output)
     best = _find_best(what, output, request)
     lines = _compare(what, best, recordings, output / EVALUATION, request)
-    told = comparison.verdict(lines, what.objective)
+    told = verdict(lines, what.objective)
     file = _write_best(configuration.updated(best.values), variant, what, output)
     head = f"# {variant.name}, tuned for {what.objective.description}\n\n"
-    write_text(output / "tuning.md", f"{head}{comparison.to_markdown(lines)}\n{told}\n")
+    write_text(output / "tuning.md", f"{head}{markdown(*texts(lines))}\n{told}\n")
     document = {
         "command": request.command,
         "variant": variant.name,
@@ -151,7 +154,7 @@ def _tune(
         "verdict": told,
     }
     write_json(output / "tuning.json", document)
-    print_table(comparison.to_rich(lines))
+    print_rows(*texts(lines))
     print(f"{told}\nthe parameters are {file}")
     return 0
 
@@ -198,7 +201,7 @@ def _find_best(what: SearchTask, output: Path, request: Request) -> Trial:
 
 def _compare(
     what: SearchTask, best: Trial, recordings: Recordings, folder: Path, request: Request
-) -> list[comparison.ComparedMetric]:
+) -> list[ComparedMetric]:
     systems = [what.base, what.base.changed(BEST, best.values)]
     plan = Plan(
         dict(recordings), systems, range(request.seeds), list(request.command), request.max_diff
@@ -208,7 +211,7 @@ def _compare(
     write_report(folder)
     held_out = [source.name for source, _ in recordings if source not in what.sources]
     metrics = dict.fromkeys([what.objective.metric, "rmse_px"])
-    return comparison.compare(plan, folder, held_out, list(metrics))
+    return compare(plan, folder, held_out, list(metrics))
 
 
 def _write_best(

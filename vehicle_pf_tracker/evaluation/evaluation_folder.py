@@ -27,16 +27,16 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, astuple, dataclass
+from dataclasses import asdict, astuple, dataclass, fields
 from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.evaluation.tables import csv_text
 from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN, damage
@@ -78,15 +78,9 @@ class Source:
         KeyError, TypeError, ValueError
             If it is something else.
         """
-        return cls(
-            name=str(entry["name"]),
-            path=str(entry["path"]),
-            topic=str(entry["topic"]),
-            frames=int(entry["frames"]),
-            width=int(entry["width"]),
-            height=int(entry["height"]),
-            digest=str(entry["digest"]),
-        )
+        kinds: dict[str, Any] = {"frames": int, "width": int, "height": int}
+        return cls(**{field.name: kinds.get(field.name, str)(entry[field.name])
+                      for field in fields(cls)})  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
         """Return plain values for JSON."""
@@ -104,13 +98,11 @@ def write_truth(path: Path, truths: Mapping[int, Truth]) -> None:
     InputError
         If the file cannot be written.
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for frame, truth in sorted(truths.items()):
-        box = map(repr, (truth.box.x, truth.box.y, truth.box.width, truth.box.height))
-        writer.writerow([frame, truth.stamp_ns, *box, truth.occlusion.name.lower()])
-    write_text(path, text.getvalue())
+    rows = (
+        [frame, truth.stamp_ns, *astuple(truth.box), truth.occlusion.name.lower()]
+        for frame, truth in sorted(truths.items())
+    )
+    write_text(path, csv_text(COLUMNS, rows))
 
 
 def read_truth(path: Path) -> dict[int, Truth]:
@@ -177,6 +169,11 @@ class SystemEntry:
     overrides: Mapping[str, Any]
     parameters: Mapping[str, Any]
     seeds: tuple[int, ...] | None = None
+
+    @property
+    def effective(self) -> dict[str, Any]:
+        """All parameters in effect, those that were set first."""
+        return {**self.overrides, **self.parameters}
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,7 +256,8 @@ class EvaluationFolder:
 
     def timings(self) -> Mapping[str, Any] | None:
         """Return `timings.json`; None where the speed was not measured."""
-        return _optional(self.path / TIMINGS)
+        path = self.path / TIMINGS
+        return read_document(path) if path.is_file() else None
 
 
 def cell_folder(folder: Path, recording: str, system: str, seed: int, cells: str = "cells") -> Path:
@@ -289,10 +287,6 @@ def read_document(path: Path) -> dict[str, Any]:
     if not isinstance(document, dict):
         raise InputError(f"{path} does not hold a JSON object")
     return document
-
-
-def _optional(path: Path) -> Mapping[str, Any] | None:
-    return read_document(path) if path.is_file() else None
 
 
 def _system(entry: Mapping[str, Any]) -> SystemEntry:

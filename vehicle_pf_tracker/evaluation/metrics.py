@@ -12,14 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Metrics of a run.
+"""Metrics of a run, and precision and success over thresholds as OTB, TrackingNet and LaSOT do.
 
-Scored are the frames that have truth, from the frame on in which the target was set. Hidden frames
-are those in which it is totally occluded, visible ones the rest. What stands for an estimate that
-is missing, see `scores`; a frame before the first estimate counts as a miss in every share, and is
-left out of means and quantiles.
-
-Precision and success over their thresholds, as the benchmarks OTB, TrackingNet and LaSOT do.
+Frames with truth are scored, beginning with the one in which the target was set. Hidden frames are
+those in which it is totally occluded, visible ones the rest. `scores` says what is scored where an
+estimate is missing; a frame before the first estimate counts as a miss in every share, and is left
+out of means and quantiles.
 """
 
 from __future__ import annotations
@@ -141,7 +139,7 @@ class Metrics:
     precision_20px : float or None
         Share of scored frames with an error of at most 20 px, as in OTB.
     precision_auc, success_auc, normalised_precision_auc : float or None
-        Areas under the curves of module `curves`, over all scored frames.
+        Areas under the curves over all scored frames.
     normalised_precision_20 : float or None
         Share of scored frames with a normalised error of at most 0.2, as in LaSOT.
     on_target : float or None
@@ -160,7 +158,7 @@ class Metrics:
         Hidden and visible frames with the mode LOST.
     failures : int
         Number of times that the estimate lost all overlap with a visible vehicle; see
-        `failures`.
+        `count_failures`.
     frames_by_mode : mapping of str to int
         Number of frames by mode, scored or not.
     step_ms_p50, step_ms_p95 : float or None

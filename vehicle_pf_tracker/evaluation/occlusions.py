@@ -12,13 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Recovery of the track from each total occlusion.
+"""Recovery from total occlusions, and failures with re-starts.
 
-Failures in the manner of the VOT challenge: the estimate has nothing in common with the truth.
-
-A total occlusion is not a failure, since the vehicle cannot be seen: its frames do not fail, and a
-tracker is not re-started in them. Source: Kristan et al. 2016, "A novel performance
-evaluation methodology for single-target trackers".
+As in the VOT challenge, an estimate without overlap with the truth is a failure. In a total
+occlusion the vehicle cannot be seen: its frames do not fail, and no tracker is re-started in them.
+Source: Kristan et al. 2016, "A novel performance evaluation methodology for single-target
+trackers".
 """
 
 from __future__ import annotations
@@ -104,15 +103,10 @@ def threshold(frame: FrameScore) -> float:
 
 
 def _hidden_stretches(counted: Sequence[FrameScore]) -> Iterator[tuple[int, int]]:
-    begin: int | None = None
-    for index, frame in enumerate(counted):
-        if frame.hidden and begin is None:
-            begin = index
-        if not frame.hidden and begin is not None:
-            yield begin, index
-            begin = None
-    if begin is not None:
-        yield begin, len(counted)
+    for hidden, group in itertools.groupby(enumerate(counted), lambda pair: pair[1].hidden):
+        if hidden:
+            indices = [index for index, _ in group]
+            yield indices[0], indices[-1] + 1
 
 
 def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> OcclusionScore:
@@ -273,7 +267,7 @@ def follow_restarted(
     rows : list of EstimateRow
         One per frame.
     summary : dict
-        The fields of `failures.RestartedRun`, and the numbers of the frames started in.
+        The fields of `RestartedRun`, and the numbers of the frames started in.
     """
     stamps = [stamp for stamp, _ in footage.frames()]
     waiting = [EstimateRow.without(n, stamp, WAITING) for n, stamp in enumerate(stamps, start=1)]

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,9 +27,9 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import Normal, Stroke
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
-from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
+from vehicle_pf_tracker.evaluation.scores import Scores
 from vehicle_pf_tracker.offline.output_files import replacing
 
 
@@ -59,23 +59,6 @@ _DPI = 150
 _DASHED = (0, (2, 1.4))
 OUTLINE = (Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal())
 """Keeps lines visible on any scenery."""
-
-
-def error_figure(runs: Mapping[str, Scores], title: str = "") -> Figure:
-    """Draw the error over time, with the occlusions shaded.
-
-    Parameters
-    ----------
-    runs : mapping of str to Scores
-        Runs on one recording, by the name in the legend.
-    title : str
-        Title above the figure.
-    """
-    figure = Figure(figsize=(9, 4), layout="constrained")
-    axes = figure.add_subplot()
-    draw_errors(axes, runs, title)
-    _add_legend(axes)
-    return figure
 
 
 def draw_errors(axes: Axes, runs: Mapping[str, Scores], title: str) -> None:
@@ -159,21 +142,21 @@ def _add_legend(axes: Axes) -> None:
 
 def shade_occlusions(axes: Axes, scores: Scores) -> None:
     """Shade the frames in which the vehicle is partly or totally hidden."""
+    truths = {frame.row.frame: frame.truth for frame in scores.frames if frame.truth is not None}
     for occlusion, (shade, label) in _SHADES.items():
-        for index, (first, last) in enumerate(_stretches(scores.frames, occlusion)):
+        for index, (first, last) in enumerate(stretches(truths, {occlusion})):
             shown = None if index else label
             axes.axvspan(first - 0.5, last + 0.5, color=shade, lw=0, label=shown)
 
 
-def _stretches(frames: Sequence[FrameScore], occlusion: Occlusion) -> Iterator[tuple[int, int]]:
-    """First and last frame of each stretch with this occlusion."""
-    grouped = itertools.groupby(
-        frames, lambda frame: frame.truth is not None and frame.truth.occlusion is occlusion
-    )
-    for found, group in grouped:
-        if found:
-            numbers = [frame.row.frame for frame in group]
-            yield numbers[0], numbers[-1]
+def stretches(truths: Mapping[int, Truth], kinds: Collection[Occlusion]) -> list[tuple[int, int]]:
+    """Return the first and last frames of the stretches with an occlusion of these kinds.
+
+    Truths are given by the number of their frame.
+    """
+    grouped = itertools.groupby(sorted(truths), lambda number: truths[number].occlusion in kinds)
+    found = [list(numbers) for matches, numbers in grouped if matches]
+    return [(numbers[0], numbers[-1]) for numbers in found]
 
 
 def _draw_path(

@@ -14,7 +14,7 @@
 
 """Results on disk, added one by one, so that interrupted work continues.
 
-Cache keys of results: a digest of everything that decides a result, its code included.
+The cache key of a result is a digest of everything that determines it, its code included.
 """
 
 from __future__ import annotations
@@ -157,6 +157,8 @@ def source_digest(modules: Iterable[str], root: Path = _ROOT, package: str = _PA
     packages = frozenset({package, *(name.split(".")[0] for name in waiting)})
     while waiting:
         name = waiting.pop()
+        if name.startswith(f"{package}.") and _path(name, root) is None:
+            raise ModuleNotFoundError(f"{name} is to count for a cache key, and is not there")
         seen.add(name)
         waiting |= imported_modules(name, root, packages) - seen - _TABLES
     digest = hashlib.sha256()

@@ -12,15 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Mean, spread and a bootstrap interval of a few numbers.
+"""Statistics of a metric: intervals of its mean, tests of pairs of systems, and ranks.
 
-The value of one metric in every run of every system.
-
-Ranks over recordings, with ties of systems that do not differ significantly.
-
-Every recording ranks the systems; Friedman's test decides whether their mean ranks differ at all,
-and Nemenyi's critical difference which of them do. It corrects for the number of pairs with far
-more power than pairwise tests have on few recordings.
+Every recording ranks the systems. Friedman's test decides whether their mean ranks differ at all,
+and Nemenyi's critical difference which of them do: on few recordings with far more power than
+pairwise tests have.
 
 Source: Demsar 2006, "Statistical comparisons of classifiers over multiple data sets", section 3.2.
 """
@@ -118,6 +114,17 @@ def recording_means(runs: Mapping[RunKey, float]) -> dict[str, float]:
     for key, value in runs.items():
         by_recording.setdefault(key.recording, []).append(value)
     return {recording: statistics.fmean(values) for recording, values in by_recording.items()}
+
+
+def mean_of_means(runs: Mapping[str, Sequence[float | None]]) -> float | None:
+    """Return the mean over recordings of the mean over their runs; None if a run has no value."""
+    means = []
+    for values in runs.values():
+        known = [value for value in values if value is not None]
+        if len(known) < len(values) or not known:
+            return None
+        means.append(statistics.fmean(known))
+    return statistics.fmean(means) if means else None
 
 
 def paired_differences(

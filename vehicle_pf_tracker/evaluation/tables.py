@@ -12,35 +12,97 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Tables: on a terminal, as Markdown, as CSV."""
+"""Tables of results: text for a terminal, Markdown, CSV and a page."""
 
 from __future__ import annotations
 
 import csv
 import io
-import statistics
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
-from rich.table import Table as RichTable
-from rich.text import Text
-
-from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
-from vehicle_pf_tracker.evaluation.grid.cells import GridCell
-from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
-from vehicle_pf_tracker.offline.run_folder import METRICS
 
 Cell: TypeAlias = float | int | bool | str | None
 NOTHING = "-"
+Rows: TypeAlias = list[list[str]]
+
+
+def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Make a Markdown table: the first column to the left, numbers to the right."""
+    ruled = [header, ["---", *("---:" for _ in header[1:])], *rows]
+    return "".join(
+        f"| {' | '.join(cell.replace('|', '&#124;') for cell in row)} |\n" for row in ruled
+    )
+
+
+def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
+    """Make a CSV file: every digit, and nothing for None."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """A heading: its text, its unit, one sentence, and how many columns it spans."""
+
+    text: str
+    unit: str = ""
+    note: str = ""
+    span: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class TableCell:
+    """A cell.
+
+    Attributes
+    ----------
+    text : str
+        Text of the cell.
+    value : float or None
+        Value it sorts by; None goes last.
+    best : bool
+        True if no other in its column is better.
+    note : str
+        Note shown on demand.
+    heat : float
+        Tint, -1 to 1: its strength and direction.
+    """
+
+    text: str
+    value: float | None = None
+    best: bool = False
+    note: str = ""
+    heat: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table of systems: its headings, and the cells of each system.
+
+    `groups` spans the `headers`, and may be empty.
+    """
+
+    headers: Sequence[Header]
+    rows: Mapping[str, Sequence[TableCell]]
+    groups: Sequence[Header] = ()
+
+    def texts(self) -> tuple[list[str], Rows]:
+        """Return the headings with their units, and the text of all rows."""
+        titles = [f"{h.text}, {h.unit}" if h.unit else h.text for h in self.headers]
+        rows = [[label, *(cell.text for cell in cells)] for label, cells in self.rows.items()]
+        return ["system", *titles], rows
 
 
 @dataclass(frozen=True, slots=True)
 class MetricRow:
-    """A row: what it shows, its unit, its cells, and decimals for the eye."""
+    """A row: the metric and its unit, its cells, and the decimals that are shown."""
 
     label: str
     unit: str
@@ -55,37 +117,20 @@ class Comparison:
     columns: tuple[str, ...]
     lines: tuple[MetricRow, ...]
 
-    def to_rich(self) -> RichTable:
-        """Return the table for a terminal."""
-        # As `Text`, since a name in brackets would be taken for a style otherwise.
-        table = RichTable("")
-        for name in self.columns:
-            table.add_column(Text(name), justify="right")
-        for line in self._rows():
-            table.add_row(*map(Text, line))
-        return table
+    def texts(self) -> tuple[list[str], Rows]:
+        """Return the headings, and the text of all rows."""
+        rows = [[_label(line), *(_text(cell, line.decimals) for cell in line.cells)]
+                for line in self.lines]  # fmt: skip
+        return ["", *self.columns], rows
 
     def to_markdown(self) -> str:
         """Return the table as Markdown."""
-        return markdown(["", *self.columns], self._rows())
+        return markdown(*self.texts())
 
     def to_csv(self) -> str:
         """Return the table as CSV: every digit, and nothing where there is no value."""
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(["metric", "unit", *self.columns])
-        writer.writerows([line.label, line.unit, *line.cells] for line in self.lines)
-        return text.getvalue()
-
-    def _rows(self) -> Iterator[list[str]]:
-        for line in self.lines:
-            yield [_label(line), *(_text(cell, line.decimals) for cell in line.cells)]
-
-
-def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Make a Markdown table: the first column to the left, numbers to the right."""
-    ruled = [header, ["---", *("---:" for _ in header[1:])], *rows]
-    return "".join(f"| {' | '.join(row)} |\n" for row in ruled)
+        lines = ([line.label, line.unit, *line.cells] for line in self.lines)
+        return csv_text(["metric", "unit", *self.columns], lines)
 
 
 def comparison(runs: Mapping[str, Metrics]) -> Comparison:
@@ -153,89 +198,3 @@ def _text(cell: Cell, decimals: int) -> str:
     if isinstance(cell, bool):
         return "yes" if cell else "no"
     return f"{cell:.{decimals}f}" if isinstance(cell, float) else str(cell)
-
-
-Document = Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class SystemSummary:
-    """One system over all its cells.
-
-    Attributes
-    ----------
-    label : str
-        Label of the system.
-    metrics : mapping of str to list of mapping
-        `metrics.json` of every cell that ran, by recording.
-    reasons : tuple of str
-        Reasons why other cells did not run.
-    """
-
-    label: str
-    metrics: Mapping[str, Sequence[Document]]
-    reasons: tuple[str, ...]
-
-    def mean(self, name: str) -> float | None:
-        """Return the mean over recordings of the mean over their runs; None where there is none."""
-        means = []
-        for runs in self.metrics.values():
-            known = [run[name] for run in runs if run[name] is not None]
-            if known:
-                means.append(statistics.fmean(known))
-        return statistics.fmean(means) if means else None
-
-    @property
-    def runs(self) -> list[Document]:
-        """Metrics of all runs."""
-        return [run for runs in self.metrics.values() for run in runs]
-
-    def recovered(self) -> tuple[int, int]:
-        """Return the number of total occlusions recovered from, and judged."""
-        judged = [r for run in self.runs for r in run["recovered"] if r is not None]
-        return sum(judged), len(judged)
-
-
-def summarise_grid(plan: Plan, folder: Path) -> list[SystemSummary]:
-    """Summarise the cells of the grid by system."""
-    cells = [cell for cell in plan.cells() if not cell.start.kind]
-    return [
-        _summary(system.label, [cell for cell in cells if cell.system == system], folder)
-        for system in plan.systems
-    ]
-
-
-def _summary(label: str, cells: Sequence[GridCell], folder: Path) -> SystemSummary:
-    metrics: dict[str, list[Document]] = {}
-    reasons = []
-    for cell in cells:
-        path = cell.folder(folder)
-        if (path / METRICS).is_file():
-            metrics.setdefault(cell.source.name, []).append(read_document(path / METRICS))
-        elif (path / FAILED).is_file():
-            reasons.append(str(read_document(path / FAILED).get("reason")))
-    return SystemSummary(label, metrics, tuple(reasons))
-
-
-def grid_table(summaries: Sequence[SystemSummary]) -> RichTable:
-    """Return the means over seeds and then recordings, the best success AUC first."""
-    columns: dict[str, Callable[[SystemSummary], str]] = {
-        "RMSE, px": lambda s: _number(s.mean("rmse_px"), 1),
-        "median error, px": lambda s: _number(s.mean("median_px"), 1),
-        "on target while visible": lambda s: _number(s.mean("on_target"), 3),
-        "success AUC": lambda s: _number(s.mean("success_auc"), 3),
-        "recovered": lambda s: "{} of {}".format(*s.recovered()),
-        "failures": lambda s: _number(s.mean("failures"), 1),
-        "runs": lambda s: str(len(s.runs)) + (f" ({len(s.reasons)} failed)" * bool(s.reasons)),
-    }
-    made = RichTable("")
-    for name in columns:
-        made.add_column(Text(name), justify="right")
-    order = sorted(summaries, key=lambda s: -(s.mean("success_auc") or 0.0))
-    for summary in order:
-        made.add_row(Text(summary.label), *(Text(cell(summary)) for cell in columns.values()))
-    return made
-
-
-def _number(value: float | None, decimals: int) -> str:
-    return "-" if value is None else f"{value:.{decimals}f}"

@@ -19,14 +19,16 @@ import subprocess
 import sys
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.baselines import client, worker
-from vehicle_pf_tracker.evaluation.baselines.client import (
+from vehicle_pf_tracker.evaluation import baseline_worker as worker
+from vehicle_pf_tracker.evaluation import baselines as client
+from vehicle_pf_tracker.evaluation.baselines import (
     DEFAULT,
     MODELS,
     VARIABLE,
@@ -75,7 +77,7 @@ while line := sys.stdin.buffer.readline():
 def test_frames_arrive_as_they_are_also_views_with_gaps(tmp_path, monkeypatch):
     script = tmp_path / "echo.py"
     script.write_text(ECHO)
-    monkeypatch.setattr(client, "_WORKER", script)
+    monkeypatch.setattr(client, "WORKER", script)
     wide = np.random.default_rng(1).integers(0, 256, (30, 80, 3), np.uint8)
     frame = wide[3:, 7:60]
     assert not frame.flags.c_contiguous
@@ -121,21 +123,21 @@ def test_wrong_baselines_and_models_are_told_in_a_sentence(name, models, words):
 
 
 def test_every_baseline_of_the_client_is_known_to_the_worker():
-    assert list(MODELS) == list(worker.CLASSES)
+    assert list(MODELS) == list(worker.OPENCV)
 
 
 def test_an_opencv_without_the_tracker_is_named(monkeypatch):
-    for home in (worker.cv2, getattr(worker.cv2, "legacy", None)):
+    for home in (cv2, getattr(cv2, "legacy", None)):
         monkeypatch.delattr(home, "TrackerCSRT_create", raising=False)
     with pytest.raises(LookupError, match=r"has no TrackerCSRT, neither in cv2 nor in cv2.legacy"):
-        worker.tracker_maker("csrt", {})
+        worker.tracker_maker(cv2, "csrt", {})
 
 
 def test_an_environment_without_opencv_is_named(tmp_path):
     bare = tmp_path / "python"
     bare.write_text(f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n')  # -S: no site-packages
     bare.chmod(0o755)
-    with pytest.raises(InputError, match=r"No module named 'cv2'; `make baselines` builds"):
+    with pytest.raises(InputError, match=r"No module named 'numpy'; `make baselines` builds"):
         Baseline("mil", bare)
 
 
@@ -156,12 +158,13 @@ def test_the_interpreter_is_the_chosen_one_else_the_variables_else_the_default(
     assert baseline_python(Path("chosen")) == tmp_path / "chosen"
 
 
-def test_the_worker_needs_only_opencv_numpy_and_the_standard_library():
+def test_the_worker_needs_nothing_of_this_package():
     tree = ast.parse(Path(worker.__file__).read_text())
     names = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import)
              for alias in node.names}  # fmt: skip
     names |= {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
-    assert {name.partition(".")[0] for name in names} <= {*sys.stdlib_module_names, "cv2", "numpy"}
+    others = {name.partition(".")[0] for name in names} - set(sys.stdlib_module_names)
+    assert others == {"cv2", "numpy", "trackers", "trackeval", "supervision"}
 
 
 class GivesUp:

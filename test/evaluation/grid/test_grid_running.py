@@ -183,14 +183,6 @@ def test_whatever_decides_a_run_is_in_its_key(recordings):
     assert renamed.key() == cell.key()
 
 
-def test_another_recording_of_the_same_name_is_run_anew(plan, out, tmp_path):
-    complete(plan, out, here, silent)
-    other = write_recording(tmp_path / "free", range(3, 5))
-    told = []
-    complete(make_plan([other]), out, here, told.append)
-    assert told[-1].total == 3
-
-
 def test_a_recording_that_changed_since_it_was_planned_is_no_result(tmp_path, out):
     path = write_recording(tmp_path / "rec")
     plan = make_plan([path], [system("ms")])
@@ -198,13 +190,6 @@ def test_a_recording_that_changed_since_it_was_planned_is_no_result(tmp_path, ou
     file.write_bytes(file.read_bytes() + b"\0")
     complete(plan, out, here, silent)
     assert "changed since it was planned" in EvaluationFolder(out).cell("rec", "ms", 0).reason
-
-
-@pytest.mark.parametrize("left", ["estimates.csv", "metrics.json", "run.json"])
-def test_a_cell_that_lacks_something_is_run_anew(plan, out, left):
-    complete(plan, out, here, silent)
-    (out / "cells" / "free" / "ms" / "seed-0" / left).unlink()
-    assert complete(plan, out, here, silent) == 1
 
 
 def test_what_a_killed_run_left_half_written_goes(plan, out):

@@ -25,12 +25,11 @@ from evaluation_samples import HIDDEN, VARIANTS
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.report import FIGURE_FORMATS
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.report import paper_figures
 from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
-from vehicle_pf_tracker.evaluation.report.figures import PAGE
+from vehicle_pf_tracker.evaluation.report.figures import PAGE, PAPER
 from vehicle_pf_tracker.evaluation.report.page import styled
-from vehicle_pf_tracker.evaluation.report.paper_figures import PAPER, write_figures
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
+from vehicle_pf_tracker.evaluation.report.writing import FORMATS, write_figures
 
 NAMES = {"intervals", "success", "precision", "normalised", *(f"errors_{name}" for name in HIDDEN)}
 
@@ -50,7 +49,7 @@ def test_every_figure_is_written_in_every_format(figures):
     assert {path.name for path in figures.iterdir()} == {
         f"{name}.{kind}" for name in NAMES for kind in FIGURE_FORMATS
     }
-    assert paper_figures.FORMATS == FIGURE_FORMATS
+    assert FORMATS == FIGURE_FORMATS
 
 
 @pytest.mark.parametrize("name", sorted(NAMES))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What others read: evo, video players, Foxglove."""
+"""Exports for other tools: evo, video players, Foxglove."""
 
 import shutil
 from types import SimpleNamespace
@@ -36,7 +36,7 @@ def exported(made_evaluation, tmp_path_factory):
     folder = tmp_path_factory.mktemp("exported") / "evaluation"
     shutil.copytree(made_evaluation, folder)
     told = []
-    paths = write_report(folder, OPTIONS, told.append)
+    paths = write_report(folder, OPTIONS, told.append).paths
     assert told == []
     return folder, paths
 
@@ -125,7 +125,7 @@ def test_recordings_that_are_gone_are_told(made_evaluation, tmp_path):
     beside = str(made_evaluation.parent)
     (folder / "evaluation.json").write_text(plan.replace(beside, str(tmp_path / "gone")))
     told = []
-    paths = write_report(folder, OPTIONS, told.append)
+    paths = write_report(folder, OPTIONS, told.append).paths
     assert sum("no video of" in sentence for sentence in told) == len(HIDDEN)
     assert sum("with estimates" in sentence for sentence in told) == len(HIDDEN)
     assert (folder / "trajectories" / "free" / "truth.tum") in paths

@@ -15,7 +15,6 @@
 """Stills, overlays and figures, each by itself."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,8 +25,14 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.report.figure_data import stretches
-from vehicle_pf_tracker.evaluation.report.figures import LEAST_ERROR, PAGE, SvgMaker, error_panel
+from vehicle_pf_tracker.evaluation.plots import stretches
+from vehicle_pf_tracker.evaluation.report.figures import (
+    LEAST_ERROR,
+    PAGE,
+    Drawn,
+    ErrorSeries,
+    draw_errors,
+)
 from vehicle_pf_tracker.evaluation.report.filmstrip import (
     Crop,
     Mark,
@@ -38,6 +43,7 @@ from vehicle_pf_tracker.evaluation.report.filmstrip import (
     plan_strips,
     take_stills,
 )
+from vehicle_pf_tracker.evaluation.report.page import SvgMaker
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
 
 BOX = Box(100, 60, 20, 10)
@@ -58,8 +64,8 @@ def test_the_longest_occlusions_in_order():
 
 
 def test_stretches_of_one_kind():
-    assert stretches(truths("npttpn"), Occlusion.TOTAL) == [(3, 4)]
-    assert stretches(truths("npttpn"), Occlusion.PARTIAL) == [(2, 2), (5, 5)]
+    assert stretches(truths("npttpn"), {Occlusion.TOTAL}) == [(3, 4)]
+    assert stretches(truths("npttpn"), {Occlusion.PARTIAL}) == [(2, 2), (5, 5)]
 
 
 def test_a_view_holds_the_boxes_and_stays_in_the_image():
@@ -99,11 +105,11 @@ def test_boxes_far_outside_do_no_harm():
 def test_each_system_is_shown_where_it_was_worst(made_evaluation):
     evaluation = score_folder(EvaluationFolder(made_evaluation))
     runs = {label: typical(evaluation.of("under_a_bridge", label)) for label in ("pf", "ms")}
-    *around, worst = plan_strips(evaluation.truths["under_a_bridge"], runs, {"pf": 0})
-    assert len(around) == 1
-    assert all(len(shot.marks) == 1 for shot in around[0].shots)  # ms has no style
+    strips = plan_strips(evaluation.truths["under_a_bridge"], runs, {"pf": 0})
+    around, worst = strips.values()
+    assert all(len(shot.marks) == 1 for shot in around)  # ms has no style
     hidden = {index + 1 for index in HIDDEN["under_a_bridge"]}
-    for shot, run in zip(worst.shots, runs.values(), strict=True):
+    for shot, run in zip(worst, runs.values(), strict=True):
         visible = [e for n, e in enumerate(run.errors, start=1) if n not in hidden]
         assert shot.frame not in hidden
         assert run.errors[shot.frame - 1] == max(visible)
@@ -118,17 +124,11 @@ def test_stills_of_other_images_are_refused(made_evaluation):
         take_stills(replace(entry, width=640), [shot])
 
 
-def test_stills_of_a_recording_at_a_url(made_evaluation):
-    pytest.importorskip("fsspec", reason="fsspec is not installed")
-    (entry, _) = EvaluationFolder(made_evaluation).recordings
-    shot = Shot(3, "", BOX, ())
-    elsewhere = replace(entry, path=Path(entry.path).as_uri())
-    assert take_stills(elsewhere, [shot]) == take_stills(entry, [shot])
-
-
 def test_an_error_panel_draws_the_median_within_its_band():
-    errors = [np.array([1.0, 4.0, np.nan]), np.array([3.0, 8.0, np.nan]), np.array([2, 6, np.nan])]
-    axes = error_panel(errors, {"total": [(2, 2)], "partial": []}, 8.0).axes[0]
+    errors = np.array([[1.0, 4.0, np.nan], [3.0, 8.0, np.nan], [2.0, 6.0, np.nan]])
+    axes = Figure().add_subplot()
+    series = ErrorSeries({"pf": errors}, {"total": [(2, 2)], "partial": []}, 8.0)
+    draw_errors(axes, series, "pf", PAGE)
     assert axes.lines[0].get_ydata()[:2].tolist() == [2, 6]
     assert axes.get_ylim()[0] == LEAST_ERROR
     assert len(axes.patches) == 1  # the occlusion
@@ -139,7 +139,7 @@ def test_no_two_figures_of_a_page_share_an_id():
     for _ in range(2):
         figure = Figure()
         figure.add_subplot().plot([1, 2], [3, 4], color=PAGE["s1"])
-        svg = maker.make(figure, 'a "b" & c')
+        svg = maker.make(Drawn(figure, "", 'a "b" & c'))
         assert 'aria-label="a &quot;b&quot; &amp; c"' in svg
         assert "var(--s1)" in svg and "#0a0a01" not in svg
         ids += [part.split('"')[0] for part in svg.split(' id="')[1:]]

@@ -14,7 +14,6 @@
 
 """The client of the traffic baselines and its worker."""
 
-import ast
 import os
 import subprocess
 import sys
@@ -24,9 +23,9 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baselines import traffic_client, traffic_worker
-from vehicle_pf_tracker.evaluation.baselines.client import DEFAULT, VARIABLE
-from vehicle_pf_tracker.evaluation.baselines.traffic_client import TRAFFIC_BASELINES, TrafficWorker
+from vehicle_pf_tracker.evaluation import baselines as client
+from vehicle_pf_tracker.evaluation.baselines import DEFAULT, VARIABLE
+from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
 PYTHON = Path(sys.executable)
@@ -87,18 +86,6 @@ def test_an_exchange_of_identities_half_way_is_scored_as_one(real):
     assert scores["MOTA"] == pytest.approx(100 * (1 - 2 / 60))
 
 
-def test_missed_frames_are_misses_and_a_fragmentation(real):
-    tracks = lanes()
-    gone = (tracks[:, 1] == 1) & (tracks[:, 0] > 10) & (tracks[:, 0] <= 16)
-    scores = real.score(scene(lanes()), tracks[~gone])
-    assert (scores["FN"], scores["Frag"], scores["IDSW"]) == (6, 1, 0)
-
-
-def test_no_tracks_score_nothing(real):
-    scores = real.score(scene(lanes()), np.empty((0, 6)))
-    assert (scores["HOTA"], scores["MOTA"], scores["FN"]) == (0, 0, 60)
-
-
 @pytest.mark.parametrize("name", TRAFFIC_BASELINES)
 def test_every_baseline_follows_what_is_easy(real, name):
     detections = np.column_stack([lanes()[:, [0, 2, 3, 4, 5]], np.full(2 * FRAMES, 0.9)])
@@ -135,7 +122,7 @@ DIES = 'import sys; print("{}", flush=True); input(); sys.exit("out of memory")'
 def start(monkeypatch, tmp_path, text):
     script = tmp_path / "worker.py"
     script.write_text(text)
-    monkeypatch.setattr(traffic_client, "_WORKER", script)
+    monkeypatch.setattr(client, "WORKER", script)
     return TrafficWorker(PYTHON)
 
 
@@ -166,14 +153,3 @@ def test_a_dead_worker_is_told_with_its_last_words(monkeypatch, tmp_path):
 def test_an_environment_without_the_libraries_is_told():
     with pytest.raises(InputError, match=r"PackageNotFoundError.*trackers"):
         TrafficWorker(PYTHON)
-
-
-def test_the_worker_needs_nothing_of_this_package():
-    named: list[str] = []
-    for node in ast.walk(ast.parse(Path(traffic_worker.__file__).read_text())):
-        if isinstance(node, ast.Import):
-            named += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            named.append(node.module or "")
-    others = {name.partition(".")[0] for name in named} - set(sys.stdlib_module_names)
-    assert others == {"numpy", "trackers", "trackeval", "supervision"}

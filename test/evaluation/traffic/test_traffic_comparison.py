@@ -20,22 +20,11 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.report.traffic import (
-    stored_sections,
-    traffic_page,
-    traffic_sections,
-)
 from vehicle_pf_tracker.evaluation.traffic.comparison import (
     MOTION,
-    PERTURBATIONS,
     cases_of,
     compare,
     follow,
-)
-from vehicle_pf_tracker.evaluation.traffic.comparison_report import (
-    main_table,
-    perturbed_table,
     write_traffic_report,
 )
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
@@ -85,16 +74,13 @@ class Worker:
         return np.empty((0, 6)), 0.001
 
 
-def test_cases_are_all_sources_and_files_are_perturbed(sequence):
-    found = [(case.source, case.perturbation) for case in cases_of([sequence])]
-    files = [(name, kind) for name in ("good", "misses") for kind in PERTURBATIONS]
-    assert found == [*files, (MOTION, "unchanged")]
-    few = cases_of([sequence], ["misses"], ["unchanged"])
-    assert [(case.source, case.perturbation) for case in few] == [("misses", "unchanged")]
+def test_cases_are_all_sources_or_those_asked_for(sequence):
+    assert [source for _, source in cases_of([sequence])] == ["good", "misses", MOTION]
+    assert cases_of([sequence], ["misses"]) == [(sequence, "misses")]
 
 
 def test_tracked_and_occluded_vehicles_are_the_tracks(sequence):
-    (case,) = cases_of([sequence], ["good"], ["unchanged"])
+    (case,) = cases_of([sequence], ["good"])
     tracks, detections, seconds = follow(case, TrafficParameters(), Echo)
     assert (detections == sequence.detections["good"]).all()
     assert set(tracks[:, 1]) == {1, 2}
@@ -116,7 +102,7 @@ def test_the_tracker_runs_on_what_moves_and_passes_it_on(sequence):
 @pytest.fixture(scope="module")
 def results(sequence):
     worker = Worker()
-    cases = cases_of([sequence], ["good"], ["unchanged", "halved"])
+    cases = cases_of([sequence], ["misses", "good"])
     progress = []
     found = list(
         compare(
@@ -125,53 +111,33 @@ def results(sequence):
         )
     )  # fmt: skip
     assert progress == [(12, 24), (24, 24)]
-    assert worker.asked == ("sort", len(sequence.detections["good"]))
+    assert worker.asked == ("sort", len(sequence.detections["misses"]))
     return found
 
 
 def test_seeds_are_ours_and_baselines_run_once(results):
-    assert [(one.perturbation, one.system, one.seed) for one in results] == [
-        (kind, system, seed)
-        for kind in ("unchanged", "halved")
+    assert [(one.source, one.system, one.seed) for one in results] == [
+        (source, system, seed)
+        for source in ("good", "misses")
         for system, seed in (("traffic", 0), ("traffic", 1), ("sort", None))
     ]
 
 
-def test_files_hold_means_over_seeds(results, tmp_path):
-    lines = write_traffic_report(results, tmp_path, {"command": ["evaluate"]})
-    header, rows = main_table(lines)
+def test_files_hold_means_over_seeds_and_mark_the_best(results, tmp_path):
+    tables = write_traffic_report(results, tmp_path, {"command": ["evaluate", "<few>"]})
+    assert list(tables) == ["few, good", "few, misses"]
+    header, rows = tables["few, good"].texts()
     assert header[:3] == ["system", "HOTA", "DetA"]
-    assert [row[0] for row in rows] == ["`traffic`", "`sort`"]
+    assert [row[0] for row in rows] == ["traffic", "sort"]
     assert rows[0][header.index("switches")] == "3"
     assert rows[1][header.index("ms")] == "1.0"
-    header, rows = perturbed_table(lines)
-    assert header == ["HOTA / IDF1 / switches", "unchanged", "halved"]
-    assert rows[1] == ["`sort`", "0.0 / 0.0 / 3", "0.0 / 0.0 / 3"]
-    text = (tmp_path / "traffic.md").read_text()
-    assert "## few, good" in text
+    hota = [cells[0] for cells in tables["few, good"].rows.values()]
+    assert [cell.best for cell in hota] == [True, False]
+    page = (tmp_path / "traffic.html").read_text()
+    assert "evaluate &lt;few&gt;" in page
+    assert f"<strong>{hota[0].text}</strong>" in page
+    assert "## few, good" in (tmp_path / "traffic.md").read_text()
     assert (tmp_path / "traffic.csv").read_text().count("\n") == 5
     document = json.loads((tmp_path / "traffic.json").read_text())
     assert len(document["results"]) == 6
     assert document["lines"][0]["runs"] == 2
-
-
-def test_pages_show_the_tables_and_mark_the_best(results, tmp_path):
-    lines = write_traffic_report(results, tmp_path, {})
-    sections = traffic_sections(lines)
-    assert stored_sections(tmp_path) == sections
-    (section,) = sections
-    assert section.title == "few, good"
-    (_, table), (_, perturbed) = section.tables
-    hota = [row.cells[0] for row in table.rows]
-    assert [cell.best for cell in hota] == [True, False]
-    assert [header.span for header in perturbed.groups] == [3, 3]
-    page = traffic_page(lines, "evaluate <few>")
-    assert "evaluate &lt;few&gt;" in page
-    assert f"<strong>{hota[0].text}</strong>" in page
-
-
-def test_a_folder_without_a_comparison_has_no_section(tmp_path):
-    assert stored_sections(tmp_path) == []
-    (tmp_path / "traffic.json").write_text("{}")
-    with pytest.raises(InputError, match="is not the result of evaluate --traffic"):
-        stored_sections(tmp_path)

@@ -14,14 +14,14 @@
 
 import pytest
 
-from vehicle_pf_tracker.evaluation.tuning.comparison import (
+from vehicle_pf_tracker.evaluation.search_space import OBJECTIVES
+from vehicle_pf_tracker.evaluation.tuning import (
     HELD_OUT,
     TUNED,
     ComparedMetric,
-    to_markdown,
+    texts,
     verdict,
 )
-from vehicle_pf_tracker.evaluation.tuning.searching import OBJECTIVES
 
 UP, DOWN = OBJECTIVES["success_auc"], OBJECTIVES["rmse_px"]
 
@@ -53,7 +53,5 @@ def test_the_verdict_says_whether_the_gain_holds(objective, tuned, held_out, sai
 
 def test_the_table_shows_spread_and_change():
     line = ComparedMetric(TUNED, "road", "rmse_px", 12.0, 10.5, 1.0, 0.25)
-    assert (
-        "| tuned on | road | rmse_px | 12.000 ± 1.000 | 10.500 ± 0.250 | -1.500 |"
-        in to_markdown([line])
-    )
+    expected = ["tuned on: road", "rmse_px", "12.000 ± 1.000", "10.500 ± 0.250", "-1.500"]
+    assert texts([line])[1] == [expected]

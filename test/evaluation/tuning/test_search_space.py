@@ -18,12 +18,12 @@ from types import SimpleNamespace
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.tuning.search_space import (
+from vehicle_pf_tracker.evaluation.search_space import (
     Dimension,
     default_search,
     search_space,
 )
-from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs, to_mapping
+from vehicle_pf_tracker.parameters.table import parameter, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 
@@ -70,16 +70,6 @@ def test_a_mark_may_carry_the_range():
     ]
 
 
-@pytest.mark.parametrize("name", VARIANTS)
-@pytest.mark.parametrize("end", ["low", "high"])
-def test_each_end_of_a_range_goes_with_the_defaults_of_the_others(name, end):
-    kind = find_variant(name).parameters
-    for dimension in space_of(name):
-        if not dimension.choices:
-            value = dimension.kind(getattr(dimension, end))
-            from_mapping(kind, {dimension.name: value}).validate()
-
-
 @pytest.mark.parametrize(
     ("name", "word", "expected"),
     [
@@ -96,11 +86,6 @@ def test_each_end_of_a_range_goes_with_the_defaults_of_the_others(name, end):
 )
 def test_ranges_come_from_the_table_or_the_user(name, word, expected):
     assert space_of(name, word) == [expected]
-
-
-def test_ranges_are_around_where_the_search_begins():
-    (dimension,) = space_of("pf", "sigma", sigma=4.0)
-    assert (dimension.low, dimension.high) == (1.0, 16.0)
 
 
 @pytest.mark.parametrize(

@@ -21,13 +21,12 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.tracking import CellResult
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.evaluation.tuning.search_space import search_space
-from vehicle_pf_tracker.evaluation.tuning.searching import (
-    OBJECTIVES,
+from vehicle_pf_tracker.evaluation.search_space import OBJECTIVES, search_space
+from vehicle_pf_tracker.evaluation.statistics import mean_of_means
+from vehicle_pf_tracker.evaluation.tuning import (
     SearchTask,
     Trial,
     best_of,
-    mean_of_means,
     search,
     to_csv,
 )
@@ -91,12 +90,6 @@ def test_the_search_begins_with_the_base_and_comes_close_to_the_best(store):
     assert best.values["sigma"] == pytest.approx(BEST_SIGMA, abs=0.3)
 
 
-def test_up_is_the_other_way_for_a_share(store):
-    trials = search(what("success_auc"), 40, store, FakeRunner(), silent)
-    best = best_of(trials, OBJECTIVES["success_auc"])
-    assert best.values["sigma"] == pytest.approx(BEST_SIGMA, abs=0.3)
-
-
 def test_a_seed_gives_the_same_trials_again_and_nothing_is_run_twice(store, tmp_path):
     first, second, other = FakeRunner(), FakeRunner(), FakeRunner()
     trials = search(what(), 14, store, first, silent)
@@ -133,12 +126,6 @@ def test_an_interrupted_search_goes_on_with_the_next_run(store, tmp_path):
     assert len(runner.asked) == 12 * 4 - 30
     whole = ResultStore(tmp_path / "whole.jsonl")
     assert search(what(), 12, whole, FakeRunner(), silent) == trials
-
-
-def test_progress_ends_at_the_total(store):
-    told = []
-    search(what(), 8, store, FakeRunner(), told.append)
-    assert (told[-1].done, told[-1].total) == (32, 32)
 
 
 def test_trials_that_cannot_run_have_no_score_and_are_never_best(store):

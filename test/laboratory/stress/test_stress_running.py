@@ -24,7 +24,6 @@ import pytest
 
 from laboratory.stress import (
     StressSystem,
-    follow,
     full_battery,
     list_cases,
     quick_battery,
@@ -174,10 +173,3 @@ def test_the_documented_example_runs(drive, tmp_path, monkeypatch, capsys):
     assert len(lines) == 2
     assert "/lorry/" in lines[0]
     assert " straight " in lines[0]
-
-
-def test_trackers_learn_the_frame_period(few):
-    case = few[0]
-    tracker = variant_system("ms").make(0)
-    list(follow(case, tracker))
-    assert tracker.frame_period == pytest.approx(1 / case.fps)

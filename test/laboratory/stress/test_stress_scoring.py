@@ -16,12 +16,9 @@
 
 from collections import namedtuple
 
-import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from laboratory.stress import Reliability, Score, score_estimates
+from laboratory.stress import Reliability, score_estimates
 from laboratory.stress.report import write_report
 from laboratory.stress.running import Result
 from laboratory.stress.summary import difference, groups
@@ -109,29 +106,6 @@ def test_calibration_by_hand():
     assert visible.diagram()[1] == {"frames": 2, "confidence": 0.85, "on_target": 0.5}
     assert score.reliability_hidden.counts == (0, 0, 0, 0, 1, 0, 0, 0, 0, 0)
     assert Reliability().calibration_error is None
-
-
-pairs = st.lists(st.tuples(st.floats(0, 1), st.booleans()), min_size=1, max_size=40)
-
-
-@given(pairs, pairs)
-def test_pooling_is_counting_together(one, other):
-    pooled = Reliability.pooled([Reliability.of(one), Reliability.of(other)])
-    together = Reliability.of([*one, *other])
-    assert pooled.counts == together.counts
-    assert pooled.hits == together.hits
-    assert pooled.calibration_error == pytest.approx(together.calibration_error)
-    mean_gap = abs(np.mean([c - hit for c, hit in [*one, *other]]))
-    assert mean_gap - 1e-9 <= pooled.calibration_error <= 1
-
-
-@given(st.lists(st.booleans(), min_size=5, max_size=60), st.integers(0, 100))
-def test_scores_survive_json(hits, seed):
-    rng = np.random.default_rng(seed)
-    errors = np.where(hits, 0.0, 80.0).tolist()
-    flags = rng.integers(0, 3, len(hits)).tolist()
-    score = score_estimates(truths(flags), rows(errors, rng.choice([T, O, L], len(hits)).tolist()))
-    assert Score.from_json(score.to_json()) == score
 
 
 Stub = namedtuple("Stub", "name sequence camera kind labels")

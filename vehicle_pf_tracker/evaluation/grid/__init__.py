@@ -14,7 +14,7 @@
 
 """The grid of an evaluation: recordings by systems by seeds, each cell one stored run.
 
-`sources` finds the recordings, `systems` defines what tracks the vehicle in them, and `plan` makes
-the cells of both. `tracking` runs one cell, and `running` those that are missing, on this machine
-or on a cluster (`cluster`); it stores each under its cache key.
+`sources` finds the recordings, `cells` defines systems and starts, and `plan` lists the cells.
+`tracking` runs one cell and measures speed. `running` runs the cells that are missing, on this
+machine or on a cluster, and stores each under its cache key.
 """

@@ -12,13 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Cells of the grid, and their starts: on the first true box, or elsewhere to test robustness.
+"""Cells of the grid: the system under comparison, the recording, the seed and the start.
 
-Shifted starts and other first frames are those of the OTB benchmark (Wu, Lim and Yang 2013, "Online
-object tracking: a benchmark", spatial and temporal robustness evaluation); failures and re-starts
-are those of VOT, see `evaluation.failures`.
-
-Systems under comparison: a variant with its parameters, or a baseline.
+A run starts on the first true box, or elsewhere to test robustness. Shifted starts and other first
+frames are those of the OTB benchmark (Wu, Lim and Yang 2013, "Online object tracking: a benchmark",
+spatial and temporal robustness evaluation). Failures and re-starts are those of VOT, see
+`evaluation.occlusions`.
 """
 
 from __future__ import annotations
@@ -281,9 +280,9 @@ BESIDE = "robustness"
 
 _PACKAGE = "vehicle_pf_tracker"
 _SHARED = frozenset({f"{_PACKAGE}.recordings.reader"})
-_OURS = frozenset({f"{_PACKAGE}.evaluation.offline"})
-_BASELINES = frozenset(f"{_PACKAGE}.evaluation.baselines.{name}" for name in ("client", "worker"))
-_STARTS = frozenset({f"{_PACKAGE}.evaluation.grid.cells", f"{_PACKAGE}.evaluation.failures"})
+_OURS = frozenset({f"{_PACKAGE}.offline.driver"})
+_BASELINES = frozenset(f"{_PACKAGE}.evaluation.{name}" for name in ("baselines", "baseline_worker"))
+_STARTS = frozenset({f"{_PACKAGE}.evaluation.grid.cells", f"{_PACKAGE}.evaluation.occlusions"})
 
 
 @dataclass(frozen=True, slots=True)

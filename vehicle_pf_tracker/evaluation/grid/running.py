@@ -14,7 +14,7 @@
 
 """Run the cells that an evaluation lacks, and keep each as soon as its result is there.
 
-Run the grid on a Dask cluster whose workers have this package and can read the recordings.
+They run on this machine, or on a Dask cluster whose workers can read the recordings.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import logging
 import os
 import shutil
 import socket
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent import futures
 from functools import partial
 from pathlib import Path
@@ -254,27 +254,10 @@ def _results(client: Any, cells: Sequence[GridCell]) -> Iterator[Turn[GridCell, 
 
     by_key = {f"{cell.label}-{cell.key()}".replace(" ", "-"): cell for cell in cells}
     submitted = [client.submit(run_checked, cell, cell.key(), key=k) for k, cell in by_key.items()]
-    yield Turn(None, _running(client, by_key))
     waiting = as_completed(submitted, loop=client.loop)
     submitted.clear()  # so that each result can go once it is here
     for future in waiting:
-        yield Turn((by_key[future.key], _outcome(future)), _running(client, by_key))
-
-
-def _outcome(future: Any) -> CellResult:
-    error = future.exception()
-    if error is None:
-        outcome: CellResult = future.result()
-        return outcome
-    return CellResult(reason=f"the cluster gave it up: {' '.join(str(error).split())}")
-
-
-def _running(client: Any, by_key: Mapping[str, GridCell]) -> tuple[GridCell, ...]:
-    """Return the cells at work; a worker is given more than it has threads for."""
-    threads = client.nthreads()
-    keys = [
-        key
-        for worker, given in client.processing().items()
-        for key in list(given)[: threads.get(worker, 0)]
-    ]
-    return tuple(by_key[key] for key in keys if key in by_key)
+        error = future.exception()
+        reason = f"the cluster gave it up: {' '.join(str(error).split())}"
+        outcome = future.result() if error is None else CellResult(reason=reason)
+        yield Turn((by_key[future.key], outcome), ())

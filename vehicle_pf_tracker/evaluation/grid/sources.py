@@ -22,7 +22,7 @@ import hashlib
 import shutil
 import tempfile
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any, TypeVar, cast
 
@@ -72,10 +72,10 @@ def local_copy(location: str) -> Path:
 
 
 def _at_path(path: Path) -> list[str]:
-    if _is_recording(path):
-        return [str(path)]
     if not path.exists():
         raise InputError(f"there is no recording {path}")
+    if _is_recording(path):
+        return [str(path)]
     if path.is_file() and path.suffix.lower() in _VIDEOS:
         raise InputError(f"{path} is a video; {_MAKE.format(path)}")
     if path.is_file():
@@ -89,38 +89,31 @@ def _at_path(path: Path) -> list[str]:
 
 
 def _is_recording(path: Path) -> bool:
-    if path.is_file():
-        return path.suffix == ".mcap"
-    return (path / "metadata.yaml").is_file() or any(path.glob("*.mcap"))
+    return _holds_recording(path.iterdir()) if path.is_dir() else path.suffix == ".mcap"
+
+
+def _holds_recording(children: Iterable[str | Path]) -> bool:
+    return any(str(child).endswith((".mcap", "/metadata.yaml")) for child in children)
 
 
 def _at_url(url: str) -> list[str]:
     system, path = _file_system(url)
 
-    def spread() -> Iterator[str]:
-        if not system.isdir(path):
-            yield path
-            return
-        for child in sorted(system.ls(path, detail=False)):
-            if child.endswith(".mcap") or _holds_recording(system, child):
-                yield child
+    def children(folder: str) -> list[str]:
+        return sorted(system.ls(folder, detail=False)) if system.isdir(folder) else []
 
     def look() -> list[str]:
         if not system.exists(path):
             raise InputError(f"there is no recording {url}")
-        return [path] if _holds_recording(system, path) else list(spread())
+        if not system.isdir(path) or _holds_recording(children(path)):
+            return [path]
+        return [child for child in children(path)
+                if child.endswith(".mcap") or _holds_recording(children(child))]  # fmt: skip
 
     found = _asked(url, look)
     if not found:
         raise InputError(f"the folder {url} is not a recording and holds none")
     return [str(system.unstrip_protocol(name)) for name in found]
-
-
-def _holds_recording(system: Any, path: str) -> bool:
-    if not system.isdir(path):
-        return False
-    names = [name.rsplit("/", 1)[-1] for name in system.ls(path, detail=False)]
-    return "metadata.yaml" in names or any(name.endswith(".mcap") for name in names)
 
 
 @functools.cache

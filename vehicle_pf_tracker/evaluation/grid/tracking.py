@@ -12,13 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Run a cell of the grid.
+"""Run a cell of the grid, and measure the speed of all systems in a serial pass of its own.
 
-Measure the speed of all systems, in a serial pass of its own.
-
-Each frame is given to all systems before the next one is, so that whatever slows the machine down
-for a while slows all of them alike, and nothing of ours runs beside. What counts is the processor
-time of the thread that tracks; decoding and the way to a baseline's process are left out.
+The serial pass gives each frame to all systems before the next one, so that a slow moment of the
+machine slows all of them alike. It measures the processor time of the tracking thread, without
+decoding and the transfer to a baseline's process.
 """
 
 from __future__ import annotations
@@ -27,7 +25,7 @@ import itertools
 import os
 import platform
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
@@ -42,7 +40,7 @@ from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.baselines.client import Baseline, baseline_rows
+from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import TIMINGS, Source
 from vehicle_pf_tracker.evaluation.grid.cells import (
     RESTARTS,
@@ -156,6 +154,11 @@ class _VariantFollower:
         return describe_run(info, self._tracker.session)
 
 
+def _baseline(system: BaselineSystem) -> Baseline:
+    python = Path(system.python) if system.python else None
+    return Baseline(system.baseline, python, system.model_files())
+
+
 class _BaselineFollower:
     def __init__(self, cell: GridCell, system: BaselineSystem, start: Truth) -> None:
         self._cell = cell
@@ -165,9 +168,8 @@ class _BaselineFollower:
         self._opencv = ""
 
     def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]:
-        python = Path(self._system.python) if self._system.python else None
-        with Baseline(self._system.baseline, python, self._system.model_files()) as baseline:
-            self._opencv = baseline.opencv
+        with _baseline(self._system) as baseline:
+            self._opencv = baseline.versions["opencv"]
             for row in baseline_rows(baseline, frames, self._start):
                 if self._start_frame is None and row.mode not in {WAITING, REJECTED}:
                     self._start_frame = row.frame
@@ -250,15 +252,15 @@ def _time_on(source: Source, plan: Plan, count: int) -> dict[str, list[float]]:
     first = next(stamped)
     box = recording.truth[0].box
     with ExitStack() as stack:
-        running: dict[str, _Timed] = {}
+        running: dict[str, _Step] = {}
         for system in plan.systems:
             with suppress(InputError):  # the grid says why it cannot run
                 running[system.label] = _start(system, plan.seeds[0], box, first, stack)
         times: dict[str, list[float]] = {label: [] for label in running}
         for shown in itertools.islice(stamped, count - 1):
-            for label, timed in running.items():
+            for label, step in running.items():
                 with suppress(InputError):  # a frame that is refused takes no time
-                    times[label].append(1e3 * timed.step(*shown))
+                    times[label].append(1e3 * step(*shown))
     return times
 
 
@@ -271,40 +273,24 @@ def _frames(recording: Footage, max_diff: float) -> Iterator[tuple[int, Frame]]:
             yield stamp, frame
 
 
-class _Timed(Protocol):
-    def step(self, stamp_ns: int, frame: Frame) -> float:
-        """Return the processor time of the step in s."""
-        ...
-
-
-class _TimedVariant:
-    def __init__(self, system: VariantSystem, seed: int, box: Box) -> None:
-        settings = with_target(system.session_parameters(), box)
-        variant = find_variant(system.variant)
-        self._session = Session(variant, system.tracker_parameters(seed), settings)
-
-    def step(self, stamp_ns: int, frame: Frame) -> float:
-        began = time.thread_time()
-        self._session.feed(frame, stamp_ns)
-        return time.thread_time() - began
-
-
-class _TimedBaseline:
-    def __init__(self, baseline: Baseline) -> None:
-        self._baseline = baseline
-
-    def step(self, stamp_ns: int, frame: Frame) -> float:
-        return self._baseline.step(frame).seconds
+_Step = Callable[[int, Frame], float]
+"""Takes the stamp (ns) and the frame; returns the processor time of the step in s."""
 
 
 def _start(
     system: System, seed: int, box: Box, first: tuple[int, Frame], stack: ExitStack
-) -> _Timed:
-    if isinstance(system, VariantSystem):
-        timed = _TimedVariant(system, seed, box)
-        timed.step(*first)
-        return timed
-    python = Path(system.python) if system.python else None
-    baseline = stack.enter_context(Baseline(system.baseline, python, system.model_files()))
-    baseline.start(first[1], box)
-    return _TimedBaseline(baseline)
+) -> _Step:
+    if isinstance(system, BaselineSystem):
+        baseline = stack.enter_context(_baseline(system))
+        baseline.start(first[1], box)
+        return lambda _, frame: baseline.step(frame).seconds
+    settings = with_target(system.session_parameters(), box)
+    session = Session(find_variant(system.variant), system.tracker_parameters(seed), settings)
+
+    def step(stamp_ns: int, frame: Frame) -> float:
+        began = time.thread_time()
+        session.feed(frame, stamp_ns)
+        return time.thread_time() - began
+
+    step(*first)
+    return step

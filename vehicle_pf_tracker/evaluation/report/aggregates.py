@@ -12,28 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Summaries of runs: over seeds, and over recordings.
-
-Findings of a report, in a few sentences.
-"""
+"""The metrics of a report, their summaries over seeds and recordings, and its findings."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.evaluation.report.columns import (
-    COLUMNS,
-    PRECISION,
-    RANKED,
-    RECOVERED,
-    RMSE,
-    Column,
-    counted,
-    interval_text,
-    listing,
-    mean_text,
-)
+from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.statistics import (
     FEWEST_RECORDINGS,
@@ -47,6 +33,155 @@ from vehicle_pf_tracker.evaluation.statistics import (
     smallest_adjusted_p,
     summarise,
 )
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A metric of a run.
+
+    Attributes
+    ----------
+    key : str
+        Name of the metric in files.
+    group : str
+        Group of columns it stands in.
+    label, unit : str
+        Name and unit for readers; shares have no unit.
+    decimals : int
+        Decimals shown to readers.
+    higher_is_better : bool or None
+        True if large values are best; None where neither end is.
+    help : str
+        Explanation, one sentence.
+    by_recording : bool
+        True if the page shows it for each recording, not only in the summary and in files.
+    """
+
+    key: str
+    group: str
+    label: str
+    unit: str
+    decimals: int
+    higher_is_better: bool | None
+    help: str
+    by_recording: bool = True
+
+    @property
+    def title(self) -> str:
+        """Label and unit."""
+        return f"{self.label}, {self.unit}" if self.unit else self.label
+
+    def value(self, metrics: Metrics) -> float | None:
+        """Return the metric of a run; of occlusions the mean of those that have it."""
+        if hasattr(metrics, self.key) and self.key != "recovered":
+            value: float | None = getattr(metrics, self.key)
+            return None if value is None else float(value)
+        known = [
+            number
+            for occlusion in metrics.occlusions
+            if (number := getattr(occlusion, self.key)) is not None
+        ]
+        return sum(known) / len(known) if known else None
+
+
+OVERLAP, ERRORS, HIDDEN, CLAIMS, RUN = (
+    "Overlap and precision", "Error of the centre", "Total occlusions", "Claims", "Run"
+)  # fmt: skip
+
+COLUMNS = (
+    Column("success_auc", OVERLAP, "success AUC", "", 3, True,
+           "Area under the success curve: share of frames whose overlap (intersection over union) "
+           "is above thresholds from 0 to 1."),
+    Column("precision_20px", OVERLAP, "precision at 20 px", "", 3, True,
+           "Share of frames with an error of the centre of at most 20 px."),
+    Column("normalised_precision_auc", OVERLAP, "normalised precision AUC", "", 3, True,
+           "Area under the curve of the error in sizes of the true box, from 0 to 0.5.", False),
+    Column("p_error_lt_15px", OVERLAP, "below 15 px", "", 3, True,
+           "Share of frames with an error below 15 px."),
+    Column("on_target", OVERLAP, "on target", "", 3, True,
+           "Share of visible frames with an error below half the true box's diagonal.", False),
+    Column("rmse_px", ERRORS, "RMSE", "px", 1, False,
+           "Root of the mean squared error of the centre, all scored frames."),
+    Column("rmse_visible_px", ERRORS, "RMSE visible", "px", 1, False,
+           "The same over the frames that are not totally occluded."),
+    Column("median_px", ERRORS, "median", "px", 1, False, "Median error of the centre."),
+    Column("p95_px", ERRORS, "95\u00a0%", "px", 1, False,
+           "Error of the centre that 95 % of the frames stay below.", False),
+    Column("max_px", ERRORS, "largest", "px", 1, False, "Largest error of the centre."),
+    Column("recovered", HIDDEN, "recovered", "", 2, True,
+           "Judged total occlusions after which the track was on the vehicle again: their number "
+           "over all runs, or their mean share.", False),
+    Column("frames_to_recover", HIDDEN, "return", "frames", 1, False,
+           "Frames from the last hidden one until the track stays on the vehicle, where it does.",
+           False),
+    Column("error_at_exit_px", HIDDEN, "error at exit", "px", 1, False,
+           "Error in the first frame after a total occlusion.", False),
+    Column("occluded_precision", CLAIMS, "OCCLUDED precision", "", 2, True,
+           "Share of the frames with the mode OCCLUDED that are totally occluded.", False),
+    Column("occluded_recall", CLAIMS, "OCCLUDED recall", "", 2, True,
+           "Share of the totally occluded frames with the mode OCCLUDED; baselines have none.",
+           False),
+    Column("lost_visible", CLAIMS, "LOST though visible", "frames", 1, None,
+           "Frames with the mode LOST while the vehicle can be seen."),
+    Column("failures", RUN, "failures", "", 1, False,
+           "Times per run that the estimate came to have no overlap with a visible vehicle."),
+    Column("step_ms_p50", RUN, "step", "ms", 2, False,
+           "Median time of a step, measured while other cells of the grid may have run beside it."),
+)  # fmt: skip
+_BY_KEY = {column.key: column for column in COLUMNS}
+SUCCESS, PRECISION, RMSE, RECOVERED, STEP = (
+    _BY_KEY[key] for key in ("success_auc", "precision_20px", "rmse_px", "recovered", "step_ms_p50")
+)
+
+RANKED = (SUCCESS, PRECISION, RMSE)
+"""Metrics that systems are ranked by; the first one orders the tables."""
+
+
+NO_VALUE = "–"
+
+
+def number_text(value: float | None, decimals: int) -> str:
+    """Return a number with so many decimals, a dash for None."""
+    return NO_VALUE if value is None else f"{value:.{decimals}f}"
+
+
+def mean_text(summary: Summary | None, column: Column) -> str:
+    """Return the mean alone."""
+    return number_text(summary.mean if summary else None, column.decimals)
+
+
+def mean_and_spread_text(summary: Summary | None, column: Column) -> str:
+    """Return the mean, and the standard deviation where there is one that shows."""
+    text = mean_text(summary, column)
+    if summary is None or not summary.spread:
+        return text
+    return f"{text} ± {number_text(summary.spread, column.decimals)}"
+
+
+def interval_text(summary: Summary | None, column: Column) -> str:
+    """Return the interval as ``low to high``; empty where there is none."""
+    if summary is None or summary.low is None or summary.high is None:
+        return ""
+    low, high = (number_text(end, column.decimals) for end in (summary.low, summary.high))
+    return f"{low} to {high}"
+
+
+def p_value_text(value: float | None) -> str:
+    """Return a p value as it is usually printed."""
+    if value is None:
+        return NO_VALUE
+    return "< 0.001" if value < 0.001 else f"{value:.3f}"
+
+
+def listing(names: Sequence[str]) -> str:
+    """Return ``a``, ``a and b``, or ``a, b and c``."""
+    return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
+
+
+def counted(count: int, noun: str) -> str:
+    """Return ``1 frame``, ``2 frames``."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
 
 Summaries = Mapping[str, Summary | None]
 """Summaries by the key of a column."""
@@ -82,69 +217,61 @@ class Aggregates:
 
 def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     """Summarise all runs."""
-    labels = [system.label for system in evaluation.systems if evaluation.of(system=system.label)]
-    by_recording = {
-        (recording.name, label): _over_seeds(runs)
-        for recording in evaluation.recordings
-        for label in labels
-        if (runs := evaluation.of(recording.name, label))
+    runs = {s.label: some for s in evaluation.systems if (some := evaluation.of(system=s.label))}
+    values = {
+        label: {column.key: _values(some, column) for column in COLUMNS}
+        for label, some in runs.items()
     }
-    rankings = _rankings(evaluation, labels)
-    order = _order(labels, rankings)
-    main = {label: run_values(evaluation, label, RANKED[0]) for label in order}
+    means = {
+        label: {key: recording_means(found) for key, found in columns.items()}
+        for label, columns in values.items()
+    }
+    rankings = {
+        column.key: ranking
+        for column in RANKED
+        if (
+            ranking := rank_systems(
+                {label: columns[column.key] for label, columns in means.items()},
+                higher_is_better=bool(column.higher_is_better),
+            )
+        )
+    }
+    main = RANKED[0].key
+    ranked = [rank.system for rank in rankings[main].ranks] if main in rankings else []
+    order = (*ranked, *(label for label in runs if label not in ranked))
     return Aggregates(
         order=order,
-        by_recording=by_recording,
-        overall={label: _over_recordings(evaluation, label) for label in order},
+        by_recording={
+            (entry.name, label): {
+                key: summarise([found[run] for run in found if run.recording == entry.name])
+                for key, found in columns.items()
+            }
+            for entry in evaluation.recordings
+            for label, columns in values.items()
+            if evaluation.of(entry.name, label)
+        },
+        overall={
+            label: {key: summarise(list(found.values())) for key, found in means[label].items()}
+            for label in order
+        },
         rankings=rankings,
-        pairs=tuple(compare_pairs(main)),
-        recoveries={label: _recoveries(evaluation.of(system=label)) for label in order},
+        pairs=tuple(compare_pairs({label: values[label][main] for label in order})),
+        recoveries={label: _recoveries(runs[label]) for label in order},
     )
 
 
-def run_values(evaluation: ScoredEvaluation, system: str, column: Column) -> dict[RunKey, float]:
-    """Return a metric of a system's runs, where they have it."""
-    values = {
-        RunKey(run.recording, run.seed): column.value(run.metrics)
-        for run in evaluation.of(system=system)
+def _values(runs: Sequence[ScoredRun], column: Column) -> dict[RunKey, float]:
+    """Return a metric of runs, where they have it."""
+    return {
+        RunKey(run.recording, run.seed): value
+        for run in runs
+        if (value := column.value(run.metrics)) is not None
     }
-    return {key: value for key, value in values.items() if value is not None}
 
 
 def _recoveries(runs: Sequence[ScoredRun]) -> tuple[int, int]:
     judged = [verdict for run in runs for verdict in run.metrics.recovered if verdict is not None]
     return sum(judged), len(judged)
-
-
-def _over_seeds(runs: Sequence[ScoredRun]) -> dict[str, Summary | None]:
-    return {
-        column.key: summarise([column.value(run.metrics) for run in runs]) for column in COLUMNS
-    }
-
-
-def _over_recordings(evaluation: ScoredEvaluation, system: str) -> dict[str, Summary | None]:
-    return {
-        column.key: summarise(
-            list(recording_means(run_values(evaluation, system, column)).values())
-        )
-        for column in COLUMNS
-    }
-
-
-def _rankings(evaluation: ScoredEvaluation, labels: Sequence[str]) -> dict[str, Ranking]:
-    rankings = {}
-    for column in RANKED:
-        values = {label: recording_means(run_values(evaluation, label, column)) for label in labels}
-        ranking = rank_systems(values, higher_is_better=bool(column.higher_is_better))
-        if ranking is not None:
-            rankings[column.key] = ranking
-    return rankings
-
-
-def _order(labels: Sequence[str], rankings: Mapping[str, Ranking]) -> tuple[str, ...]:
-    ranking = rankings.get(RANKED[0].key)
-    ranked = [rank.system for rank in ranking.ranks] if ranking else []
-    return (*ranked, *(label for label in labels if label not in ranked))
 
 
 def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:

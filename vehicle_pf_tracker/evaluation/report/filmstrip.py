@@ -14,13 +14,12 @@
 
 """Stills of a recording: around its occlusions, and where each system was worst.
 
-Boxes drawn over images: the truth as corners in white, estimates in colour with a number.
+The truth is drawn as white corners, an estimate as a box in colour with a number.
 """
 
 from __future__ import annotations
 
 import base64
-import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -34,7 +33,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.sources import local_copy
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
 from vehicle_pf_tracker.recordings.reader import Recording
 
@@ -186,18 +185,10 @@ class Still:
     data: str
 
 
-@dataclass(frozen=True, slots=True)
-class Strip:
-    """Shots that belong together."""
-
-    title: str
-    shots: tuple[Shot, ...]
-
-
 def plan_strips(
     truths: Mapping[int, Truth], runs: Mapping[str, ScoredRun], slots: Mapping[str, int]
-) -> list[Strip]:
-    """Choose the stills of a recording.
+) -> dict[str, Sequence[Shot]]:
+    """Choose the stills of a recording, by the titles of the strips they stand in.
 
     Parameters
     ----------
@@ -209,28 +200,19 @@ def plan_strips(
         Number of the style of those systems that are shown together.
     """
     together = {label: run for label, run in runs.items() if label in slots}
-    strips = [
-        Strip(_title(truths, stretch), tuple(_around(truths, stretch, together, slots)))
+    strips: dict[str, Sequence[Shot]] = {
+        _title(truths, stretch): list(_around(truths, stretch, together, slots))
         for stretch in longest_occlusions(truths)
-    ]
+    }
     worst = [_worst(truths, label, run, slots) for label, run in runs.items()]
-    shots = tuple(shot for shot in worst if shot is not None)
-    if shots:
-        strips.append(Strip("Where each system was worst while the vehicle could be seen", shots))
-    return strips
+    title = "Where each system was worst while the vehicle could be seen"
+    return {**strips, title: [shot for shot in worst if shot is not None]}
 
 
 def longest_occlusions(truths: Mapping[int, Truth]) -> list[tuple[int, int]]:
     """Return the first and last frames of the longest occlusions, partial ones too, in order."""
-    stretches = []
-    grouped = itertools.groupby(
-        sorted(truths), lambda number: truths[number].occlusion is not Occlusion.NONE
-    )
-    for hidden, group in grouped:
-        numbers = list(group)
-        if hidden:
-            stretches.append((numbers[0], numbers[-1]))
-    longest = sorted(stretches, key=lambda stretch: stretch[0] - stretch[1])[:MOST_OCCLUSIONS]
+    occluded = stretches(truths, {Occlusion.PARTIAL, Occlusion.TOTAL})
+    longest = sorted(occluded, key=lambda stretch: stretch[0] - stretch[1])[:MOST_OCCLUSIONS]
     return sorted(longest)
 
 
@@ -333,8 +315,3 @@ def _still(frame: Frame, shot: Shot) -> Still:
     data = base64.b64encode(coded.tobytes()).decode("ascii")
     alt = f"Frame {shot.frame} with the true box and {len(shot.marks)} estimated"
     return Still(shot.caption, alt, f"data:image/jpeg;base64,{data}")
-
-
-def stills_of(strip: Strip, taken: Mapping[Shot, Still]) -> Sequence[Still]:
-    """Return the stills of a strip that could be taken."""
-    return [taken[shot] for shot in strip.shots if shot in taken]

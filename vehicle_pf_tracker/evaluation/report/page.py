@@ -16,61 +16,80 @@
 
 from __future__ import annotations
 
+import html
+import io
+import itertools
+import re
 import shlex
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from matplotlib import rc_context
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import Source, SystemEntry
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report import filmstrip, page_tables
-from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, findings, power
-from vehicle_pf_tracker.evaluation.report.columns import RANKED, counted, p_value_text
-from vehicle_pf_tracker.evaluation.report.figures import (
-    Panel,
-    SvgMaker,
-    curve_panels,
-    error_panels,
-    main_panel,
+from vehicle_pf_tracker.evaluation.report.aggregates import (
+    COLUMNS,
+    RANKED,
+    Aggregates,
+    counted,
+    findings,
+    p_value_text,
+    power,
 )
+from vehicle_pf_tracker.evaluation.report.figures import CURVES, ERRORS, PAGE, Drawn, draw_all
 from vehicle_pf_tracker.evaluation.report.filmstrip import Still
-from vehicle_pf_tracker.evaluation.report.page_tables import speed_note, speed_table
-from vehicle_pf_tracker.evaluation.report.robustness import robustness_sections
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     FailedCell,
     ScoredEvaluation,
     ScoredRun,
     typical,
 )
-from vehicle_pf_tracker.evaluation.report.traffic import stored_sections
-from vehicle_pf_tracker.evaluation.traffic.comparison_report import RULES
 
 
-@dataclass(frozen=True, slots=True)
-class RecordingSection:
-    """A recording's section of the page."""
+def render(template: str, **values: Any) -> str:
+    """Return the text of a page from the template of this name."""
+    environment = Environment(
+        loader=PackageLoader("vehicle_pf_tracker.evaluation.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template(template).render(values)
 
-    name: str
-    facts: str
-    table: page_tables.PageTable
-    occlusions: page_tables.PageTable | None
-    panels: Sequence[Panel]
-    strips: Sequence[tuple[str, Sequence[Still]]]
-    note: str
 
+class SvgMaker:
+    """Turns figures into SVG elements that can stand in one page: no two share an id."""
 
-@dataclass(frozen=True, slots=True)
-class FailedGroup:
-    """Cells that failed for the same reason."""
+    def __init__(self) -> None:
+        self._numbers = itertools.count(1)
 
-    system: str
-    cells: str
-    reason: str
+    def make(self, drawn: Drawn) -> str:
+        """Return a figure as an SVG element that is read out."""
+        text = io.StringIO()
+        nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+        with rc_context(PAGE.settings):
+            drawn.figure.savefig(text, format="svg", transparent=True, metadata=nothing)
+        element = text.getvalue()
+        element = element[element.index("<svg") :]
+        element = re.sub(r"<metadata>.*?</metadata>\s*", "", element, flags=re.DOTALL)
+        element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.DOTALL)
+        prefix = f"f{next(self._numbers)}-"
+        for before in (' id="', 'href="#', "url(#"):
+            element = element.replace(before, before + prefix)
+        for name, colour in PAGE.colours.items():
+            element = element.replace(colour, f"var(--{name})")
+        size = re.search(r'viewBox="[^"]*"', element)
+        assert size is not None
+        head = f'<svg {size[0]} role="img" aria-label="{html.escape(drawn.spoken)}"'
+        head += ' xmlns:xlink="http://www.w3.org/1999/xlink"'
+        return re.sub(r"^<svg[^>]*", head, element).replace("\n", " ").replace("  ", " ")
 
 
 def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: bool = True) -> str:
@@ -83,48 +102,40 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
     images : bool
         True to show stills of the recordings.
     """
-    environment = Environment(
-        loader=PackageLoader("vehicle_pf_tracker.evaluation.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     slots = styled(aggregates)
     maker = SvgMaker()
-    plan = evaluation.folder.plan
-    return environment.get_template("report.html").render(
+    figures = {
+        name: {"svg": maker.make(drawn), "caption": drawn.caption}
+        for name, drawn in draw_all(evaluation, aggregates, slots, PAGE).items()
+    }
+    folder, order = evaluation.folder, aggregates.order
+    timings = folder.timings()
+    return render(
+        "report.html",
         title=title(evaluation),
         facts=_facts(evaluation),
         findings=findings(evaluation, aggregates),
         slots=slots,
-        overall=page_tables.overall_table(aggregates, slots),
-        main=main_panel(aggregates, maker),
-        ranks=page_tables.ranks_table(aggregates, slots),
+        overall=page_tables.overall_table(aggregates),
+        figures=figures,
+        ranks=page_tables.ranks_table(aggregates),
         rank_notes=list(_rank_notes(aggregates)),
-        pairs=page_tables.pairs_table(aggregates, slots),
+        pairs=page_tables.pairs_table(aggregates),
         power=power(aggregates),
-        curves=curve_panels(evaluation, aggregates.order, slots, maker),
+        curves=[name for name in CURVES if name in figures],
         recordings=[
-            _section(evaluation, aggregates, entry, slots, maker, images)
-            for entry in evaluation.recordings
+            _section(evaluation, aggregates, entry, images) for entry in evaluation.recordings
         ],
-        robustness=robustness_sections(evaluation.folder, aggregates.order, slots),
-        traffic=stored_sections(evaluation.folder.path),
-        traffic_about=RULES,
-        speed=speed_table(evaluation.folder.timings(), aggregates.order, slots),
-        speed_note=speed_note(evaluation.folder.timings()),
-        systems=system_sections(evaluation.systems),
-        seeds=", ".join(map(str, evaluation.folder.seeds)),
-        versions=_words(plan.get("versions", {})),
-        options=_words(
-            {f"--{name.replace('_', '-')}": v for name, v in plan.get("options", {}).items()}
-        ),
-        sources=[(entry.name, entry.path, entry.topic, entry.digest)
-                 for entry in evaluation.recordings],
-        command=shlex.join(map(str, plan.get("command", []))),
+        robustness=page_tables.robustness_tables(folder, order),
+        speed=page_tables.speed_table(timings, order),
+        timings=timings,
+        systems=evaluation.systems,
+        sources=evaluation.recordings,
+        seeds=folder.seeds,
+        plan={"versions": {}, "options": {}, **folder.plan},
+        command=shlex.join(map(str, folder.plan.get("command", []))),
         failed=_failed_groups(evaluation.failed),
-    )  # fmt: skip
+    )
 
 
 def title(evaluation: ScoredEvaluation) -> str:
@@ -138,13 +149,12 @@ def styled(aggregates: Aggregates) -> dict[str, int]:
 
 
 def _facts(evaluation: ScoredEvaluation) -> str:
-    return " × ".join(
-        (
-            counted(len(evaluation.recordings), "recording"),
-            counted(len(evaluation.systems), "system"),
-            counted(len(evaluation.folder.seeds), "seed"),
-        )
-    )
+    counts = {
+        "recording": evaluation.recordings,
+        "system": evaluation.systems,
+        "seed": evaluation.folder.seeds,
+    }
+    return " × ".join(counted(len(some), noun) for noun, some in counts.items())
 
 
 def _rank_notes(aggregates: Aggregates) -> Iterator[str]:
@@ -164,22 +174,22 @@ def _section(
     evaluation: ScoredEvaluation,
     aggregates: Aggregates,
     entry: Source,
-    slots: Mapping[str, int],
-    maker: SvgMaker,
     images: bool,
-) -> RecordingSection:
+) -> dict[str, Any]:
+    """Return the values of a recording's section of the template."""
     truths = evaluation.truths[entry.name]
-    runs = {label: some for label in aggregates.order if (some := evaluation.of(entry.name, label))}
-    strips, note = _strips(entry, truths, runs, slots) if images else ([], "")
-    return RecordingSection(
-        name=entry.name,
-        facts=_recording_facts(entry, truths),
-        table=page_tables.recording_table(aggregates, entry.name, slots),
-        occlusions=page_tables.occlusions_table(runs, slots),
-        panels=error_panels(runs, truths, maker),
-        strips=strips,
-        note=note,
-    )
+    runs = evaluation.by_system(entry.name, aggregates.order)
+    strips, note = _strips(entry, truths, runs, styled(aggregates)) if images else ([], "")
+    shown = [column for column in COLUMNS if column.by_recording]
+    return {
+        "name": entry.name,
+        "facts": _recording_facts(entry, truths),
+        "table": page_tables.recording_table(aggregates, entry.name, shown),
+        "occlusions": page_tables.occlusions_table(runs),
+        "figure": ERRORS + safe_name(entry.name),
+        "strips": strips,
+        "note": note,
+    }
 
 
 def _recording_facts(entry: Source, truths: Mapping[int, Truth]) -> str:
@@ -201,84 +211,21 @@ def _strips(
     shown = {label: run for label, some in runs.items() if (run := typical(some)) is not None}
     strips = filmstrip.plan_strips(truths, shown, slots)
     try:
-        taken = filmstrip.take_stills(entry, [shot for strip in strips for shot in strip.shots])
+        taken = filmstrip.take_stills(entry, [shot for shots in strips.values() for shot in shots])
     except InputError as error:
         return [], f"There are no stills: {error}."
-    shots = [(strip.title, filmstrip.stills_of(strip, taken)) for strip in strips]
-    return [(title, stills) for title, stills in shots if stills], ""
+    stills = {name: [taken[shot] for shot in shots if shot in taken]
+              for name, shots in strips.items()}  # fmt: skip
+    return [(name, some) for name, some in stills.items() if some], ""
 
 
-def _failed_groups(failed: Sequence[FailedCell]) -> list[FailedGroup]:
-    groups: dict[tuple[str, str], list[FailedCell]] = {}
+def _failed_groups(failed: Sequence[FailedCell]) -> list[tuple[str, str, str]]:
+    """Return system, reason and cells of those that failed for the same reason."""
+    groups: dict[tuple[str, str], dict[str, list[str]]] = {}
     for cell in failed:
-        groups.setdefault((cell.system, cell.reason), []).append(cell)
-    return [
-        FailedGroup(system, _cells(cells), reason) for (system, reason), cells in groups.items()
-    ]
-
-
-def _cells(cells: Sequence[FailedCell]) -> str:
-    by_recording: dict[str, list[str]] = {}
-    for cell in cells:
+        by_recording = groups.setdefault((cell.system, cell.reason), {})
         by_recording.setdefault(cell.recording, []).append(str(cell.seed))
-    return "; ".join(f"{name}: seed {', '.join(seeds)}" for name, seeds in by_recording.items())
-
-
-def _words(values: Mapping[str, Any]) -> list[tuple[str, str]]:
-    return [(name, _word(value)) for name, value in values.items()]
-
-
-def _word(value: Any) -> str:
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return "–" if value is None else str(value)
-
-
-@dataclass(frozen=True, slots=True)
-class ParameterRow:
-    """One parameter, and whether it was set rather than left at its default."""
-
-    name: str
-    value: str
-    was_set: bool
-
-
-@dataclass(frozen=True, slots=True)
-class SystemSection:
-    """A system's section of the page."""
-
-    label: str
-    kind: str
-    parameter_set: str
-    rows: tuple[ParameterRow, ...]
-
-
-def system_sections(systems: tuple[SystemEntry, ...]) -> list[SystemSection]:
-    """Describe all systems."""
-    sections = []
-    for system in systems:
-        values = flat(system.parameters)
-        were_set = flat(system.overrides)
-        rows = [ParameterRow(name, _text(values.get(name, value)), was_set=True)
-                for name, value in were_set.items()]  # fmt: skip
-        rows += [ParameterRow(name, _text(value), was_set=False)
-                 for name, value in values.items() if name not in were_set]  # fmt: skip
-        section = SystemSection(system.label, system.kind, system.parameter_set, tuple(rows))
-        sections.append(section)
-    return sections
-
-
-def _text(value: Any) -> str:
-    """Return a value as it stands in a parameter file."""
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-def flat(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Return nested values by their dotted names."""
-    found: dict[str, Any] = {}
-    for name, value in values.items():
-        if isinstance(value, Mapping):
-            found |= flat(value, f"{prefix}{name}.")
-        else:
-            found[prefix + name] = value
-    return found
+    return [
+        (*key, "; ".join(f"{name}: seed {', '.join(seeds)}" for name, seeds in cells.items()))
+        for key, cells in groups.items()
+    ]

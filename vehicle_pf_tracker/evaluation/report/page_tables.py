@@ -12,123 +12,84 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Tables of the page: text, sorting value and the best cells."""
+"""Tables of a report: metrics, ranks, pairs, total occlusions, robustness and speed."""
 
 from __future__ import annotations
 
 import itertools
 import statistics
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from types import MappingProxyType
 from typing import Any
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.evaluation_folder import (
+    EvaluationFolder,
+    read_document,
+    safe_name,
+)
+from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, FRAMES, RESTARTS, SHIFTED
 from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
-from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, Summaries
-from vehicle_pf_tracker.evaluation.report.columns import (
+from vehicle_pf_tracker.evaluation.report.aggregates import (
     COLUMNS,
     NO_VALUE,
     RANKED,
     RECOVERED,
+    Aggregates,
     Column,
+    Summaries,
     counted,
     interval_text,
     listing,
     mean_and_spread_text,
     mean_text,
-    number_text,
     p_value_text,
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
-from vehicle_pf_tracker.evaluation.statistics import ALPHA, Summary
-
-Slots = Mapping[str, int]
-
-
-@dataclass(frozen=True, slots=True)
-class Header:
-    """A heading: its text, its unit, one sentence, and how many columns it spans."""
-
-    text: str
-    unit: str = ""
-    note: str = ""
-    span: int = 1
+from vehicle_pf_tracker.evaluation.statistics import ALPHA, PairedTest, Summary, mean_of_means
+from vehicle_pf_tracker.evaluation.tables import Header, Table, TableCell
+from vehicle_pf_tracker.offline.run_folder import METRICS, damage
 
 
-@dataclass(frozen=True, slots=True)
-class TableCell:
-    """A cell.
+def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -> Table:
+    """Show metrics, all if `keys` is None, as means over the recordings.
 
-    Attributes
-    ----------
-    text : str
-        Text of the cell.
-    value : float or None
-        Value it sorts by; None goes last.
-    best : bool
-        True if no other in its column is better.
-    note : str
-        Note shown on demand.
-    heat : float
-        Tint, -1 to 1: its strength and direction.
+    Recoveries are counted over all runs.
     """
 
-    text: str
-    value: float | None = None
-    best: bool = False
-    note: str = ""
-    heat: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A system's row, with the number of its style where it has one."""
-
-    label: str
-    slot: int | None
-    cells: tuple[TableCell, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class PageTable:
-    """A table; `groups` spans the `headers`, and may be empty."""
-
-    groups: tuple[Header, ...]
-    headers: tuple[Header, ...]
-    rows: tuple[Row, ...]
-
-
-def overall_table(aggregates: Aggregates, slots: Slots) -> PageTable:
-    """Show all metrics, as means over the recordings; recoveries with their number too."""
-
     def text(label: str, summary: Summary | None, column: Column) -> str:
-        mean = mean_text(summary, column)
         recovered, judged = aggregates.recoveries[label]
-        return f"{mean} ({recovered}/{judged})" if column is RECOVERED and judged else mean
+        is_count = column is RECOVERED and judged
+        return f"{recovered} of {judged}" if is_count else mean_text(summary, column)
 
-    return _metrics_table(aggregates.overall, COLUMNS, slots, text)
+    columns = [column for column in COLUMNS if keys is None or column.key in keys]
+    return _metrics_table(aggregates.overall, columns, text)
 
 
-def recording_table(aggregates: Aggregates, recording: str, slots: Slots) -> PageTable:
-    """Show the metrics of one recording, as means and spreads over the seeds."""
+def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Column]) -> Table:
+    """Show metrics of one recording, as means and spreads over the seeds."""
     table = {
         label: summaries
         for label in aggregates.order
         if (summaries := aggregates.by_recording.get((recording, label))) is not None
     }
-    columns = [column for column in COLUMNS if column.by_recording]
     return _metrics_table(
-        table, columns, slots, lambda _, summary, column: mean_and_spread_text(summary, column)
+        table, columns, lambda _, summary, column: mean_and_spread_text(summary, column)
     )
 
 
-def ranks_table(aggregates: Aggregates, slots: Slots) -> PageTable:
+def ranks_table(aggregates: Aggregates) -> Table:
     """Show places with their ties and mean ranks, by each ranked metric."""
-    ranked = [column for column in RANKED if column.key in aggregates.rankings]
-    cells: dict[str, list[TableCell]] = {label: [] for label in aggregates.order}
-    for column in ranked:
+    headers: list[Header] = []
+    rows: dict[str, list[TableCell]] = {label: [] for label in aggregates.order}
+    for column in RANKED:
+        if column.key not in aggregates.rankings:
+            continue
+        headers += [Header(f"{column.label}: place"), Header("mean rank")]
         ranks = {rank.system: rank for rank in aggregates.rankings[column.key].ranks}
         differ = any(rank.place > 1 for rank in ranks.values())
-        for label, row in cells.items():
+        for label, row in rows.items():
             if label not in ranks:
                 row += [TableCell(NO_VALUE), TableCell(NO_VALUE)]
                 continue
@@ -137,89 +98,93 @@ def ranks_table(aggregates: Aggregates, slots: Slots) -> PageTable:
             place = f"{rank.place}{' =' if rank.tied else ''}"
             row.append(TableCell(place, rank.place, differ and rank.place == 1, note))
             row.append(TableCell(f"{rank.mean_rank:.2f}", rank.mean_rank))
-    return PageTable(
-        groups=tuple(Header(column.label, span=2) for column in ranked),
-        headers=tuple(itertools.chain(*((Header("place"), Header("mean rank")) for _ in ranked))),
-        rows=tuple(Row(label, slots.get(label), tuple(row)) for label, row in cells.items()),
-    )
+    return Table(headers, rows)
 
 
-def pairs_table(aggregates: Aggregates, slots: Slots) -> PageTable:
+def pairs_table(aggregates: Aggregates) -> Table:
     """Show the mean difference of each pair: the row's system less the column's."""
-    column = RANKED[0]
     found: dict[tuple[str, str], TableCell] = {}
     known = [abs(test.difference.mean) for test in aggregates.pairs if test.difference]
     largest = max(known, default=0.0) or 1.0
     for test in aggregates.pairs:
-        for pair, sign in (((test.first, test.second), 1), ((test.second, test.first), -1)):
-            if test.difference is None:
-                found[pair] = TableCell(NO_VALUE)
-                continue
-            value = sign * test.difference.mean
-            alone = test.p_value is not None and test.p_value < ALPHA
-            mark = "**" if test.significant else "*" if alone else ""
-            p_values = f"p {p_value_text(test.p_value)}"
-            p_values += f", adjusted {p_value_text(test.adjusted_p)}"
-            text = f"{value:+.{column.decimals}f}{mark}"
-            found[pair] = TableCell(text, value, test.significant, p_values, value / largest)
-    itself = TableCell("")
-    rows = (
-        Row(label, slots.get(label), tuple(found.get((label, o), itself) for o in aggregates.order))
-        for label in aggregates.order
-    )
-    return PageTable((), tuple(Header(label) for label in aggregates.order), tuple(rows))
+        found[test.first, test.second] = _pair_cell(test, 1, largest)
+        found[test.second, test.first] = _pair_cell(test, -1, largest)
+    order, itself = aggregates.order, TableCell("")
+    rows = {label: [found.get((label, other), itself) for other in order] for label in order}
+    return Table([Header(label) for label in order], rows)
 
 
-def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]], slots: Slots) -> PageTable | None:
+def _pair_cell(test: PairedTest, sign: int, largest: float) -> TableCell:
+    if test.difference is None:
+        return TableCell(NO_VALUE)
+    value = sign * test.difference.mean
+    alone = test.p_value is not None and test.p_value < ALPHA
+    mark = "**" if test.significant else "*" if alone else ""
+    p_values = f"p {p_value_text(test.p_value)}, adjusted {p_value_text(test.adjusted_p)}"
+    text = f"{value:+.{RANKED[0].decimals}f}{mark}"
+    return TableCell(text, value, test.significant, p_values, value / largest)
+
+
+def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]]) -> Table | None:
     """Show the recovery of each system from each total occlusion; None without any."""
-    occlusions = occlusions_of([run for some in runs.values() for run in some])
-    if not occlusions:
+    by_system = {
+        label: [occlusion for run in some for occlusion in run.metrics.occlusions]
+        for label, some in runs.items()
+    }
+    spans = sorted({(o.first_frame, o.last_frame) for some in by_system.values() for o in some})
+    if not spans:
         return None
-    rows = []
-    for label, some in runs.items():
-        cells: list[TableCell] = []
-        for occlusion in occlusions:
-            cell = occlusion_cell(some, occlusion)
-            share = cell.recovered / cell.judged if cell.judged else None
-            text = f"{cell.recovered} of {cell.judged}" if cell.judged else "not judged"
-            cells.append(TableCell(text, share, share == 1))
-            cells.append(TableCell(number_text(cell.exit_px, 1), cell.exit_px))
-            note = f"in {counted(cell.back, 'seed')}"
-            cells.append(TableCell(number_text(cell.frames, 0), cell.frames, note=note))
-        rows.append(Row(label, slots.get(label), tuple(cells)))
+    rows = {
+        label: [
+            cell
+            for span in spans
+            for cell in _occlusion_cells([o for o in some if (o.first_frame, o.last_frame) == span])
+        ]
+        for label, some in by_system.items()
+    }
     three = (
         Header("recovered", "seeds", "Seeds after which the track was on the vehicle again."),
         Header("error at exit", "px", "Mean error in the first frame after it."),
         Header("return", "frames", "Median frames until the track stays on the vehicle."),
     )
-    groups = tuple(Header(f"frames {first} to {last}", span=3) for first, last in occlusions)
-    return PageTable(groups, three * len(occlusions), tuple(rows))
+    groups = [Header(f"frames {first} to {last}", span=3) for first, last in spans]
+    return Table(three * len(spans), rows, groups)
+
+
+def _occlusion_cells(seeds: Sequence[OcclusionScore]) -> Iterator[TableCell]:
+    """Summarise one occlusion over the seeds of one system."""
+    verdicts = [o.recovered for o in seeds if o.recovered is not None]
+    exits = [o.error_at_exit_px for o in seeds if o.error_at_exit_px is not None]
+    frames = [o.frames_to_recover for o in seeds if o.frames_to_recover is not None]
+    share = statistics.fmean(verdicts) if verdicts else None
+    text = f"{sum(verdicts)} of {len(verdicts)}" if verdicts else "not judged"
+    yield TableCell(text, share, share == 1)
+    yield number_cell(statistics.fmean(exits) if exits else None, ".1f")
+    note = f"in {counted(len(frames), 'seed')}"
+    yield number_cell(statistics.median(frames) if frames else None, ".0f", note)
 
 
 def _metrics_table(
     table: Mapping[str, Summaries],
     columns: Sequence[Column],
-    slots: Slots,
     text: Callable[[str, Summary | None, Column], str],
-) -> PageTable:
+) -> Table:
     kept = [column for column in columns if any(row.get(column.key) for row in table.values())]
     best = {column.key: _best(table, column) for column in kept}
-    rows = []
-    for label, summaries in table.items():
-        cells = []
-        for column in kept:
-            summary = summaries.get(column.key)
-            value = summary.mean if summary else None
-            is_best = value is not None and round(value, column.decimals) == best[column.key]
-            within = interval_text(summary, column)
-            note = f"95 % interval of the mean: {within}" if within else ""
-            cells.append(TableCell(text(label, summary, column), value, is_best, note))
-        rows.append(Row(label, slots.get(label), tuple(cells)))
+
+    def cell(label: str, column: Column) -> TableCell:
+        summary = table[label].get(column.key)
+        value = summary.mean if summary else None
+        is_best = value is not None and round(value, column.decimals) == best[column.key]
+        within = interval_text(summary, column)
+        note = f"95 % interval of the mean: {within}" if within else ""
+        return TableCell(text(label, summary, column), value, is_best, note)
+
     grouped = itertools.groupby(kept, lambda column: column.group)
-    return PageTable(
-        groups=tuple(Header(name, span=len(list(group))) for name, group in grouped),
-        headers=tuple(Header(column.label, column.unit, column.help) for column in kept),
-        rows=tuple(rows),
+    return Table(
+        [Header(column.label, column.unit, column.help) for column in kept],
+        {label: [cell(label, column) for column in kept] for label in table},
+        [Header(name, span=len(list(group))) for name, group in grouped],
     )
 
 
@@ -231,56 +196,120 @@ def _best(table: Mapping[str, Summaries], column: Column) -> float | None:
     return max(values) if column.higher_is_better else min(values)
 
 
-@dataclass(frozen=True, slots=True)
-class OcclusionCell:
-    """One system in one total occlusion, over its seeds.
-
-    Attributes
-    ----------
-    recovered, judged : int
-        Seeds after which it recovered, and seeds that are judged.
-    exit_px : float or None
-        Mean error at the exit.
-    back : int
-        Seeds in which the track recovered for good.
-    frames : float or None
-        Median number of frames until then.
-    """
-
-    recovered: int
-    judged: int
-    exit_px: float | None
-    back: int
-    frames: float | None
+def number_cell(value: float | None, form: str, note: str = "") -> TableCell:
+    """Return the cell of a number, in a form such as ``.1f``; a dash for None."""
+    return TableCell(NO_VALUE if value is None else f"{value:{form}}", value, note=note)
 
 
-def occlusions_of(runs: Sequence[ScoredRun]) -> list[tuple[int, int]]:
-    """Return the first and last hidden frames of all total occlusions that the runs saw."""
-    return sorted({_key(o) for run in runs for o in run.metrics.occlusions})
+_SUCCESS = "success_auc"
+Documents = Mapping[str, Sequence[Mapping[str, Any]]]
+"""JSON documents of one system, by recording."""
+Measure = Callable[[Documents, Documents], float | None]
+"""Takes the documents of the robustness runs, and those of the usual start."""
 
 
-def occlusion_cell(runs: Sequence[ScoredRun], occlusion: tuple[int, int]) -> OcclusionCell:
-    """Summarise the seeds of one system."""
-    found = [o for run in runs for o in run.metrics.occlusions if _key(o) == occlusion]
-    verdicts = [o.recovered for o in found if o.recovered is not None]
-    exits = [o.error_at_exit_px for o in found if o.error_at_exit_px is not None]
-    frames = [o.frames_to_recover for o in found if o.frames_to_recover is not None]
-    return OcclusionCell(
-        recovered=sum(verdicts),
-        judged=len(verdicts),
-        exit_px=statistics.fmean(exits) if exits else None,
-        back=len(frames),
-        frames=statistics.median(frames) if frames else None,
-    )
+def _mean(key: str) -> Measure:
+    return lambda found, _: _mean_of_means(found, lambda document: document.get(key))
 
 
-def _key(occlusion: OcclusionScore) -> tuple[int, int]:
-    return occlusion.first_frame, occlusion.last_frame
+def _usual(found: Documents, usual: Documents) -> float | None:
+    return _mean(_SUCCESS)({name: usual[name] for name in found if name in usual}, {})
 
 
-def speed_table(
-    timings: Mapping[str, Any] | None, order: Sequence[str], slots: Mapping[str, int]
-) -> PageTable | None:
+def _change(found: Documents, usual: Documents) -> float | None:
+    other, own = _mean(_SUCCESS)(found, usual), _usual(found, usual)
+    return None if other is None or own is None else other - own
+
+
+def _worst(found: Documents, _: Documents) -> float | None:
+    values = [document[_SUCCESS] for some in found.values() for document in some]
+    return min((value for value in values if value is not None), default=None)
+
+
+def _on_target(found: Documents, _: Documents) -> float | None:
+    def held(document: Mapping[str, Any]) -> float | None:
+        share = document.get("on_target")
+        return None if share is None else float(share > 0.5)
+
+    return _mean_of_means(found, held)
+
+
+def _runs(found: Documents, _: Documents) -> float:
+    return sum(map(len, found.values()))
+
+
+_KINDS: Mapping[str, Mapping[Header, tuple[str, Measure]]] = MappingProxyType(
+    {
+        SHIFTED: {
+            Header("usual start", "success AUC"): (".3f", _usual),
+            Header("other starts", "success AUC"): (".3f", _mean(_SUCCESS)),
+            Header("change", "success AUC"): ("+.3f", _change),
+            Header("worst run", "success AUC"): (".3f", _worst),
+            Header("on target", "share of runs"): (".2f", _on_target),
+            Header("runs"): ("d", _runs),
+        },
+        FRAMES: {
+            Header("success AUC"): (".3f", _mean(_SUCCESS)),
+            Header("precision at 20 px"): (".3f", _mean("precision_20px")),
+            Header("RMSE", "px"): (".1f", _mean("rmse_px")),
+            Header("runs"): ("d", _runs),
+        },
+        RESTARTS: {
+            Header("failures", "per run"): (".2f", _mean("failures")),
+            Header("accuracy", "mean overlap"): (".3f", _mean("accuracy")),
+            Header("robustness"): (".3f", _mean("robustness")),
+            Header("runs"): ("d", _runs),
+        },
+    }
+)
+"""Columns of each kind of robustness run, by the name of its folder and option."""
+
+
+def robustness_tables(folder: EvaluationFolder, order: Sequence[str]) -> dict[str, Table]:
+    """Read what was asked for besides the grid; systems without a result there are left out."""
+    asked = folder.plan.get("options", {})
+    systems = {system.label: system for system in folder.systems}
+    tables = {}
+    for kind, columns in _KINDS.items():
+        files = "restarts.json" if kind == RESTARTS else f"*/{METRICS}"
+        rows = {}
+        for label in order if asked.get(kind) else ():
+            system = safe_name(label)
+            found = _found(folder, f"{BESIDE}/{kind}", f"{system}/seed-*/{files}")
+            if found:
+                seed = folder.seeds_of(systems[label])[0]  # that of the robustness runs
+                usual = _found(folder, "cells", f"{system}/seed-{seed}/{METRICS}")
+                rows[label] = [
+                    number_cell(measure(found, usual), form) for form, measure in columns.values()
+                ]
+        if rows:
+            tables[kind] = Table(list(columns), rows)
+    return tables
+
+
+def _found(folder: EvaluationFolder, above: str, below: str) -> Documents:
+    """Read the documents of each recording that has any: ``above/recording/below``."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    for entry in folder.recordings:
+        for path in sorted((folder.path / above / entry.name).glob(below)):
+            with suppress(InputError):  # a cell that is being written
+                if not damage(path.parent):
+                    found.setdefault(entry.name, []).append(read_document(path))
+    return found
+
+
+def _mean_of_means(
+    found: Documents, value: Callable[[Mapping[str, Any]], float | None]
+) -> float | None:
+    """Return the mean over recordings of the means over those of their runs that have a value."""
+    known = {
+        name: [number for document in documents if (number := value(document)) is not None]
+        for name, documents in found.items()
+    }
+    return mean_of_means({name: values for name, values in known.items() if values})
+
+
+def speed_table(timings: Mapping[str, Any] | None, order: Sequence[str]) -> Table | None:
     """Make a table of step times; None where they were not measured.
 
     Parameters
@@ -289,46 +318,28 @@ def speed_table(
         ``{"clock", "cells": [{"recording", "system", "step_ms_p50", "step_ms_p95"}, ...]}``.
     order : sequence of str
         The systems.
-    slots : mapping of str to int
-        Numbers of their styles.
     """
-    cells = list((timings or {}).get("cells", []))
-    rows = []
+    cells = (timings or {}).get("cells", [])
+    rows = {}
     for label in order:
-        own = [cell for cell in cells if cell["system"] == label]
-        medians = [cell["step_ms_p50"] for cell in own if cell.get("step_ms_p50") is not None]
-        slow = [cell["step_ms_p95"] for cell in own if cell.get("step_ms_p95") is not None]
-        if not medians:
-            continue
-        middle = statistics.fmean(medians)
-        late = statistics.fmean(slow) if slow else None
-        shown = (
-            _cell(middle, 2),
-            _cell(late, 2),
-            _cell(max(medians), 2),
-            _cell(1000.0 / middle if middle > 0 else None, 0),
+        medians, slow = (
+            [cell[key] for cell in cells if cell["system"] == label and cell.get(key) is not None]
+            for key in ("step_ms_p50", "step_ms_p95")
         )
-        rows.append(Row(label, slots.get(label), shown))
-    headers = (
+        if medians:
+            middle = statistics.fmean(medians)
+            rows[label] = [
+                number_cell(middle, ".2f"),
+                number_cell(statistics.fmean(slow) if slow else None, ".2f"),
+                number_cell(max(medians), ".2f"),
+                number_cell(1000.0 / middle if middle > 0 else None, ".0f"),
+            ]
+    headers = [
         Header("step, median", "ms", "Mean over the recordings of the median step."),
         Header(
             "step, 95 %", "ms", "Mean over the recordings of the time 95 % of steps stay below."
         ),
         Header("slowest recording", "ms", "The largest median of any recording."),
         Header("rate", "frames/s", "One second over the mean median step."),
-    )
-    return PageTable((), headers, tuple(rows)) if rows else None
-
-
-def speed_note(timings: Mapping[str, Any] | None) -> str:
-    """Describe the measurement and the machine."""
-    clock = (timings or {}).get("clock", "time of a step")
-    processor = " with ".join(map(str, (timings or {}).get("processor", []) or ["unknown"]))
-    return (
-        f"Measured in a serial pass of its own: {clock}. Processor: {processor} cores. "
-        "Compare systems by their ratios; other machines have other times."
-    )
-
-
-def _cell(value: float | None, decimals: int) -> TableCell:
-    return TableCell(number_text(value, decimals), value)
+    ]
+    return Table(headers, rows) if rows else None

@@ -14,7 +14,7 @@
 
 """Cells of an evaluation, scored against the truth.
 
-The evaluation's runs for other tools: TUM trajectories for evo, recordings for Foxglove.
+They are exported for other tools: as TUM trajectories for evo, as recordings for Foxglove.
 """
 
 from __future__ import annotations
@@ -133,6 +133,10 @@ class ScoredEvaluation:
             for run in self.runs
             if recording in {None, run.recording} and system in {None, run.system}
         ]
+
+    def by_system(self, recording: str, order: Sequence[str]) -> dict[str, list[ScoredRun]]:
+        """Return the runs on a recording by their systems, of those in `order` that have any."""
+        return {label: runs for label in order if (runs := self.of(recording, label))}
 
 
 def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:

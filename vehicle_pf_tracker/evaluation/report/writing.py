@@ -12,26 +12,20 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The tables of a report as files: for documents, for spreadsheets, for papers and for programs."""
+"""The files of a report: its page, tables, figures and exports."""
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from matplotlib import rc_context
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import (
-    Aggregates,
-    Summaries,
-    aggregate,
-    findings,
-    power,
-)
-from vehicle_pf_tracker.evaluation.report.columns import (
     COLUMNS,
     NO_VALUE,
     PRECISION,
@@ -40,13 +34,22 @@ from vehicle_pf_tracker.evaluation.report.columns import (
     RMSE,
     STEP,
     SUCCESS,
+    Aggregates,
     Column,
+    Summaries,
+    aggregate,
+    findings,
     interval_text,
-    mean_and_spread_text,
     mean_text,
+    power,
 )
+from vehicle_pf_tracker.evaluation.report.figures import PAPER, draw_all
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
-from vehicle_pf_tracker.evaluation.report.paper_figures import write_figures
+from vehicle_pf_tracker.evaluation.report.page_tables import (
+    overall_table,
+    ranks_table,
+    recording_table,
+)
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
     score_folder,
@@ -55,8 +58,8 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
 )
 from vehicle_pf_tracker.evaluation.report.video import write_videos
 from vehicle_pf_tracker.evaluation.statistics import Summary
-from vehicle_pf_tracker.evaluation.tables import markdown
-from vehicle_pf_tracker.offline.output_files import write_json, write_text
+from vehicle_pf_tracker.evaluation.tables import csv_text, markdown
+from vehicle_pf_tracker.offline.output_files import make_folder, replacing, write_json, write_text
 
 ALL_RECORDINGS = "(all)"
 """Stands for the name of a recording where values are means over all of them."""
@@ -70,20 +73,20 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     """Return the findings, the means, the ranks and each recording as Markdown."""
     parts = [f"# {title(evaluation)}\n"]
     parts.append("".join(f"- {line}\n" for line in findings(evaluation, aggregates)))
-    parts.append("## Means over recordings\n\n" + _metrics(aggregates.overall, spread=False))
-    parts.append("## Ranks\n\n" + _ranks(aggregates))
-    if power(aggregates):
-        parts.append(power(aggregates) + "\n")
-    for recording in evaluation.recordings:
-        table = {
-            label: found
-            for label in aggregates.order
-            if (found := aggregates.by_recording.get((recording.name, label))) is not None
-        }
-        parts.append(f"## {recording.name}\n\n" + _metrics(table, spread=True))
+    tables = {
+        "Means over recordings": overall_table(aggregates),
+        "Ranks": ranks_table(aggregates),
+        **{
+            entry.name: recording_table(aggregates, entry.name, COLUMNS)
+            for entry in evaluation.recordings
+        },
+    }
+    for heading, table in tables.items():
+        parts.append(f"## {heading}\n\n{markdown(*table.texts())}")
+        if heading == "Ranks" and power(aggregates):
+            parts.append(power(aggregates) + "\n")
     if evaluation.failed:
-        cells = [[_cell_text(c.system), c.recording, str(c.seed), _cell_text(c.reason)]
-                 for c in evaluation.failed]  # fmt: skip
+        cells = [[c.system, c.recording, str(c.seed), c.reason] for c in evaluation.failed]
         header = ["system", "recording", "seed", "reason"]
         parts.append("## Failed cells\n\n" + markdown(header, cells))
     return "\n".join(parts)
@@ -91,45 +94,58 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
 
 def summary_csv(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
     """Return every mean with its spread and interval, a line each, with every digit."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
+    everything = [(ALL_RECORDINGS, label, found) for label, found in aggregates.overall.items()]
+    everything += [
+        (name, label, found)
+        for entry in evaluation.recordings
+        for (name, label), found in aggregates.by_recording.items()
+        if name == entry.name
+    ]
+    rows = [
+        [recording, system, column.key, column.unit, *astuple(found)]
+        for recording, system, summaries in everything
+        for column in COLUMNS
+        if (found := summaries.get(column.key)) is not None
+    ]
     header = ("recording", "system", "metric", "unit", "count", "mean", "spread", "low", "high")
-    writer.writerow(header)
-    for recording, system, summaries in _all(evaluation, aggregates):
-        for column in COLUMNS:
-            found = summaries.get(column.key)
-            if found is not None:
-                values = (found.count, found.mean, found.spread, found.low, found.high)
-                writer.writerow([recording, system, column.key, column.unit, *values])
-    return text.getvalue()
+    return csv_text(header, rows)
 
 
 def summary_tex(aggregates: Aggregates) -> str:
     """Return the main means as a LaTeX table: the best bold, the second underlined."""
-    lines = [
-        "% Means over recordings, with the 95 % interval of the first metric. The best are bold,",
-        "% the second are underlined. Needs the package booktabs.",
-        rf"\begin{{tabular}}{{l{'r' * (len(_PAPER) + 1)}}}",
-        r"\toprule",
-        " & ".join(["system", SUCCESS.title, "interval",
-                    *(column.title.translate(_LATEX) for column in _PAPER[1:])]) + r" \\",
-        r"\midrule",
-    ]  # fmt: skip
     marks = {column.key: _marks(aggregates, column) for column in _PAPER}
+    rows = []
     for label, summaries in aggregates.overall.items():
-        within = interval_text(summaries.get(SUCCESS.key), SUCCESS).replace(" to ", "--") or "--"
-        cells = [_marked(summaries.get(column.key), column, marks[column.key]) for column in _PAPER]
-        line = " & ".join([label.translate(_LATEX), cells[0], within, *cells[1:]])
-        lines.append(line.replace(NO_VALUE, "--") + r" \\")
-    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}"]) + "\n"
+        interval = interval_text(summaries.get(SUCCESS.key), SUCCESS).replace(" to ", "--")
+        first, *others = (_marked(summaries[column.key], column, marks[column.key])
+                          for column in _PAPER)  # fmt: skip
+        rows.append([label, first, interval or NO_VALUE, *others])
+    header = ["system", SUCCESS.title, "interval", *(column.title for column in _PAPER[1:])]
+    return "".join(
+        [
+            "% Means over recordings, with the 95 % interval of the first metric. The best are\n"
+            "% bold, the second are underlined. Needs the package booktabs.\n"
+            rf"\begin{{tabular}}{{l{'r' * len(header[1:])}}}",
+            "\n\\toprule\n",
+            _tex_line(header),
+            "\\midrule\n",
+            *map(_tex_line, rows),
+            "\\bottomrule\n\\end{tabular}\n",
+        ]
+    )
+
+
+def _tex_line(cells: Sequence[str]) -> str:
+    escaped = (cell if cell.startswith("\\") else cell.translate(_LATEX) for cell in cells)
+    return " & ".join(escaped).replace(NO_VALUE, "--") + " \\\\\n"
 
 
 def _marks(aggregates: Aggregates, column: Column) -> dict[float, str]:
     """Return LaTeX's commands for the best and the second-best mean, as they are printed."""
-    found = [summaries.get(column.key) for summaries in aggregates.overall.values()]
+    found = [summaries[column.key] for summaries in aggregates.overall.values()]
     values = [round(summary.mean, column.decimals) for summary in found if summary is not None]
     order = sorted(set(values), reverse=bool(column.higher_is_better))
-    if column.higher_is_better is None or len(order) < 2:
+    if len(order) < 2:
         return {}
     # Two that share the first place leave no second.
     commands = (r"\textbf", r"\underline") if values.count(order[0]) == 1 else (r"\textbf",)
@@ -177,55 +193,52 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
     }
 
 
-def _all(
-    evaluation: ScoredEvaluation, aggregates: Aggregates
-) -> Iterator[tuple[str, str, Summaries]]:
-    for label, summaries in aggregates.overall.items():
-        yield ALL_RECORDINGS, label, summaries
-    for entry in evaluation.recordings:
-        for (name, label), summaries in aggregates.by_recording.items():
-            if name == entry.name:
-                yield name, label, summaries
-
-
-def _metrics(table: Mapping[str, Summaries], *, spread: bool) -> str:
-    kept = [column for column in COLUMNS if any(row.get(column.key) for row in table.values())]
-    show = mean_and_spread_text if spread else mean_text
-    rows = (
-        [_cell_text(label), *(show(summaries.get(column.key), column) for column in kept)]
-        for label, summaries in table.items()
-    )
-    return markdown(["system", *(column.title for column in kept)], rows)
-
-
-def _ranks(aggregates: Aggregates) -> str:
-    ranked = [column for column in RANKED if column.key in aggregates.rankings]
-    places = {
-        column.key: {rank.system: rank for rank in aggregates.rankings[column.key].ranks}
-        for column in ranked
-    }
-    rows = []
-    for label in aggregates.order:
-        row = [_cell_text(label)]
-        for column in ranked:
-            rank = places[column.key].get(label)
-            tie = " =" if rank and rank.tied else ""
-            row.append(f"{rank.place}{tie} ({rank.mean_rank:.2f})" if rank else NO_VALUE)
-        rows.append(row)
-    header = ["system", *(f"{column.label}: place (mean rank)" for column in ranked)]
-    return markdown(header, rows)
-
-
 def _plain(summaries: Summaries) -> dict[str, dict[str, Any] | None]:
-    return {key: _numbers(found) for key, found in summaries.items()}
+    return {key: None if found is None else asdict(found) for key, found in summaries.items()}
 
 
-def _numbers(found: Summary | None) -> dict[str, Any] | None:
-    return None if found is None else asdict(found)
+FORMATS = ("pdf", "svg", "png")
+FIGURES = "figures"
+_DPI = 300
+"""Resolution of PNG files, which IEEE asks of colour pictures."""
+
+_METADATA: Mapping[str, dict[str, Any]] = MappingProxyType(
+    {
+        "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+        "svg": {"Date": None, "Creator": None},
+        "png": {"Software": None},
+    }
+)
+"""No date and no version, so that the same folder gives the same files."""
 
 
-def _cell_text(text: str) -> str:
-    return text.replace("|", "\\|")
+def write_figures(
+    evaluation: ScoredEvaluation,
+    aggregates: Aggregates,
+    slots: Mapping[str, int],
+    formats: Sequence[str],
+) -> list[Path]:
+    """Write every figure of the page to ``figures/``, in each of the formats.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    folder = make_folder(evaluation.folder.path / FIGURES)
+    written = []
+    for name, drawn in draw_all(evaluation, aggregates, slots, PAPER).items():
+        figure = drawn.figure
+        with rc_context(PAPER.settings):
+            # Laid out once: each drawing moves a constrained layout a little further.
+            figure.draw_without_rendering()
+            figure.set_layout_engine("none")
+        for kind in formats:
+            path = folder / f"{name}.{kind}"
+            with replacing(path) as partial, rc_context(PAPER.settings):
+                figure.savefig(partial, format=kind, dpi=_DPI, metadata=_METADATA[kind])
+            written.append(path)
+    return written
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,7 +256,7 @@ class ReportOptions:
     trajectories : bool
         True for TUM files of the truth and of all runs, in ``trajectories/``.
     figures : tuple of str
-        Formats of the figures' files, of `paper_figures.FORMATS`, in ``figures/``.
+        Formats of the figures' files, of `FORMATS`, in ``figures/``.
     """
 
     images: bool = True
@@ -253,13 +266,21 @@ class ReportOptions:
     figures: tuple[str, ...] = ()
 
 
+class Report(NamedTuple):
+    """A report that was written: its files, the page first, and the results it shows."""
+
+    paths: Sequence[Path]
+    evaluation: ScoredEvaluation
+    aggregates: Aggregates
+
+
 def write_report(
     folder: Path,
     options: ReportOptions | None = None,
     notify: Callable[[str], object] = lambda _: None,
     on_stage: Callable[[str], object] = lambda _: None,
-) -> list[Path]:
-    """Write the report of the evaluation in `folder` there; returns what was written, page first.
+) -> Report:
+    """Write the report of the evaluation in `folder` there.
 
     The same folder gives the same files.
 
@@ -296,7 +317,7 @@ def write_report(
         written += write_estimate_recordings(evaluation, notify, on_stage)
     if options.video:
         written += write_videos(evaluation, styled(aggregates), notify, on_stage)
-    return written
+    return Report(written, evaluation, aggregates)
 
 
 def _write_summaries(

@@ -14,23 +14,37 @@
 
 """The tracker of many vehicles and baselines on the same detections of scenes with truth.
 
-Detections made worse, or scored otherwise, by name.
+The report of a comparison is a page, Markdown, CSV and JSON.
 """
 
 from __future__ import annotations
 
+import statistics
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.baselines.traffic_client import TRAFFIC_BASELINES, TrafficWorker
+from vehicle_pf_tracker.evaluation.report.page import render
+from vehicle_pf_tracker.evaluation.tables import (
+    NOTHING,
+    Header,
+    Table,
+    TableCell,
+    csv_text,
+    markdown,
+)
+from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.offline.run_folder import versions
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
@@ -38,128 +52,60 @@ from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
-UNCHANGED = "unchanged"
-DROPPED = 0.2
-"""Share of detections that `dropped` leaves out."""
-_SEED = 20
-"""Seed of what is left out: the same for every system."""
-_PERIOD, _FIRST = 200, 100
-"""Frames from one gap to the next, and the first gap's first frame: the tracks before it are old
-enough, and the last clip has four gaps."""
-
-Perturbation = Callable[[Array], Array]
-"""Takes rows (frame, left, top, width, height, score) and returns others."""
-
-
-def _dropped(rows: Array) -> Array:
-    kept: Array = rows[np.random.default_rng(_SEED).uniform(size=len(rows)) >= DROPPED]
-    return kept
-
-
-def _with_gaps(length: int) -> Perturbation:
-    def without(rows: Array) -> Array:
-        late = rows[:, 0] - _FIRST
-        kept: Array = rows[(late < 0) | (late % _PERIOD >= length)]
-        return kept
-
-    return without
-
-
-def _scored(change: Callable[[Array], Array]) -> Perturbation:
-    return lambda rows: np.column_stack([rows[:, :5], change(rows[:, 5])])
-
-
-PERTURBATIONS: Mapping[str, Perturbation] = MappingProxyType(
-    {
-        UNCHANGED: lambda rows: rows,
-        "dropped": _dropped,
-        "gap20": _with_gaps(20),
-        "gap40": _with_gaps(40),
-        "squared": _scored(np.square),
-        "halved": _scored(lambda scores: scores / 2),
-    }
-)
-"""A fifth of the detections dropped; 20 and 40 of every 200 frames without any; other scores."""
-
-
 OURS = "traffic"
 MOTION = "motion"
 """Source of detections: the embedded detector, whose boxes the baselines get too."""
 
 Maker = Callable[[TrafficParameters], TrafficTracker]
-
-
-@dataclass(frozen=True, slots=True)
-class TrafficCase:
-    """A scene with one source of detections.
-
-    Attributes
-    ----------
-    sequence : TrafficSequence
-        The scene.
-    source : str
-        A key of its detections, or `MOTION`.
-    perturbation : str
-        A key of `PERTURBATIONS`.
-    """
-
-    sequence: TrafficSequence
-    source: str
-    perturbation: str = UNCHANGED
+Case = tuple[TrafficSequence, str]
+"""A scene with truth, and a key of its detections or `MOTION`."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrafficResult:
-    """Result of one system in one case.
+    """Result of one system in one case, or the mean of several runs.
 
     Attributes
     ----------
-    scene, source, perturbation : str
-        The case.
-    system : str
-        `OURS` or a baseline.
+    scene, source, system : str
+        Name of the scene, source of detections, and `OURS` or a baseline.
     seed : int or None
-        Seed; None for a baseline.
-    scores : dict of str to float
-        TrackEval's.
-    kept, occlusions : int
-        Total occlusions after which the identity is the same, and all that are judged.
-    counted, true : int
-        Crossings of the middle line.
-    step_ms : float
-        Mean processor time per frame, ms; without detection, but for `MOTION`.
+        Seed; None for a baseline or a mean.
+    values : dict of str to float
+        TrackEval's scores by name. ``kept``, percent of total occlusions with the same identity
+        afterwards, and ``count_error``, percent of the true crossings of the middle line, where
+        there are any. ``step_ms``, mean processor time per frame; without detection, except for
+        `MOTION`.
+    occlusions, true : int
+        Total occlusions that are judged, and true crossings.
+    runs : int
+        Number of runs.
     """
 
     scene: str
     source: str
-    perturbation: str
     system: str
     seed: int | None
-    scores: dict[str, float]
-    kept: int
+    values: dict[str, float]
     occlusions: int
-    counted: int
     true: int
-    step_ms: float
+    runs: int = 1
 
 
 def cases_of(
-    sequences: Sequence[TrafficSequence],
-    sources: Sequence[str] | None = None,
-    perturbations: Sequence[str] = tuple(PERTURBATIONS),
-) -> list[TrafficCase]:
-    """List the cases: each source as it is, and files of detections also perturbed."""
-    cases = []
-    for sequence in sequences:
-        for source in (*sequence.detections, MOTION):
-            if sources is None or source in sources:
-                kinds = perturbations if source != MOTION else (UNCHANGED,)
-                cases += [TrafficCase(sequence, source, kind) for kind in kinds]
-    return cases
+    sequences: Sequence[TrafficSequence], sources: Sequence[str] | None = None
+) -> list[Case]:
+    """List the cases: each scene with each of its detections and `MOTION`, or with `sources`."""
+    return [
+        (sequence, source)
+        for sequence in sequences
+        for source in (*sequence.detections, MOTION)
+        if sources is None or source in sources
+    ]
 
 
 def compare(
-    cases: Sequence[TrafficCase],
+    cases: Sequence[Case],
     worker: TrafficWorker,
     parameters: TrafficParameters,
     seeds: Sequence[int],
@@ -172,14 +118,14 @@ def compare(
 
     Parameters
     ----------
-    cases : sequence of TrafficCase
-        What to run on.
+    cases : sequence of Case
+        Scenes and detections to run on.
     worker : TrafficWorker
         Runs the baselines and scores.
     parameters : TrafficParameters
         Those of the tracker; the seed is replaced.
     seeds : sequence of int
-        Seeds of the tracker.
+        Seeds of the tracker, at least one.
     baselines : sequence of str
         Keys of `TRAFFIC_BASELINES`.
     make : callable
@@ -187,43 +133,34 @@ def compare(
     on_progress : callable
         Called with the number of frames done and of all.
     """
-    total, done = sum(case.sequence.frame_count for case in cases), 0
+    total, done = sum(sequence.frame_count for sequence, _ in cases), 0
     for case in cases:
         given: list[Array] = []
         for seed in seeds:
             tracks, detections, seconds = follow(case, replace(parameters, seed=seed), make)
             given.append(detections)
             yield judge(case, worker, OURS, seed, (tracks, seconds))
-        for name in baselines if given else ():
-            yield judge(case, worker, name, None, worker.track(name, case.sequence, given[0]))
-        done += case.sequence.frame_count
+        for name in baselines:
+            yield judge(case, worker, name, None, worker.track(name, case[0], given[0]))
+        done += case[0].frame_count
         on_progress(done, total)
 
 
 def judge(
-    case: TrafficCase,
-    worker: TrafficWorker,
-    system: str,
-    seed: int | None,
-    run: tuple[Array, float],
+    case: Case, worker: TrafficWorker, system: str, seed: int | None, run: tuple[Array, float]
 ) -> TrafficResult:
     """Score one run: its tracks, and processor time per frame in s."""
+    sequence, source = case
     tracks, seconds = run
-    kept, occlusions = kept_identities(case.sequence, tracks)
-    counted, true = counts(case.sequence, tracks)
-    return TrafficResult(
-        scene=case.sequence.name,
-        source=case.source,
-        perturbation=case.perturbation,
-        system=system,
-        seed=seed,
-        scores=worker.score(case.sequence, tracks),
-        kept=kept,
-        occlusions=occlusions,
-        counted=counted,
-        true=true,
-        step_ms=1e3 * seconds,
-    )
+    values = worker.score(sequence, tracks)
+    kept, occlusions = kept_identities(sequence, tracks)
+    counted, true = counts(sequence, tracks)
+    if occlusions:
+        values["kept"] = 100 * kept / occlusions
+    if true:
+        values["count_error"] = 100 * (counted / true - 1)
+    values["step_ms"] = 1e3 * seconds
+    return TrafficResult(sequence.name, source, system, seed, values, occlusions, true)
 
 
 class _Recorder(MotionDetector):
@@ -246,7 +183,7 @@ class _Recorder(MotionDetector):
 
 
 def follow(
-    case: TrafficCase, parameters: TrafficParameters, make: Maker = TrafficTracker
+    case: Case, parameters: TrafficParameters, make: Maker = TrafficTracker
 ) -> tuple[Array, Array, float]:
     """Follow all vehicles of a case with the tracker.
 
@@ -259,34 +196,28 @@ def follow(
     seconds : float
         Processor time per frame, s.
     """
-    sequence = case.sequence
+    sequence, source = case
     recorder = _Recorder()
-    is_motion = case.source == MOTION
+    given = None if source == MOTION else sequence.detections[source]
     session = TrafficSession(
         make(parameters),
-        (lambda: recorder) if is_motion else None,
+        (lambda: recorder) if given is None else None,
         frame_rate=sequence.frame_rate,
-    )
-    given = (
-        np.empty((0, 6))
-        if is_motion
-        else PERTURBATIONS[case.perturbation](sequence.detections[case.source])
     )
     tracks: list[list[float]] = []
     seconds = 0.0
     for number, frame in enumerate(sequence.frames(), start=1):
-        now = given[given[:, 0] == number]
-        detections = None if is_motion else Detections.make(now[:, 1:5], now[:, 5])
+        detections = None
+        if given is not None:
+            now = given[given[:, 0] == number]
+            detections = Detections.make(now[:, 1:5], now[:, 5])
         before = time.process_time()
         estimates = session.feed(frame, round(number * 1e9 / sequence.frame_rate), detections)
         seconds += time.process_time() - before
         tracks += _rows(number, estimates)
-    found = np.array(recorder.rows).reshape(-1, 6) if is_motion else given
-    return (
-        np.array(tracks, dtype=np.float64).reshape(-1, 6),
-        found,
-        seconds / sequence.frame_count,
-    )
+    found = np.array(recorder.rows).reshape(-1, 6) if given is None else given
+    rows = np.array(tracks, dtype=np.float64).reshape(-1, 6)
+    return rows, found, seconds / sequence.frame_count
 
 
 def _rows(number: int, estimates: Sequence[TrackEstimate]) -> Iterator[list[float]]:
@@ -294,3 +225,137 @@ def _rows(number: int, estimates: Sequence[TrackEstimate]) -> Iterator[list[floa
         if one.mode in {TrackMode.TRACKING, TrackMode.OCCLUDED}:
             box = one.box
             yield [number, one.identity, box.x, box.y, box.width, box.height]
+
+
+NAME = "traffic"
+"""Name of the files without their suffix."""
+
+COLUMNS: Mapping[str, tuple[str, int]] = MappingProxyType(
+    {
+        "HOTA": ("HOTA", 1),
+        "DetA": ("DetA", 1),
+        "AssA": ("AssA", 1),
+        "IDF1": ("IDF1", 1),
+        "MOTA": ("MOTA", 1),
+        "IDSW": ("switches", 1),
+        "Frag": ("fragm.", 1),
+        "kept": ("identity kept", 0),
+        "count_error": ("count error", 1),
+        "step_ms": ("ms", 1),
+    }
+)
+"""Measures, with their headings and decimals."""
+_LOWER_IS_BETTER = ("IDSW", "Frag", "step_ms")
+
+RULES = """\
+HOTA, DetA, AssA, IDF1 and MOTA (percent), identity switches and fragmentations are TrackEval's, at
+an overlap of a half where they need one; means over seeds. Totally hidden vehicles are not scored.
+*Identity kept*: share of total occlusions after which a vehicle has the identity it had before.
+*Count error*: crossings of a line through the middle of the image, against the true ones. *ms* is
+processor time per frame: of `traffic` with its work on pixels, of the baselines for boxes alone.
+"-low" are baselines with thresholds lowered by hand for CenterNet's scores.
+"""
+
+
+def means(results: Sequence[TrafficResult]) -> list[TrafficResult]:
+    """Average the seeds of every system in every case, in the order of the results."""
+    groups: dict[tuple[str, str, str], list[TrafficResult]] = {}
+    for one in results:
+        groups.setdefault((one.scene, one.source, one.system), []).append(one)
+    return [
+        replace(
+            runs[0],
+            seed=None,
+            values={name: statistics.fmean(run.values[name] for run in runs)
+                    for name in COLUMNS if name in runs[0].values},
+            runs=len(runs),
+        )
+        for runs in groups.values()
+    ]  # fmt: skip
+
+
+def write_traffic_report(
+    results: Sequence[TrafficResult], folder: Path, options: Mapping[str, Any]
+) -> dict[str, Table]:
+    """Write the four files, and return their tables.
+
+    Parameters
+    ----------
+    results : sequence of TrafficResult
+        Results of all systems.
+    folder : Path
+        Made where it is missing.
+    options : mapping
+        Plain values that say how the comparison was made; ``command`` is its command line.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written.
+    """
+    make_folder(folder)
+    lines = means(results)
+    shown = tables(lines)
+    page = render("traffic.html", tables=shown, about=RULES, command=" ".join(options["command"]))
+    parts = [f"## {title}\n\n{markdown(*table.texts())}" for title, table in shown.items()]
+    rows = [
+        [line.scene, line.source, line.system, line.runs,
+         *(line.values.get(name) for name in COLUMNS), line.occlusions, line.true]
+        for line in lines
+    ]  # fmt: skip
+    header = ["scene", "detections", "system", "runs", *COLUMNS, "occlusions", "true"]
+    texts = {
+        "html": page,
+        "md": "\n".join(["# Many vehicles\n", RULES, *parts]),
+        "csv": csv_text(header, rows),
+    }
+    for suffix, text in texts.items():
+        write_text(folder / f"{NAME}.{suffix}", text)
+    document = {
+        "options": dict(options),
+        "versions": versions(),
+        "lines": [asdict(line) for line in lines],
+        "results": [asdict(result) for result in results],
+    }
+    write_json(folder / f"{NAME}.json", document)
+    return shown
+
+
+def tables(lines: Sequence[TrafficResult]) -> dict[str, Table]:
+    """Make a table of each scene and source of detections, by their names."""
+    cases: dict[str, list[TrafficResult]] = {}
+    for line in lines:
+        cases.setdefault(f"{line.scene}, {line.source}", []).append(line)
+    return {title: _table(group) for title, group in cases.items()}
+
+
+def _table(lines: Sequence[TrafficResult]) -> Table:
+    names = [name for name in COLUMNS if any(name in line.values for line in lines)]
+    best = {
+        name: max(_rated(line.values[name], name) for line in lines if name in line.values)
+        for name in names
+    }
+    rows = {line.system: [_cell(line, name, best[name]) for name in names] for line in lines}
+    return Table([Header(COLUMNS[name][0]) for name in names], rows)
+
+
+def _cell(line: TrafficResult, name: str, best: float) -> TableCell:
+    value = line.values.get(name)
+    if value is None:
+        return TableCell(NOTHING)
+    decimals = COLUMNS[name][1]
+    text = f"{value:.{decimals}f}"
+    if name == "kept":
+        text += f" % of {line.occlusions}"
+    elif name == "count_error":
+        text = f"{value:+.{decimals}f} % of {line.true}"
+    elif name in {"IDSW", "Frag"} and value == int(value):
+        text = str(int(value))
+    return TableCell(text, value, best=_rated(value, name) == best)
+
+
+def _rated(value: float, name: str) -> float:
+    """Return a number that is larger where the value is better."""
+    if name == "count_error":
+        return -abs(value)
+    return -value if name in _LOWER_IS_BETTER else value

@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Identities kept through total occlusions, and vehicles counted.
-
-Boxes of many vehicles made ready for scores: what has no truth is left out.
-"""
+"""Boxes that can be scored, identities kept through total occlusions, and vehicles counted."""
 
 from __future__ import annotations
 

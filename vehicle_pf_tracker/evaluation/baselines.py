@@ -12,15 +12,19 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""OpenCV's trackers on our frames, in a process and an environment of their own (`worker`)."""
+"""OpenCV's trackers to compare with, in an environment of their own (`baseline_worker`)."""
 
 from __future__ import annotations
 
+import contextlib
+import json
 import os
-from collections.abc import Iterable, Iterator, Mapping
+import subprocess
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -29,8 +33,8 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.baselines.worker_process import WorkerProcess
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.offline.processes import wait_or_kill
 
 VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 """Environment variable that names the interpreter."""
@@ -38,9 +42,12 @@ VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 DEFAULT = Path(".venv-baselines/bin/python")
 """Interpreter that `make baselines` builds, below the working directory."""
 
+WORKER = Path(__file__).with_name("baseline_worker.py")
+Self = TypeVar("Self", bound="Worker")
+
 
 def baseline_python(chosen: Path | None = None) -> Path:
-    """Find the interpreter that has OpenCV's contrib trackers.
+    """Find the interpreter that has the trackers to compare with.
 
     Parameters
     ----------
@@ -55,10 +62,100 @@ def baseline_python(chosen: Path | None = None) -> Path:
     python = chosen or Path(os.environ.get(VARIABLE) or DEFAULT)
     if not python.is_file():
         raise InputError(
-            f"there is no interpreter {python} to run OpenCV's trackers with; build {DEFAULT} with "
+            f"there is no interpreter {python} to run the baselines with; build {DEFAULT} with "
             f"`make baselines`, or name another one in the environment variable {VARIABLE}"
         )
     return python.absolute()  # not resolved: a link is what makes it the environment's
+
+
+class Worker:
+    """A process of `baseline_worker`; a context manager.
+
+    Parameters
+    ----------
+    subject : str
+        Name of what the worker runs, for errors, such as ``the baseline csrt``.
+    python : Path or None
+        Interpreter of the environment; None looks where `baseline_python` says.
+    words : sequence of str
+        Arguments of the worker.
+
+    Attributes
+    ----------
+    versions : dict of str to str
+        Versions of the libraries, by name.
+
+    Raises
+    ------
+    InputError
+        If it cannot be run, ends, or begins with an error.
+    """
+
+    def __init__(self, subject: str, python: Path | None, words: Sequence[str]) -> None:
+        self._subject, self._python = subject, str(baseline_python(python))
+        self._log = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process
+        try:
+            self._process = subprocess.Popen(
+                [self._python, "-I", str(WORKER), *words],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self._log,
+            )
+        except OSError as error:
+            self._log.close()
+            raise InputError(f"cannot run {self._python}: {error.strerror}") from error
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._requests, self._answers = self._process.stdin, self._process.stdout
+        try:
+            self.versions: dict[str, str] = self._answer()
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self: Self) -> Self:
+        return self
+
+    def __exit__(self, *failure: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the process."""
+        with contextlib.suppress(BrokenPipeError):  # it died; what was under way is lost
+            self._requests.close()
+        wait_or_kill(self._process)
+        self._answers.close()
+        self._log.close()
+
+    def _ask(self, request: Mapping[str, object], pixels: Frame | None = None) -> Any:
+        """Send a request, and `pixels` after it; return the answer."""
+        try:
+            self._requests.write(json.dumps(request).encode() + b"\n")
+            if pixels is not None:
+                self._requests.write(pixels.data)
+            self._requests.flush()
+        except BrokenPipeError:
+            raise self._death() from None
+        return self._answer()
+
+    def _answer(self) -> Any:
+        line = self._answers.readline()
+        if not line:
+            raise self._death()
+        answer = json.loads(line)
+        if "error" in answer:
+            raise InputError(f"{self._subject} cannot go on: {answer['error']}")
+        return answer
+
+    def _death(self) -> InputError:
+        status = self._process.wait()
+        self._log.seek(0)
+        lines = self._log.read().decode(errors="replace").strip().splitlines()
+        reason = lines[-1] if lines else f"status {status}"
+        return InputError(
+            f"{self._subject}, run by {self._python}, ended: {reason}; "
+            "`make baselines` builds an environment that has what is needed"
+        )
 
 
 MODELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -72,8 +169,6 @@ MODELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     }
 )
 """Model files that the user brings, by the name of the baseline."""
-
-_WORKER = Path(__file__).with_name("worker.py")
 
 
 class BaselineAnswer(NamedTuple):
@@ -94,8 +189,8 @@ class BaselineAnswer(NamedTuple):
     seconds: float
 
 
-class Baseline:
-    """One of OpenCV's trackers; a context manager, since it owns a process.
+class Baseline(Worker):
+    """One of OpenCV's trackers.
 
     A new process repeats a run exactly. Started anew in the same process, MIL draws other samples.
 
@@ -107,11 +202,6 @@ class Baseline:
         Interpreter with OpenCV's contrib package; None looks where `baseline_python` says.
     models : mapping of str to Path
         Model files by the names that `MODELS` gives for this baseline.
-
-    Attributes
-    ----------
-    opencv : str
-        Version of OpenCV that runs.
 
     Raises
     ------
@@ -128,10 +218,7 @@ class Baseline:
         words = [f"{key}={path}" for key, path in _checked_models(name, models).items()]
         self.name = name
         self._box: Box | None = None
-        self._worker = WorkerProcess(
-            f"the baseline {name}", baseline_python(python), _WORKER, [name, *words]
-        )
-        self.opencv = str(self._worker.greeting["opencv"])
+        super().__init__(f"the baseline {name}", python, [name, *words])
 
     def start(self, frame: Frame, box: Box) -> BaselineAnswer:
         """Start anew on `box` (rounded to whole px, as these trackers require) of `frame`.
@@ -141,9 +228,8 @@ class Baseline:
         InputError
             If the baseline refuses the box, or has died.
         """
-        self._box = None
         left, top = round(box.x), round(box.y)
-        return self._ask(
+        return self._track(
             frame, box=[left, top, max(round(box.width), 1), max(round(box.height), 1)]
         )
 
@@ -157,27 +243,16 @@ class Baseline:
         """
         if self._box is None:
             raise InputError(f"the baseline {self.name} has no target yet: start it on a box first")
-        return self._ask(frame)
+        return self._track(frame)
 
-    def close(self) -> None:
-        """End the process."""
-        self._worker.close()
-
-    def __enter__(self) -> Baseline:
-        return self
-
-    def __exit__(self, *failure: object) -> None:
-        self.close()
-
-    def _ask(self, frame: Frame, **request: object) -> BaselineAnswer:
+    def _track(self, frame: Frame, **request: object) -> BaselineAnswer:
         width, height = frame_size(frame)
         size = {"height": height, "width": width}
-        answer = self._worker.ask({**size, **request}, np.ascontiguousarray(frame))
+        answer = self._ask({**size, **request}, np.ascontiguousarray(frame))
         found = answer["box"] is not None
-        box = Box(*answer["box"]) if found else self._box
-        assert box is not None  # a start answers with a box
-        self._box = box
-        return BaselineAnswer(box, found, float(answer["seconds"]))
+        self._box = Box(*answer["box"]) if found else self._box
+        assert self._box is not None  # a start answers with a box
+        return BaselineAnswer(self._box, found, float(answer["seconds"]))
 
 
 def unknown_baseline(name: str, known: Iterable[str]) -> InputError:
@@ -222,10 +297,10 @@ def baseline_rows(
         if frame is None:
             yield EstimateRow.without(number, stamp, REJECTED)
         elif started:
-            yield _row(number, stamp, baseline.step(frame))
+            yield baseline_row(baseline.step(frame), number, stamp)
         elif abs(stamp - first_truth.stamp_ns) <= limit:
             started = True
-            yield _row(number, stamp, baseline.start(frame, first_truth.box))
+            yield baseline_row(baseline.start(frame, first_truth.box), number, stamp)
         else:
             yield EstimateRow.without(number, stamp, WAITING)
     if not started:
@@ -235,17 +310,10 @@ def baseline_rows(
         )
 
 
-def _row(number: int, stamp_ns: int, answer: BaselineAnswer) -> EstimateRow:
-    box = answer.box
+def baseline_row(answer: BaselineAnswer, number: int, stamp_ns: int) -> EstimateRow:
+    """Return a baseline's answer as the row of an image."""
+    box, mode = answer.box, "TRACKING" if answer.found else "LOST"
+    step_ms = answer.seconds * 1e3
     return EstimateRow(
-        frame=number,
-        stamp_ns=stamp_ns,
-        x=box.centre[0],
-        y=box.centre[1],
-        width=box.width,
-        height=box.height,
-        mode="TRACKING" if answer.found else "LOST",
-        confidence=None,
-        n_eff=None,
-        step_ms=answer.seconds * 1e3,
+        number, stamp_ns, *box.centre, box.width, box.height, mode, None, None, step_ms
     )

@@ -12,16 +12,43 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Search space of a tuning: parameters and ranges, derived from the parameter table."""
+"""Search space of a tuning, derived from the parameter table, and what it can improve."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant
+
+
+@dataclass(frozen=True, slots=True)
+class Objective:
+    """A metric of `evaluation.metrics` to maximise or minimise."""
+
+    metric: str
+    description: str
+    maximise: bool = True
+
+
+OBJECTIVES: Mapping[str, Objective] = MappingProxyType(
+    {
+        objective.metric: objective
+        for objective in (
+            Objective("success_auc", "area under the success curve"),
+            Objective("precision_auc", "area under the precision curve"),
+            Objective("on_target", "share of visible frames with an error below half the diagonal"),
+            Objective("p_error_lt_15px", "share of frames with an error below 15 px"),
+            Objective("rmse_px", "RMSE in px", maximise=False),
+        )
+    }
+)
+"""Objectives by the name of the metric."""
+
 
 FACTOR = 4.0
 """A positive parameter is searched from its default over this to its default times this."""
@@ -65,6 +92,17 @@ class Dimension:
             return value
         rounded = float(f"{float(value):.{_DIGITS}g}")
         return min(max(rounded, self.low), self.high)
+
+    def distribution(self) -> Any:
+        """Return the distribution that Optuna draws from."""
+        from optuna import distributions  # noqa: PLC0415 - an extra
+
+        if self.choices:
+            return distributions.CategoricalDistribution(self.choices)
+        if self.kind is int:
+            low, high = int(self.low), int(self.high)
+            return distributions.IntDistribution(low, high, log=self.logarithmic)
+        return distributions.FloatDistribution(self.low, self.high, log=self.logarithmic)
 
     def __str__(self) -> str:
         if self.choices:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""TrackEval's scores and baselines of many vehicles, from a process of their own (`worker`)."""
+"""TrackEval's scores and baselines of many vehicles, from a `baseline_worker`."""
 
 from __future__ import annotations
 
@@ -24,12 +24,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.evaluation.baselines.client import baseline_python, unknown_baseline
-from vehicle_pf_tracker.evaluation.baselines.worker_process import WorkerProcess
+from vehicle_pf_tracker.evaluation.baselines import Worker, unknown_baseline
 from vehicle_pf_tracker.evaluation.traffic.identities import scorable
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
-
-_WORKER = Path(__file__).with_name("worker.py")
 
 
 class TrafficBaseline(NamedTuple):
@@ -62,18 +59,13 @@ TRAFFIC_BASELINES: Mapping[str, TrafficBaseline] = MappingProxyType(
 """Trackers of PyPI `trackers` as they come, and with thresholds lowered by hand."""
 
 
-class TrafficWorker:
-    """A process that scores tracks and runs `TRAFFIC_BASELINES`; a context manager.
+class TrafficWorker(Worker):
+    """A process that scores tracks and runs `TRAFFIC_BASELINES`.
 
     Parameters
     ----------
     python : Path or None
         Interpreter that has TrackEval and `trackers`; None looks where `baseline_python` says.
-
-    Attributes
-    ----------
-    versions : dict of str to str
-        Versions of both.
 
     Raises
     ------
@@ -82,8 +74,7 @@ class TrafficWorker:
     """
 
     def __init__(self, python: Path | None = None) -> None:
-        self._worker = WorkerProcess("the traffic baselines", baseline_python(python), _WORKER)
-        self.versions: dict[str, str] = self._worker.greeting
+        super().__init__("the traffic baselines", python, ["traffic"])
 
     def score(self, sequence: TrafficSequence, tracks: Array) -> dict[str, float]:
         """Score tracks (frame, identity, left, top, width, height) against a scene's truth.
@@ -95,7 +86,7 @@ class TrafficWorker:
         """
         truth, rows = scorable(sequence, tracks)
         content = {"truth": truth.tolist(), "tracks": rows.tolist()}
-        answer: dict[str, float] = self._ask("score", sequence, content)
+        answer: dict[str, float] = self._task("score", sequence, content)
         return answer
 
     def track(self, name: str, sequence: TrafficSequence, detections: Array) -> tuple[Array, float]:
@@ -116,19 +107,9 @@ class TrafficWorker:
             "options": {**options, "frame_rate": sequence.frame_rate},
             "detections": detections.tolist(),
         }
-        answer = self._ask("track", sequence, content)
+        answer = self._task("track", sequence, content)
         tracks = np.asarray(answer["tracks"], dtype=np.float64).reshape(-1, 6)
         return tracks, answer["seconds"] / sequence.frame_count
 
-    def close(self) -> None:
-        """End the process."""
-        self._worker.close()
-
-    def __enter__(self) -> TrafficWorker:
-        return self
-
-    def __exit__(self, *failure: object) -> None:
-        self.close()
-
-    def _ask(self, task: str, sequence: TrafficSequence, content: dict[str, Any]) -> Any:
-        return self._worker.ask({task: {"frames": sequence.frame_count, **content}})
+    def _task(self, task: str, sequence: TrafficSequence, content: dict[str, Any]) -> Any:
+        return self._ask({task: {"frames": sequence.frame_count, **content}})
