@@ -30,12 +30,11 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
-from vehicle_pf_tracker.trackers.continuity import StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Estimate
-from vehicle_pf_tracker.trackers.failures import TrackerError
+from vehicle_pf_tracker.trackers.image_stream import StrayImageError
 from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS, Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
-from vehicle_pf_tracker.trackers.session import Session
+from vehicle_pf_tracker.trackers.session import Session, TrackerError
 
 
 class OfflineTracker:

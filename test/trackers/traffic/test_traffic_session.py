@@ -19,7 +19,7 @@ import pytest
 from traffic_samples import vehicle
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.continuity import StrayImageError
+from vehicle_pf_tracker.trackers.image_stream import StrayImageError
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
