@@ -164,7 +164,7 @@ VARIANTS: Mapping[str, Variant] = MappingProxyType({entry.name: entry for entry 
 
 TRAFFIC = Variant(
     "traffic",
-    "traffic.variant:Traffic",
+    "traffic.tracker:Traffic",
     "every vehicle in view, with identities (this package)",
     "many vehicles at once, counts at lines and in zones",
 )

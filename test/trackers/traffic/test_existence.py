@@ -17,7 +17,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
+from vehicle_pf_tracker.trackers.traffic.detections import DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.track import Track

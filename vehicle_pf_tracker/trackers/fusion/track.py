@@ -102,7 +102,7 @@ class Track(ParticleTracker[FusionParameters]):
     _particles: Hypotheses
 
     def start(self, frame: Frame, box: Box) -> Estimate:
-        """Learn the target; see `Tracker.start`."""
+        """Learn the target; see `BaseTracker.start`."""
         self._size = np.array([box.width, box.height], float)
         self._position = np.array(box.centre, float)
         self._velocity = np.zeros(2)
@@ -123,7 +123,7 @@ class Track(ParticleTracker[FusionParameters]):
         return estimate
 
     def reconfigure(self, parameters: FusionParameters) -> None:
-        """Take new parameters; see `Tracker.reconfigure`."""
+        """Take new parameters; see `BaseTracker.reconfigure`."""
         recoloured = parameters.filter.colour != self.parameters.filter.colour
         super().reconfigure(parameters)
         if self._target is not None:

@@ -79,13 +79,13 @@ class FusionTracker(Track):
     """The flagship."""
 
     def start(self, frame: Frame, box: Box) -> Estimate:
-        """Learn the target; see `Tracker.start`."""
+        """Learn the target; see `BaseTracker.start`."""
         self._set_off = False
         self._frozen: FrozenTrack | None = None
         return super().start(frame, box)
 
     def reconfigure(self, parameters: FusionParameters) -> None:
-        """Take new parameters; see `Tracker.reconfigure`."""
+        """Take new parameters; see `BaseTracker.reconfigure`."""
         before = self._appearance if self._target is not None else None
         super().reconfigure(parameters)
         if before is not None and self._appearance is not before:

@@ -36,6 +36,7 @@ from vehicle_pf_tracker.trackers.papers.conventional import (
     WeighedParticles,
     common_print,
 )
+from vehicle_pf_tracker.trackers.parameters import share
 
 OCCLUSION_TESTS = ("n_eff", "similarity")
 
@@ -51,20 +52,16 @@ class OcclusionTestParameters:
         choices=OCCLUSION_TESTS,
         source="P3 Table II step 15, interpretation 22",
     )
-    n_eff: float = parameter(
+    n_eff: float = share(
         0.3,
         "Higher: more peaked weights count as occlusion.",
-        minimum=0.0,
-        maximum=1.0,
         unit="share of the particles",
         source="P3 T_thres, interpretation 22",
         tuned=True,
     )
-    similarity: float = parameter(
+    similarity: float = share(
         0.7,
         "Higher: smaller losses of the best particle's similarity count as occlusion.",
-        minimum=0.0,
-        maximum=1.0,
         unit="share of the clear level",
         source="interpretation 22",
     )

@@ -26,6 +26,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.running_level import RunningLevel
 from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.trackers.parameters import share
 
 RELATIVE = "extension: the relative rule (interpretation 27)"
 """Source of the parameters that the extension has and the paper has not."""
@@ -55,20 +56,16 @@ class ClearLevelParameters:
         unit="mean deviations below the level",
         source=RELATIVE,
     )
-    certain: float = parameter(
+    certain: float = share(
         0.65,
         "Higher: smaller falls are occlusions however much the similarity varies; 0: never.",
-        minimum=0.0,
-        maximum=1.0,
         unit="of the level",
         source=RELATIVE,
         tuned=True,
     )
-    rate: float = parameter(
+    rate: float = share(
         0.05,
         "Higher: level and deviation follow the similarity faster.",
-        minimum=0.0,
-        maximum=1.0,
         unit="per frame",
         source=RELATIVE,
     )

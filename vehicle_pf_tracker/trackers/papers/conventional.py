@@ -45,6 +45,7 @@ from vehicle_pf_tracker.trackers.papers.likelihood import (
     log_likelihood,
 )
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.parameters import share
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,12 +71,10 @@ class RepeatedResamplingParameters(ColourParameters):
         source="P3 Table I step 16, interpretation 23",
         tuned=True,
     )
-    criterion: float = parameter(
+    criterion: float = share(
         0.7,
         "Higher: more passes a frame until the effective sample size is reached; 1, as printed, "
         "never is.",
-        minimum=0.0,
-        maximum=1.0,
         unit="share of the particles",
         source="P3 Table I step 13, interpretation 21",
         tuned=True,

@@ -41,6 +41,7 @@ from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.parameters import particles_parameter
 
 MOST_PIXELS = 100_000
 """Of a window: 25 particles of `hpfms` with three shifts each take 30 ms for so many. Vehicles of
@@ -104,11 +105,9 @@ class TransitionParameters:
 class HpfmsParameters(ColourParameters):
     """Parameters of `hpfms`."""
 
-    num_particles: int = parameter(
+    num_particles: int = particles_parameter(
         25,
         "More: steadier estimates, at more time per frame; mean shift makes few enough.",
-        minimum=1,
-        maximum=100_000,
         source="Maggio 2005 section 4",
     )
     iterations: int = parameter(

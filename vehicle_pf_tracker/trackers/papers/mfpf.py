@@ -106,7 +106,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         """Effective parameters."""
 
     def reconfigure(self, parameters: FilterParametersT) -> None:
-        """Take new parameters; see `Tracker.reconfigure`."""
+        """Take new parameters; see `BaseTracker.reconfigure`."""
         if parameters.num_particles != self.parameters.num_particles:
             self._ancestors = None  # the particles themselves are drawn again
         super().reconfigure(parameters)

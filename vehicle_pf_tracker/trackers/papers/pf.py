@@ -41,7 +41,6 @@ from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.papers.likelihood import (
     LikelihoodParameters,
     histogram_bits_parameter,
@@ -49,6 +48,7 @@ from vehicle_pf_tracker.trackers.papers.likelihood import (
     resampling_parameter,
 )
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.parameters import ParticleParameters
 
 VELOCITY_WINDOW = 8
 """Displacements in the reported velocity where the filter itself does not use it: steadier than the

@@ -34,6 +34,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     TrafficNumbers,
     areas,
     intersections,
+    overlaps,
 )
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
@@ -118,9 +119,8 @@ class BlobReader:
         found: list[Piece] = []
         pieces: dict[int, list[Piece]] = {}
         for part, box in _components(mask):
-            common = intersections(box, predicted)
-            members = np.flatnonzero(common > _COVERED * areas(predicted))
-            if self._is_divided(box, common, predicted, members):
+            members = np.flatnonzero(intersections(box, predicted) > _COVERED * areas(predicted))
+            if self._is_divided(box, predicted, members):
                 found += _divided(part, box, predicted[members])
                 continue
             for piece in self._apart(part, box):
@@ -178,14 +178,9 @@ class BlobReader:
         fullness = np.log(piece.area / areas(piece.edges)) - self._fullness
         return float(aspect + (fullness / _FULLNESS_SPREAD) ** 2)
 
-    def _is_divided(
-        self, box: Array, common: Array, predicted: Array, members: npt.NDArray[np.intp]
-    ) -> bool:
+    def _is_divided(self, box: Array, predicted: Array, members: npt.NDArray[np.intp]) -> bool:
         """Test for several vehicles in a blob: none fits alone, and the aspects suggest it."""
-        if len(members) < 2:
-            return False
-        union = areas(box) + areas(predicted) - common
-        if (common / union).max() > _ALONE:
+        if len(members) < 2 or overlaps(box, predicted).max() > _ALONE:
             return False
         apart = self._aspect_cost(predicted[members]).mean()
         return bool(apart < self._aspect_cost(box[np.newaxis])[0] + _SPLIT_MARGIN)

@@ -18,20 +18,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence, Sample
 from vehicle_pf_tracker.trackers.traffic.detections import (
     SHIPPED,
+    DetectionEvidence,
+    Sample,
     TrafficNumbers,
     areas,
     inside_image,
     intersections,
-    unions,
+    overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track
+from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track, edges_of
 
 _LEAST, _MOST = -0.6, 2.0
 """Bounds of the log odds that one detection adds: a few good scores are no proof, and a detector
@@ -141,7 +140,7 @@ class Existence:
         detected = [one for one in tracks if one.confirmed and one.undetected == 0]
         if not detected and _in_sight(tracks) >= _BLIND_FROM:
             return
-        boxes = np.array([track.state.edges for track in detected]).reshape(-1, 4)
+        boxes = edges_of(detected)
         for track in tracks:
             if track.undetected == 0 or (track.given and track.unseen <= _ONE_PERIOD):
                 continue
@@ -211,7 +210,7 @@ def _is_double(track: Track, detected: Array) -> bool:
     if not len(detected):
         return False
     edges = track.state.edges
-    if unions(edges, detected).max() > _SAME:
+    if overlaps(edges, detected).max() > _SAME:
         return True
     share = intersections(edges, detected).max() / areas(edges)
     return track.matches < _YOUNG and float(share) > _PART

@@ -23,13 +23,11 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.association import INWARD
+from vehicle_pf_tracker.trackers.traffic.association import INWARD, deviations
 from vehicle_pf_tracker.trackers.traffic.detections import areas, intersections
 from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
-_PIXEL_NOISE = 0.7
-"""Standard deviation of an edge in px however small the box: a detector's grid."""
 _BORDER = 1.0
 """Distance in px from the border of the image from which on an edge counts as cut."""
 _PUSHED = 1.0
@@ -67,20 +65,6 @@ _CROWDED = 3
 NO_OTHERS = np.empty((0, 4))
 """Edges of other detections where there are none."""
 _OPPOSITE = (Edge.RIGHT, Edge.BOTTOM, Edge.LEFT, Edge.TOP)
-
-
-def deviations(edges: Array, noise: float) -> Array:
-    """Estimate the standard deviations (..., 4) of measured edges in px.
-
-    Parameters
-    ----------
-    edges : (..., 4) array
-        Boxes in px.
-    noise : float
-        Of the size.
-    """
-    size = edges[..., 2:] - edges[..., :2]
-    return np.asarray(np.hypot(np.concatenate([size, size], axis=-1) * noise, _PIXEL_NOISE))
 
 
 def first_state(

@@ -12,19 +12,36 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Contract of all variants: a frame goes in, an estimate comes out."""
+"""Parameters that variants have in common."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
-from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.kernels.choice import CHOICES, load_kernels
-from vehicle_pf_tracker.parameters.table import group, parameter
-from vehicle_pf_tracker.trackers.estimate import Estimate
-from vehicle_pf_tracker.trackers.evidence import EvidenceParameters
+from vehicle_pf_tracker.parameters.table import Effect, group, parameter
+
+
+def share(
+    default: float,
+    doc: str,
+    *,
+    unit: str = "",
+    source: str = "",
+    effect: Effect = "keeps",
+    tuned: bool | tuple[float, float] = False,
+) -> Any:
+    """Make a parameter from 0 to 1."""
+    return parameter(
+        default, doc, minimum=0.0, maximum=1.0, unit=unit, source=source, effect=effect, tuned=tuned
+    )
+
+
+def particles_parameter(default: int, doc: str, *, source: str = "") -> Any:
+    """Make the number of particles."""
+    return parameter(default, doc, minimum=1, maximum=100_000, source=source)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +64,39 @@ class WindowParameters:
         unit="px",
         effect="relearns",
     )
+
+
+@dataclass(frozen=True, slots=True)
+class EvidenceParameters:
+    """Thresholds of the evidence, relative to its clear level."""
+
+    occluded_below: float = share(
+        0.7,
+        "Lower: deeper occlusions are needed before the mode leaves TRACKING.",
+        unit="share of the clear level",
+    )
+    clear_above: float = share(
+        0.8,
+        "Higher: more of the vehicle must be visible again before the mode returns to TRACKING.",
+        unit="share of the clear level",
+    )
+    minimum: float = share(
+        0.3,
+        "Similarity below which there is no evidence, whatever the clear level is.",
+    )
+    level_rate: float = share(
+        0.05,
+        "Higher: the clear level follows the similarity faster.",
+        unit="per frame",
+    )
+
+    def validate(self) -> None:
+        """Check that the two thresholds are in order."""
+        if self.occluded_below > self.clear_above:
+            raise InputError(
+                f"evidence.occluded_below ({self.occluded_below:g}) must not be above "
+                f"evidence.clear_above ({self.clear_above:g})"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,39 +145,7 @@ class CommonParameters:
 class ParticleParameters(CommonParameters):
     """Parameters of every particle filter."""
 
-    num_particles: int = parameter(
+    num_particles: int = particles_parameter(
         200,
         "More: steadier estimates, at more time per frame.",
-        minimum=1,
-        maximum=100_000,
     )
-
-
-class Tracker(Protocol):
-    """Tracker of one target through a stream of frames."""
-
-    @property
-    def seed(self) -> int:
-        """Seed in use, also where the parameter asks for a drawn one."""
-        ...
-
-    frame_period: float
-    """Nominal time between frames in s; the reader of the stamps keeps it up to date."""
-
-    def start(self, frame: Frame, box: Box) -> Estimate:
-        """Learn the target `box` in `frame`, with the random numbers restarted.
-
-        Raises
-        ------
-        InputError
-            If the box cannot be a target in this frame.
-        """
-        ...
-
-    def step(self, frame: Frame, elapsed: float = 1.0) -> Estimate:
-        """Find the target in the next frame, `elapsed` nominal frame periods later."""
-        ...
-
-    def reconfigure(self, parameters: Any) -> None:
-        """Take new parameters between two frames; the track goes on."""
-        ...
