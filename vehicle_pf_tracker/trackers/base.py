@@ -42,6 +42,7 @@ from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode, read_onl
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 from vehicle_pf_tracker.trackers.parameters import (
     CommonParameters,
+    ParametersT,
     ParticleParameters,
     WindowParameters,
 )
@@ -85,7 +86,6 @@ class Target:
         return joint_histogram(self.patch, self.centre, window, bits)
 
 
-ParametersT = TypeVar("ParametersT", bound=CommonParameters)
 ParticleParametersT = TypeVar("ParticleParametersT", bound=ParticleParameters)
 
 
@@ -179,6 +179,11 @@ class BaseTracker(ABC, Generic[ParametersT]):
     def seed(self) -> int:
         """Seed in use."""
         return self._seed
+
+    @property
+    def _settings(self) -> ParametersT:
+        """Effective parameters."""
+        return self.parameters.effective()
 
     @property
     def target(self) -> Target:

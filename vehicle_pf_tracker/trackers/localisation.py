@@ -12,11 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Uncertainty and road position of a track, beside its tracker.
+"""Uncertainty, road position and speed of a track, beside its tracker.
 
 Nothing here goes back into the tracker: estimates are the same with and without it.
-
-Position and speed on the road, from a tracker's estimates.
 """
 
 from __future__ import annotations
@@ -70,14 +68,8 @@ class RoadEstimate:
 
     def scalars(self) -> Mapping[str, float]:
         """Return every scalar by the name that `~/mode` and the tables use."""
-        return {
-            "road_x": float(self.position[0]),
-            "road_y": float(self.position[1]),
-            "road_velocity_x": float(self.velocity[0]),
-            "road_velocity_y": float(self.velocity[1]),
-            "speed_kmh": self.speed,
-            "speed_sd_kmh": self.speed_deviation,
-        }
+        values = *self.position, *self.velocity, self.speed, self.speed_deviation
+        return dict(zip(ROAD_COLUMNS, map(float, values), strict=True))
 
 
 ROAD_COLUMNS = (
@@ -209,7 +201,7 @@ class RoadFollower:
 
 
 class Localisation:
-    """Covariance of a track's positions and, where a road is set, its place and speed on it.
+    """Covariance of a track's positions and, where a road is set, its position and speed on it.
 
     Parameters
     ----------
@@ -223,9 +215,9 @@ class Localisation:
     has_road : bool
         True where a mapping to the road is asked for.
     road : RoadEstimate or None
-        Last place on the road; None where there is none, for the reason `objection`.
+        Last position on the road; None where there is none, for the reason `objection`.
     objection : str
-        Reason why there is no place on the road; empty where there is one, or no road is set.
+        Reason why there is no position on the road; empty where there is one, or no road is set.
     """
 
     def __init__(self, variant: str, parameters: RoadParameters) -> None:

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.kernels.choice import CHOICES, load_kernels
@@ -99,6 +99,9 @@ class EvidenceParameters:
             )
 
 
+ParametersT = TypeVar("ParametersT", bound="CommonParameters")
+
+
 @dataclass(frozen=True, slots=True)
 class CommonParameters:
     """Parameters of every variant."""
@@ -133,6 +136,10 @@ class CommonParameters:
     )
     window: WindowParameters = group(WindowParameters)
     evidence: EvidenceParameters = group(EvidenceParameters)
+
+    def effective(self: ParametersT) -> ParametersT:
+        """Return the effective parameters, where some override others."""
+        return self
 
     def validate(self) -> None:
         """Check parameters against each other, and that the kernels are available."""

@@ -22,8 +22,9 @@ from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.base import Cloud
-from vehicle_pf_tracker.trackers.papers.adaptive import AdaptiveParameters, AdaptiveTracker
-from vehicle_pf_tracker.trackers.papers.conventional import (
+from vehicle_pf_tracker.trackers.papers.repeated_resampling import (
+    AdaptiveParameters,
+    AdaptiveTracker,
     ConventionalParameters,
     ConventionalTracker,
     WeighedParticles,

@@ -240,12 +240,12 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         super().reconfigure(parameters)
 
     def _learn(self) -> None:
-        bits = self.parameters.effective().histogram_bits
+        bits = self._settings.histogram_bits
         self._first = self.target.joint_histogram(self.window, bits)
         self.reference = Reference(self._first)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
-        settings = self.parameters.effective()
+        settings = self._settings
         self._pi = self._pi_up = 1.0  # step 2
         self._levels = ClearLevel(), ClearLevel()
         self._velocity = MeanVelocity(settings.velocity.window, settings.drift_delay)
@@ -254,7 +254,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         return np.asarray(centre) + moves  # step 1
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        settings = self.parameters.effective()
+        settings = self._settings
         bits, window = settings.histogram_bits, self.window
         regular = self._is_clear(settings)  # step 4
         if regular:

@@ -86,11 +86,6 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
         self._position = (0.0, 0.0)
 
-    @property
-    def _settings(self) -> ColourParametersT:
-        """Effective parameters."""
-        return self.parameters
-
     def _learn(self) -> None:
         histogram = self.target.joint_histogram(self.window, self._settings.histogram_bits)
         self._reference = Reference(histogram)
