@@ -16,9 +16,8 @@
 
 import numpy as np
 import pytest
-from street import Street, error, follow
+from street import Street, follow
 
-from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.base import Cloud
@@ -172,14 +171,6 @@ def test_interpretation_22_a_hidden_vehicle_leaves_weights_flat_so_that_nothing_
     assert {e.resampling_passes for e in estimates[16:]} == {0}
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
-@both
-def test_every_scheme_follows(make, scheme):
-    street, times = Street(), range(20)
-    estimates = follow(make(resampling=scheme), street, times)
-    assert error(estimates[-1], street, 19) < 8
-
-
 def test_interpretation_23_copies_are_jittered_by_a_share_of_sigma():
     tracker, street = conventional(sigma=10.0, jitter=0.3, num_particles=4000), Street()
     tracker.start(street.frame(0), street.box(0))
@@ -199,12 +190,3 @@ def test_the_plain_mean_as_printed():
     )
     weighted = follow(adaptive(), Street(), range(5))[-1]
     assert weighted.position == pytest.approx(tuple(weighted.weights @ weighted.particles))
-
-
-def test_as_printed_overrides_every_interpretation():
-    settings = ConventionalParameters(as_printed=True).effective()
-    assert (settings.criterion, settings.weighted_mean) == (1.0, False)
-    values = {"as_printed": True, "occlusion.test": "similarity", "sigma": 9.0}
-    chosen = from_mapping(AdaptiveParameters, values).effective()
-    assert (chosen.criterion, chosen.weighted_mean) == (1.0, False)
-    assert (chosen.occlusion.test, chosen.sigma) == ("n_eff", 9.0)
