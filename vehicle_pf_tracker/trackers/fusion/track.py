@@ -47,7 +47,7 @@ _TURNING_SHARE, _TURNING_RESPONSE = 0.85, 0.7
 """Share of the surface that still moves with a vehicle that turns, and response below which it
 does: it is learnt the faster then the lower the response, as what it looked like is out of date."""
 _LEAST_PLIANT = 0.2
-"""Response from which on learning becomes no faster: five times the usual speed."""
+"""Response below which learning becomes no faster: five times the usual speed."""
 _CALM_RESPONSE, _CALM_SHARE = 0.9, 0.9
 """Response, and share of the surface, above which a frame is calm: the size is followed in one,
 flow judged and appearance learnt in the next. That saves a quarter of the time and, over 633 runs,

@@ -344,7 +344,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
             running.judge(similarity, level)
         if all(running.clear for running in self._levels):
             for running, similarity in zip(self._levels, similarities, strict=True):
-                running.follow(similarity, level)
+                running.add(similarity, level.rate)
 
     def _follow(
         self,

@@ -71,31 +71,17 @@ class ClearLevelParameters:
     )
 
 
-class ClearLevel:
+class ClearLevel(RunningLevel):
     """Level of one similarity in clear frames; `clear` is true while the similarity is at it."""
 
     def __init__(self) -> None:
+        super().__init__()
         self.clear = True
-        self._level = RunningLevel()
-
-    @property
-    def value(self) -> float:
-        """Level of the similarity in clear frames, 0 to 1."""
-        return self._level.value
-
-    @property
-    def deviation(self) -> float:
-        """Mean absolute deviation from the level in clear frames."""
-        return self._level.deviation
 
     def judge(self, similarity: float, parameters: ClearLevelParameters) -> None:
         """Compare `similarity` with the level, which sets `clear`; the level stays."""
-        if self._level.count > 0:
+        if self.count > 0:
             multiple = parameters.enter if self.clear else parameters.leave
             least = self.value - multiple * max(self.deviation, _LEAST_DEVIATION)
             # An occlusion in the first frames meets a deviation that is still wide.
             self.clear = similarity >= max(least, parameters.certain * self.value)
-
-    def follow(self, similarity: float, parameters: ClearLevelParameters) -> None:
-        """Let the level follow the similarity of a clear frame."""
-        self._level.add(similarity, parameters.rate)

@@ -16,11 +16,8 @@
 
 Few particles are spread according to the vehicle's speed and the confidence in the last frame. Each
 then climbs a few mean-shift steps to a maximum near it, so that few are enough. It has no
-occlusion branch.
-
-Every k-th pixel of large windows, so that a step takes as long for a near vehicle as for others.
-
-Where k is 1, nothing is changed by a single bit.
+occlusion branch. Of large windows every k-th pixel is measured, so that a step takes as long for a
+near vehicle as for others.
 """
 
 from __future__ import annotations
@@ -44,7 +41,7 @@ from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracke
 from vehicle_pf_tracker.trackers.parameters import particles_parameter
 
 MOST_PIXELS = 100_000
-"""Of a window: 25 particles of `hpfms` with three shifts each take 30 ms for so many. Vehicles of
+"""Most pixels of a window: 25 particles with three shifts each take 30 ms for so many. Vehicles of
 316 px squared and less are not reduced, which are all but the nearest in 1080p."""
 
 

@@ -18,8 +18,6 @@ Resample, propagate with a Normal density, weight by the distance to the first h
 mean. It has no occlusion branch. P1 propagates it as its own filter; Perez et al. have second-order
 dynamics, which are an option.
 
-Common steps of the colour particle filters: first reference, Normal diffusion, mean.
-
 `pf`, `sapf`, `hpfms` and `pfcl` (the particle filters that P1 compares itself with) differ in how
 they bring particles to the vehicle. All compare windows with the histogram of the first frame, and
 none has an occlusion branch.

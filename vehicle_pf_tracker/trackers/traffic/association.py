@@ -148,9 +148,9 @@ class FrameDetections:
     samples : list of Sample
         For learning what becomes of them.
     log_odds : (N,) array
-        That each is a vehicle.
+        Log odds that each is a vehicle.
     free : list of int
-        Those that no track has taken.
+        Indices of those that no track has taken.
     """
 
     def __init__(
@@ -200,7 +200,7 @@ def pair_costs(
 
 
 _MISSED_FOR = 5.0
-"""Nominal periods without a detection from which on a vehicle may be hidden."""
+"""Nominal periods without a detection after which a vehicle may be hidden."""
 _IN_SIGHT = 0.5
 """Share of its prediction that is in sight, below which it is where it is thought to be, behind
 another one: what appears near by is not it. Without this a car that comes out behind a lorry is

@@ -46,11 +46,11 @@ _LEAST_PIECE = 4
 _TRIMMED = 0.15
 """Rows and columns at the rim with less of the fullest one are cut off: reflections, shadows."""
 _COVERED = 0.5
-"""Share of a predicted vehicle in a blob from which on it may be a part of the blob."""
+"""Share of a predicted vehicle in a blob above which it may be a part of the blob."""
 _ALONE = 0.65
-"""Intersection over union with one prediction from which on a blob is that vehicle alone."""
+"""Intersection over union with one prediction above which a blob is that vehicle alone."""
 _PIECE = 0.8
-"""Share of a blob inside a prediction from which on it is a piece of that vehicle."""
+"""Share of a blob inside a prediction above which it is a piece of that vehicle."""
 _REACH = 1.25
 """Distance from a prediction's centre, of its half size, within which a pixel can be its own."""
 _ASPECT, _ASPECT_SPREAD = np.log(0.8), 0.3
@@ -62,11 +62,11 @@ _ASPECT_SIDE = 10
 _SPLIT_MARGIN = 1.0
 """Advantage of taking a blob for the several vehicles that are followed there."""
 _NOTABLE = 0.1
-"""Share of the largest piece from which on another one is part of the vehicle, and no noise."""
+"""Share of the largest piece above which another one is part of the vehicle, and no noise."""
 _OWN = 0.15
-"""Share of a blob from which on a part of it can be a vehicle."""
+"""Share of a blob above which a part of it can be a vehicle."""
 _SHAPED = 100
-"""Area in px from which on a blob has a shape."""
+"""Least area in px of a blob that has a shape."""
 _FULLNESS, _FULLNESS_SPREAD = np.log(0.8), 0.2
 """Usual logarithm of a vehicle's share of its box, to start from, and its standard deviation."""
 _NECK = 0.6

@@ -147,7 +147,7 @@ _REFRESHED_EVERY = 20
 _GRID = 16
 """Places along each side of the image."""
 _OLD = 200.0
-"""Outcomes at a place from which on they are halved: light and wind change."""
+"""Outcomes at a place above which they are halved: light and wind change."""
 _LARGEST_LOG_ODDS = 6.0
 
 
@@ -230,7 +230,7 @@ class TrafficNumbers:
     agreement : float
         Log odds that a detection adds by being where a track predicts it.
     proven_by_scores : float
-        Sum of the log odds of scores from which on no drive is asked for.
+        Sum of the log odds of scores above which no drive is asked for.
     missed_held, missed_hidden : float
         Log odds that a detection missed in plain sight takes off a vehicle that its pixels hold,
         and off one that may be hidden by something unknown.
@@ -239,18 +239,18 @@ class TrafficNumbers:
     missing : float
         Cost of all of the vehicle that the detection lacks.
     held_fall : float
-        Fall of the colours' similarity below its usual value from which on pixels do not hold it.
+        Fall of the colours' similarity below its usual value above which pixels do not hold it.
     held_caution : float
         Factor on the deviations of pixels: errors of successive frames go the same way and add up.
     colour_threshold : float
-        Sum of the differences of the three channels from which on a pixel has changed.
+        Least sum of the differences of the three channels of a pixel that has changed.
     patience : float
         Images for which what has changed is not learnt as background: four seconds, in which a slow
         lorry passes.
     shadow : float
         Least brightness of a shadow, of the background's.
     apart : float
-        Advantage in shape from which on a blob is taken for several vehicles.
+        Advantage in shape above which a blob is taken for several vehicles.
     """
 
     agreement: float = 1.2

@@ -52,13 +52,13 @@ _ONE_PERIOD = 1.5
 _DOUBLE = 0.3
 """Log odds that a track without a detection loses while it is one box with a detected one."""
 _SAME = 0.5
-"""Intersection over union from which on two boxes are one."""
+"""Intersection over union above which two boxes are one."""
 _PART = 0.7
-"""Share of a young track inside a detected one from which on it is taken for a part of it."""
+"""A young track covered by a detected one by more than this fraction is taken for a part of it."""
 _YOUNG = 30
-"""Detections from which on a track has shown that it is a vehicle of its own."""
+"""Detections by which a track has shown that it is a vehicle of its own."""
 _BLIND_FROM = 2
-"""Vehicles in sight, all missed in one image, from which on it is the detector that has failed:
+"""Least vehicles in sight, all missed in one image, for the detector to have failed:
 they did not all vanish at once."""
 _BLIND_FOR = 150.0
 """Nominal periods after which a vehicle that no detector sees is doubted even so: 5 s at 30 Hz."""

@@ -81,7 +81,7 @@ class TrafficSession(StreamSession[TrafficTracker]):
     Attributes
     ----------
     estimates : tuple of TrackEstimate
-        Those of the last image.
+        Estimates of the last image.
     detector : Detector or None
         The detector in use.
     events, recovered

@@ -45,7 +45,7 @@ BINS = 64
 _INNER = 0.1
 """Margin on each side, of the size, that is left out: background."""
 _WIDE = 48
-"""Width in px from which on every other row and column is enough."""
+"""Width in px above which every other row and column is enough."""
 
 
 class ColourBins:
@@ -144,11 +144,11 @@ class Track:
     before : (4,) array
         Edges in the frame before, px.
     samples : list of Sample
-        Its detections before it was confirmed.
+        Detections before the vehicle was confirmed.
     usual_similarity : float
         Similarity of its colours to those learnt, while it is detected.
     growth : Growth
-        How its size depends on its place.
+        Regression of the width on the lower edge.
     """
 
     identity: int
@@ -260,7 +260,7 @@ class Track:
 _OCCLUDER_SEEN = 3.0
 """Nominal periods since it was seen, up to which a vehicle can hide others."""
 _NAMED_SHARE = 0.3
-"""Share of a vehicle that another hides from which on it is named as its occluder."""
+"""Share of a vehicle above which the one that hides it is named as its occluder."""
 
 
 def edges_of(tracks: Sequence[Track]) -> Array:
