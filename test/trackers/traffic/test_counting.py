@@ -157,18 +157,6 @@ def test_time_that_goes_back_begins_all_paths_anew():
     assert counter.update([vehicle(1, 100, 120)], LATE - PERIOD_NS) == ()
 
 
-def test_many_vehicles_at_once_are_counted_apart():
-    counter = line_counter()
-    found = []
-    for index in range(60):
-        bottoms = {identity: 40 + 2 * index - 3 * identity for identity in range(1, 15)}
-        found += counter.update(
-            [vehicle(identity, 20 * identity, bottom) for identity, bottom in bottoms.items()],
-            LATE + index * PERIOD_NS,
-        )
-    assert sorted(c.identity for c in found) == list(range(1, 15))
-
-
 def test_memory_does_not_grow_with_vehicles_that_are_gone():
     counter = line_counter()
     for identity in range(1, 3001):  # one a second

@@ -75,8 +75,8 @@ _NEW_VELOCITY = 3.0
 """Spread of the first velocities in units of the change per frame: none is known yet."""
 
 
-class Found(NamedTuple):
-    """Where the vehicle was found in the present frame.
+class Observation(NamedTuple):
+    """Vehicle as it was found in the present frame.
 
     Attributes
     ----------
@@ -193,7 +193,7 @@ class Track(ParticleTracker[FusionParameters]):
 
     # A sighting
 
-    def _take_sighting(self, frame: Frame, seen: Found, elapsed: float) -> None:
+    def _take_sighting(self, frame: Frame, seen: Observation, elapsed: float) -> None:
         """Follow position, velocity and, of a vehicle seen whole, size to the peak, and learn."""
         self._judge_wholeness(frame, elapsed, again=seen.again)
         self._gather(frame, seen.position, elapsed, again=seen.again)
