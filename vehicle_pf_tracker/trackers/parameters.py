@@ -44,25 +44,32 @@ def particles_parameter(default: int, doc: str, *, source: str = "") -> Any:
     return parameter(default, doc, minimum=1, maximum=100_000, source=source)
 
 
+def frame_rate_parameter() -> Any:
+    """Make the nominal rate of the images."""
+    return parameter(
+        0.0,
+        "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
+        "intervals.",
+        minimum=0.0,
+        maximum=1000.0,
+        unit="1/s",
+    )
+
+
+def side_parameter(doc: str) -> Any:
+    """Make a side of the window, in px."""
+    return parameter(0.0, doc, minimum=0.0, maximum=4096.0, unit="px", effect="relearns")
+
+
 @dataclass(frozen=True, slots=True)
 class WindowParameters:
     """Size of the window that features are taken from."""
 
-    width: float = parameter(
-        0.0,
-        "Wider: more of the surroundings count as the target; 0 takes the target box's width.",
-        minimum=0.0,
-        maximum=4096.0,
-        unit="px",
-        effect="relearns",
+    width: float = side_parameter(
+        "Wider: more of the surroundings count as the target; 0 takes the target box's width."
     )
-    height: float = parameter(
-        0.0,
-        "Higher: more of the surroundings count as the target; 0 takes the target box's height.",
-        minimum=0.0,
-        maximum=4096.0,
-        unit="px",
-        effect="relearns",
+    height: float = side_parameter(
+        "Higher: more of the surroundings count as the target; 0 takes the target box's height."
     )
 
 
@@ -113,14 +120,7 @@ class CommonParameters:
         maximum=2**31 - 1,
         effect="restarts",
     )
-    frame_rate: float = parameter(
-        0.0,
-        "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
-        "intervals.",
-        minimum=0.0,
-        maximum=1000.0,
-        unit="1/s",
-    )
+    frame_rate: float = frame_rate_parameter()
     lost_after: float = parameter(
         5.0,
         "Longer: the mode stays OCCLUDED longer before it becomes LOST.",

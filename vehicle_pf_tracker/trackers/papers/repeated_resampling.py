@@ -117,15 +117,12 @@ class WeighedParticles:
 
     Attributes
     ----------
-    positions : (N, 2) array
-        Positions in px.
     coefficients : (N,) array
         Bhattacharyya coefficients with the reference.
     cloud : Cloud
-        The positions with their normalised weights.
+        Positions in px with their normalised weights.
     """
 
-    positions: Array
     coefficients: Array
     cloud: Cloud
 
@@ -164,10 +161,10 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
     def weigh(self, positions: Array, coefficients: Array) -> WeighedParticles:
         """Weigh particles by their Bhattacharyya coefficients, (N,)."""
         weights = from_log(log_likelihood(coefficients, self._settings.likelihood))
-        return WeighedParticles(positions, coefficients, Cloud(positions, *weights))
+        return WeighedParticles(coefficients, Cloud(positions, *weights))
 
     def _is_degenerate(self, particles: WeighedParticles) -> bool:
-        limit = self._settings.criterion * len(particles.positions)
+        limit = self._settings.criterion * len(particles.cloud.positions)
         return effective_sample_size(particles.cloud.weights) < limit
 
     def _scattered(self, frame: Frame, parents: Array, spread: float) -> Array:
@@ -266,7 +263,7 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
     ) -> tuple[WeighedParticles, int, str]:
         """Replace particles once; see `RepeatedResampling.resample_once`."""
         settings = self._settings
-        weights, count = particles.cloud.weights, len(particles.positions)
+        weights, count = particles.cloud.weights, len(particles.cloud.positions)
         occluded = self._is_occluded(particles)  # step 15
         if occluded:
             kept = np.arange(count) == weights.argmax()  # step 16
@@ -280,7 +277,7 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
     def _is_occluded(self, particles: WeighedParticles) -> bool:
         test = self._settings.occlusion
         if test.test == "n_eff":
-            limit = test.n_eff * len(particles.positions)
+            limit = test.n_eff * len(particles.cloud.positions)
             return effective_sample_size(particles.cloud.weights) < limit
         best = 1.0 - hellinger_distance(particles.coefficients.max())
         return bool(best < test.similarity * self._judge.level)
@@ -298,8 +295,8 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
             return particles
         scheme = SCHEMES[self._settings.resampling]
         ancestors = scheme(np.where(kept, particles.cloud.weights, 0.0), missing, self._rng)
-        copies = self._scattered(frame, particles.positions[ancestors], spread)
-        positions, coefficients = particles.positions.copy(), particles.coefficients.copy()
+        copies = self._scattered(frame, particles.cloud.positions[ancestors], spread)
+        positions, coefficients = particles.cloud.positions.copy(), particles.coefficients.copy()
         positions[~kept] = copies
         coefficients[~kept] = self.similarity(frame, copies)
         return self.weigh(positions, coefficients)

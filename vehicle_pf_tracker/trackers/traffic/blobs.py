@@ -147,7 +147,7 @@ class BlobReader:
         rows, columns = np.nonzero(part)
         points = np.column_stack([columns, rows]) + 0.5
         owners = np.argmin(
-            [((points - core.centre) ** 2).sum(axis=1) / core.area for core in cores], axis=0
+            [((points - centre) ** 2).sum(axis=1) / area for centre, area in cores], axis=0
         )
         parts = []
         for owner in range(len(cores)):
@@ -214,16 +214,8 @@ def _components(mask: Mask) -> Iterator[tuple[npt.NDArray[np.bool_], Array]]:
             yield part, np.array([x, y, x + width, y + height], dtype=np.float64)
 
 
-@dataclass(frozen=True, slots=True)
-class _Core:
-    """Inner part of a blob: its centre in px from the blob's corner, and its area."""
-
-    centre: Array
-    area: float
-
-
-def _cores(part: npt.NDArray[np.bool_]) -> list[_Core]:
-    """Find the parts of a blob that hang together by necks only."""
+def _cores(part: npt.NDArray[np.bool_]) -> list[tuple[Array, float]]:
+    """Find the parts that hang together by necks only: centre in px from the corner, and area."""
     if min(part.shape) < _ASPECT_SIDE:
         return []
     padded = cv2.copyMakeBorder(part.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
@@ -234,7 +226,7 @@ def _cores(part: npt.NDArray[np.bool_]) -> list[_Core]:
         (depth > _NECK * depth.max()).astype(np.uint8)
     )
     return [
-        _Core(centres[index] - 0.5, float(stats[index, cv2.CC_STAT_AREA]))
+        (centres[index] - 0.5, float(stats[index, cv2.CC_STAT_AREA]))
         for index in range(1, count)
         if depth[labels == index].max() > _SECOND * depth.max()
     ]

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import group, parameter
+from vehicle_pf_tracker.trackers.parameters import frame_rate_parameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,14 +229,7 @@ class TrafficParameters:
     motion: RoadMotionParameters = group(RoadMotionParameters)
     detections: DetectionParameters = group(DetectionParameters)
     birth: BirthParameters = group(BirthParameters)
-    frame_rate: float = parameter(
-        0.0,
-        "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
-        "intervals.",
-        minimum=0.0,
-        maximum=1000.0,
-        unit="1/s",
-    )
+    frame_rate: float = frame_rate_parameter()
     lines: str = parameter(
         "",
         "YAML of lines and zones to count at; empty: nothing is counted.",
