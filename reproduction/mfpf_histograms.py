@@ -54,12 +54,12 @@ from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, helli
 from vehicle_pf_tracker.image.window import WindowFeature
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.base import Target
-from vehicle_pf_tracker.trackers.contract import WindowParameters
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     TEXTURES,
     MfpfParameters,
     edge_feature,
 )
+from vehicle_pf_tracker.trackers.parameters import WindowParameters
 
 _PLACE = "section III-D, figure 1"
 _SCENE = "disturbances"

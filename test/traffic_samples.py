@@ -12,12 +12,16 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Estimates of vehicles for tests, without a tracker."""
+"""Estimates and tracks of vehicles for tests, without a tracker."""
 
 import math
 
+import numpy as np
+
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
 
 MODES = {
     "t": TrackMode.TENTATIVE,
@@ -41,3 +45,9 @@ def vehicle(identity, x, bottom, mode=TrackMode.TRACKING, *, label="car", size=(
         age=1.0,
         hidden_by=None,
     )
+
+
+def track(number, left, top=100.0, **facts):
+    """Make the track of a vehicle of 40 x 30 px that stands under a far horizon."""
+    edges = np.array([left, top, left + 40.0, top + 30.0])
+    return Track(number, VehicleState(edges, np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0)), **facts)

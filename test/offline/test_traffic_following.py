@@ -26,7 +26,7 @@ from vehicle_pf_tracker.offline.traffic_following import TrafficRun
 from vehicle_pf_tracker.offline.traffic_results import TrackFiles
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.trackers.failures import TrackerError
+from vehicle_pf_tracker.trackers.session import TrackerError
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession

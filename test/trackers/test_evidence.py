@@ -16,7 +16,8 @@ import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.evidence import EvidenceJudge, EvidenceParameters
+from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
+from vehicle_pf_tracker.trackers.parameters import EvidenceParameters
 
 PARAMETERS = EvidenceParameters(occluded_below=0.6, clear_above=0.8, minimum=0.2, level_rate=0.1)
 

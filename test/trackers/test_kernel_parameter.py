@@ -18,7 +18,6 @@ import importlib
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 from street import Street, follow
 
@@ -108,13 +107,3 @@ def test_kernels_change_the_last_digits_at_most(name):
     for one, other in zip(ours, theirs, strict=True):
         assert one.position == pytest.approx(other.position, abs=LAST_DIGITS.get(name, 1e-3))
         assert one.confidence == pytest.approx(other.confidence, abs=1e-3)
-
-
-def test_kernels_can_be_changed_while_tracking():
-    pytest.importorskip("numba", reason="numba is not installed")
-    street, tracker = Street(), make("apf", kernels="opencv")
-    follow(tracker, street, range(3))
-    tracker.reconfigure(from_mapping(VARIANTS["apf"].parameters, {"kernels": "numba"}))
-    assert tracker.kernels.name == "numba"
-    estimate = tracker.step(street.frame(3))
-    assert np.hypot(*np.subtract(estimate.position, street.box(3).centre)) < 6

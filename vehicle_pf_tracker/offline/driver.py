@@ -36,12 +36,11 @@ from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.trackers.continuity import StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Estimate
-from vehicle_pf_tracker.trackers.failures import TrackerError
+from vehicle_pf_tracker.trackers.image_stream import StrayImageError
 from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS, Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
-from vehicle_pf_tracker.trackers.session import Session
+from vehicle_pf_tracker.trackers.session import Session, TrackerError
 
 Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
 """Frames with their numbers in the source."""

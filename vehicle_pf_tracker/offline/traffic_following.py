@@ -30,7 +30,7 @@ from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, annotated
 from vehicle_pf_tracker.offline.traffic_results import TrackFiles, TrafficSummary
 from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.trackers.failures import TrackerError
+from vehicle_pf_tracker.trackers.session import TrackerError
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode

@@ -14,7 +14,7 @@
 
 """Common frame of all trackers, around the step in which they differ.
 
-Target as it was in the first frame.
+A frame goes in, an estimate comes out.
 """
 
 from __future__ import annotations
@@ -38,13 +38,14 @@ from vehicle_pf_tracker.image.colour import Histogram, joint_histogram
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
 from vehicle_pf_tracker.image.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.parameters.table import specs, to_mapping
-from vehicle_pf_tracker.trackers.contract import (
+from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode, read_only
+from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
+from vehicle_pf_tracker.trackers.parameters import (
     CommonParameters,
+    ParametersT,
     ParticleParameters,
     WindowParameters,
 )
-from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode, read_only
-from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 
 _MARGIN = 64
 """Least margin kept around the target, in px, so that a wider window can still be measured: of
@@ -85,7 +86,6 @@ class Target:
         return joint_histogram(self.patch, self.centre, window, bits)
 
 
-ParametersT = TypeVar("ParametersT", bound=CommonParameters)
 ParticleParametersT = TypeVar("ParticleParametersT", bound=ParticleParameters)
 
 
@@ -158,6 +158,8 @@ class BaseTracker(ABC, Generic[ParametersT]):
 
     Attributes
     ----------
+    frame_period : float
+        Nominal time between frames in s; the reader of the stamps keeps it up to date.
     kernels : Kernels
         Implementation that measures windows, ready for use.
     """
@@ -165,7 +167,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
     def __init__(self, parameters: ParametersT) -> None:
         self.parameters = parameters
         self.frame_period = DEFAULT_PERIOD
-        self._seed = _draw_seed(parameters.seed)
+        self._seed = drawn_seed(parameters.seed)
         self._rng = np.random.default_rng(self._seed)
         self.kernels = load_kernels(parameters.kernels)
         self._target: Target | None = None
@@ -177,6 +179,11 @@ class BaseTracker(ABC, Generic[ParametersT]):
     def seed(self) -> int:
         """Seed in use."""
         return self._seed
+
+    @property
+    def _settings(self) -> ParametersT:
+        """Effective parameters."""
+        return self.parameters.effective()
 
     @property
     def target(self) -> Target:
@@ -197,7 +204,13 @@ class BaseTracker(ABC, Generic[ParametersT]):
         return self._window or self.target.window(self.parameters.window)
 
     def start(self, frame: Frame, box: Box) -> Estimate:
-        """Learn the target; see `Tracker.start`."""
+        """Learn the target `box` in `frame`, with the random numbers restarted.
+
+        Raises
+        ------
+        InputError
+            If the box cannot be a target in this frame.
+        """
         began = time.perf_counter()
         check_target(box, *frame_size(check_frame(frame)))
         self._target = Target(frame, box)
@@ -211,7 +224,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         return self._estimate(outcome, Mode.TRACKING, 1.0, began)
 
     def step(self, frame: Frame, elapsed: float = 1.0) -> Estimate:
-        """Find the target in the next frame; see `Tracker.step`."""
+        """Find the target in the next frame, `elapsed` nominal frame periods later."""
         began = time.perf_counter()
         outcome = self._advance(check_frame(frame), elapsed)
         self._cloud = outcome.cloud
@@ -226,12 +239,12 @@ class BaseTracker(ABC, Generic[ParametersT]):
         return self._estimate(outcome, mode, confidence, began)
 
     def reconfigure(self, parameters: ParametersT) -> None:
-        """Take new parameters; see `Tracker.reconfigure`."""
+        """Take new parameters between two frames; the track goes on."""
         changed = _changed_effects(self.parameters, parameters)
         self.parameters = parameters
         self.kernels = load_kernels(parameters.kernels)
         if "restarts" in changed:
-            self._seed = _draw_seed(parameters.seed)
+            self._seed = drawn_seed(parameters.seed)
             self._rng = np.random.default_rng(self._seed)
         if self._target is not None and "relearns" in changed:
             self._window = self._target.window(parameters.window)
@@ -285,7 +298,8 @@ class ParticleTracker(BaseTracker[ParticleParametersT]):
             self._cloud = Cloud.uniform(self._cloud.positions[ancestors])
 
 
-def _draw_seed(seed: int) -> int:
+def drawn_seed(seed: int) -> int:
+    """Return the seed to use: another one in each run where `seed` is -1."""
     return seed if seed >= 0 else int(np.random.default_rng().integers(2**31))
 
 

@@ -21,53 +21,9 @@ vehicles and cameras. The regime of an algorithm takes no part in this.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.running_level import RunningLevel
-from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.estimate import Mode
-
-
-@dataclass(frozen=True, slots=True)
-class EvidenceParameters:
-    """Thresholds of the evidence, relative to its clear level."""
-
-    occluded_below: float = parameter(
-        0.7,
-        "Lower: deeper occlusions are needed before the mode leaves TRACKING.",
-        minimum=0.0,
-        maximum=1.0,
-        unit="share of the clear level",
-    )
-    clear_above: float = parameter(
-        0.8,
-        "Higher: more of the vehicle must be visible again before the mode returns to TRACKING.",
-        minimum=0.0,
-        maximum=1.0,
-        unit="share of the clear level",
-    )
-    minimum: float = parameter(
-        0.3,
-        "Similarity below which there is no evidence, whatever the clear level is.",
-        minimum=0.0,
-        maximum=1.0,
-    )
-    level_rate: float = parameter(
-        0.05,
-        "Higher: the clear level follows the similarity faster.",
-        minimum=0.0,
-        maximum=1.0,
-        unit="per frame",
-    )
-
-    def validate(self) -> None:
-        """Check that the two thresholds are in order."""
-        if self.occluded_below > self.clear_above:
-            raise InputError(
-                f"evidence.occluded_below ({self.occluded_below:g}) must not be above "
-                f"evidence.clear_above ({self.clear_above:g})"
-            )
+from vehicle_pf_tracker.trackers.parameters import EvidenceParameters
 
 
 class EvidenceJudge:

@@ -12,11 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Uncertainty and road position of a track, beside its tracker.
+"""Uncertainty, road position and speed of a track, beside its tracker.
 
 Nothing here goes back into the tracker: estimates are the same with and without it.
-
-Position and speed on the road, from a tracker's estimates.
 """
 
 from __future__ import annotations
@@ -70,14 +68,8 @@ class RoadEstimate:
 
     def scalars(self) -> Mapping[str, float]:
         """Return every scalar by the name that `~/mode` and the tables use."""
-        return {
-            "road_x": float(self.position[0]),
-            "road_y": float(self.position[1]),
-            "road_velocity_x": float(self.velocity[0]),
-            "road_velocity_y": float(self.velocity[1]),
-            "speed_kmh": self.speed,
-            "speed_sd_kmh": self.speed_deviation,
-        }
+        values = *self.position, *self.velocity, self.speed, self.speed_deviation
+        return dict(zip(ROAD_COLUMNS, map(float, values), strict=True))
 
 
 ROAD_COLUMNS = (
@@ -209,7 +201,7 @@ class RoadFollower:
 
 
 class Localisation:
-    """Covariance of a track's positions and, where a road is set, its place and speed on it.
+    """Covariance of a track's positions and, where a road is set, its position and speed on it.
 
     Parameters
     ----------
@@ -220,12 +212,12 @@ class Localisation:
 
     Attributes
     ----------
-    has_road : bool
-        True where a mapping to the road is asked for.
+    parameters : RoadParameters
+        Mapping to the road in use.
     road : RoadEstimate or None
-        Last place on the road; None where there is none, for the reason `objection`.
+        Last position on the road; None where there is none, for the reason `objection`.
     objection : str
-        Reason why there is no place on the road; empty where there is one, or no road is set.
+        Reason why there is no position on the road; empty where there is one, or no road is set.
     """
 
     def __init__(self, variant: str, parameters: RoadParameters) -> None:
@@ -233,22 +225,20 @@ class Localisation:
         self._estimate: Estimate | None = None
         self._period = 1.0
         self._lens, self._pose = parameters.lens, parameters.pose
-        self._parameters = parameters
-        self.has_road = parameters.is_set
+        self.parameters = parameters
         self._follower: RoadFollower | None = None
         self.road: RoadEstimate | None = None
         self.objection = ""
         self._make_follower()
 
     @property
-    def parameters(self) -> RoadParameters:
-        """Mapping to the road."""
-        return self._parameters
+    def has_road(self) -> bool:
+        """True where a mapping to the road is asked for."""
+        return self.parameters.is_set
 
     def reconfigure(self, parameters: RoadParameters) -> None:
         """Take another mapping to the road; lens and pose that came from outside are kept."""
-        before, self._parameters = self._parameters, parameters
-        self.has_road = parameters.is_set
+        before, self.parameters = self.parameters, parameters
         if not (before.from_camera_info and parameters.from_camera_info):
             self._lens = parameters.lens
         if not (before.from_tf and parameters.from_tf):
@@ -257,13 +247,13 @@ class Localisation:
 
     def set_lens(self, lens: Lens) -> None:
         """Take the lens from outside, where the parameters ask for that."""
-        if self._parameters.from_camera_info and lens != self._lens:
+        if self.parameters.from_camera_info and lens != self._lens:
             self._lens = lens
             self._take_plane()
 
     def set_pose(self, pose: Pose) -> None:
         """Take the camera's pose from outside, where the parameters ask for that."""
-        if self._parameters.from_tf and not pose.equals(self._pose):
+        if self.parameters.from_tf and not pose.equals(self._pose):
             self._pose = pose
             self._take_plane()
 
@@ -287,7 +277,7 @@ class Localisation:
 
     def _take_plane(self) -> None:
         """Make the plane as soon as all that it needs is there."""
-        parameters = self._parameters
+        parameters = self.parameters
         if not self.has_road:
             return
         if parameters.from_camera_info and self._lens is None:

@@ -141,13 +141,13 @@ _ENTRIES = (
     ),
     Variant(
         "conventional",
-        "papers.conventional:Conventional",
+        "papers.repeated_resampling:Conventional",
         "colour, all particles resampled until enough count (Khong et al.)",
         "comparison with `adaptive`, or of resampling schemes",
     ),
     Variant(
         "adaptive",
-        "papers.adaptive:Adaptive",
+        "papers.repeated_resampling:Adaptive",
         "colour, only low weights resampled until enough count (Khong et al.)",
         "as `conventional`, with fewer measurements per frame",
     ),
@@ -164,7 +164,7 @@ VARIANTS: Mapping[str, Variant] = MappingProxyType({entry.name: entry for entry 
 
 TRAFFIC = Variant(
     "traffic",
-    "traffic.variant:Traffic",
+    "traffic.tracker:Traffic",
     "every vehicle in view, with identities (this package)",
     "many vehicles at once, counts at lines and in zones",
 )

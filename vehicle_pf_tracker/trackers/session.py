@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""One target followed through one stream of stamped images.
+"""One target followed through one stream of stamped images, and the frame of such sessions.
 
 Offline runs and the node both drive their tracker through a session, and so give the same
 estimates.
@@ -21,7 +21,9 @@ estimates.
 from __future__ import annotations
 
 import copy
-from typing import Any
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any, Generic, TypeVar
 
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
@@ -29,16 +31,106 @@ from vehicle_pf_tracker.core.frame import CodedFrame, Frame, frame_size
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.base import BaseTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
-from vehicle_pf_tracker.trackers.failures import Failures
 from vehicle_pf_tracker.trackers.image_stream import ImageStream, Turn
 from vehicle_pf_tracker.trackers.registry import Variant
+
+TrackerT = TypeVar("TrackerT")
+ResultT = TypeVar("ResultT")
 
 
 class TargetError(InputError):
     """Target that no tracker can start on in the image that it was given for."""
 
 
-class Session:
+class TrackerError(Exception):
+    """Unexpected error of a tracker in one image; its cause is the error itself.
+
+    Attributes
+    ----------
+    persists : bool
+        True where the tracker failed again as soon as it had started anew: it is broken.
+    """
+
+    def __init__(self, error: Exception, *, persists: bool) -> None:
+        super().__init__(unexpected(error))
+        self.persists = persists
+
+
+def unexpected(error: Exception) -> str:
+    """Describe an error that nobody expected."""
+    if isinstance(error, TrackerError):
+        return str(error)
+    return f"unexpected {type(error).__name__}: {error}"
+
+
+class StreamSession(ABC, Generic[TrackerT]):
+    """Common part of the sessions: one stream of images, and what becomes of a tracker's errors.
+
+    The first unexpected error costs its image: it may be that image's fault. After the second one
+    in a row the tracker starts anew and takes the same image again. If that fails too, the tracker
+    is broken.
+
+    Parameters
+    ----------
+    tracker : TrackerT
+        Tracker of what is in the images.
+    frame_rate : float
+        Nominal rate in 1/s; 0 takes the median of the first ten intervals.
+    reset_on_time_jump : bool
+        Begin anew when stamps go back and stay back.
+
+    Attributes
+    ----------
+    events : list of str
+        Irregularities of the last image, for logs and diagnostics.
+    recovered : bool
+        True where the tracker failed and started anew in the last image.
+    """
+
+    def __init__(self, tracker: TrackerT, frame_rate: float, reset_on_time_jump: bool) -> None:
+        self.tracker = tracker
+        self.events: list[str] = []
+        self.recovered = False
+        self._stream = ImageStream(frame_rate, reset_on_time_jump)
+        self._errors_in_a_row = 0
+
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Width and height in px that images are expected to have; None for any size."""
+        return self._stream.size
+
+    def _admit(
+        self, image: Frame | CodedFrame, stamp_ns: int, *, is_tracking: bool = True
+    ) -> list[Turn]:
+        """Return the images to track in now; see `ImageStream.admit`."""
+        self.events, self.recovered = [], False
+        return self._stream.admit(image, stamp_ns, is_tracking=is_tracking)
+
+    def _attempt(self, step: Callable[[], ResultT]) -> ResultT:
+        """Take `step`, once more after a new start."""
+        try:
+            result = step()
+        except InputError:  # the tracker is not at fault
+            raise
+        except Exception as error:  # whatever a tracker or a network raises
+            self._errors_in_a_row += 1
+            if self._errors_in_a_row % 2:
+                raise TrackerError(error, persists=self._errors_in_a_row > 1) from error
+            self.events.append(
+                f"the tracker failed twice in a row and has started anew: {unexpected(error)}"
+            )
+            self._start_anew()
+            self.recovered = True
+            return self._attempt(step)
+        self._errors_in_a_row = 0
+        return result
+
+    @abstractmethod
+    def _start_anew(self) -> None:
+        """Discard the tracker's state, so that the same image can be taken again."""
+
+
+class Session(StreamSession[BaseTracker[Any]]):
     """Control of one variant's tracker: start, steps, restarts.
 
     Odd images are rejected, or admitted after all, by `ImageStream`; then only the estimate of the
@@ -57,12 +149,10 @@ class Session:
 
     Attributes
     ----------
-    events : list of str
-        Irregularities of the last frame, for logs and diagnostics.
+    events, recovered
+        See `StreamSession`.
     refusal : str
         Reason why the last frame's new target was refused while there is a track; else empty.
-    recovered : bool
-        True where the tracker failed and started anew in the last frame.
     """
 
     def __init__(
@@ -70,12 +160,10 @@ class Session:
     ) -> None:
         self.variant = variant
         self.settings = settings or SessionParameters()
-        self.events: list[str] = []
         self.refusal = ""
-        self.recovered = False
-        self.tracker = variant.tracker(parameters)
-        self._stream = ImageStream(parameters.frame_rate, self.settings.reset_on_time_jump)
-        self._failures = Failures()
+        super().__init__(
+            variant.tracker(parameters), parameters.frame_rate, self.settings.reset_on_time_jump
+        )
         self._backup: BaseTracker[Any] | None = None
         self._pending: Box | None = self.settings.target.box
         self._seen: Box | None = None
@@ -84,11 +172,6 @@ class Session:
     def waiting(self) -> bool:
         """True while there is no target to follow."""
         return not self._is_tracking and self._pending is None
-
-    @property
-    def size(self) -> tuple[int, int] | None:
-        """Width and height in px that images are expected to have; None for any size."""
-        return self._stream.size
 
     @property
     def _is_tracking(self) -> bool:
@@ -135,9 +218,8 @@ class Session:
         TrackerError
             If the tracker fails, and does not start anew for it.
         """
-        self.events, self.refusal, self.recovered = [], "", False
-        estimate = None
-        for turn in self._stream.admit(image, stamp_ns, is_tracking=self._is_tracking):
+        self.refusal, estimate = "", None
+        for turn in self._admit(image, stamp_ns, is_tracking=self._is_tracking):
             estimate = self._take(turn)
         return estimate
 
@@ -150,18 +232,10 @@ class Session:
             self._seen = None
             self._await_again(None)
         self.tracker.frame_period = turn.period
-        return self._track(turn)
+        return self._attempt(lambda: self._step(turn))
 
-    def _track(self, turn: Turn) -> Estimate | None:
-        try:
-            estimate = self._step(turn)
-        except Exception as error:  # whatever a tracker raises
-            self.events.append(self._failures.judge(error))
-            self._await_again(self._seen)
-            self.recovered = True
-            return self._track(turn)
-        self._failures.clear()
-        return estimate
+    def _start_anew(self) -> None:
+        self._await_again(self._seen)
 
     def _copied(self) -> BaseTracker[Any]:
         """Copy what an image changes; kernels have no state of their own."""

@@ -150,18 +150,6 @@ def test_learning_adapts_the_filter_to_a_new_look(away):
     assert view.peak_near(PLACE, 6)[0] == pytest.approx(PLACE, abs=1)
 
 
-def test_shifted_cells_and_cells_measured_again_teach_nearly_the_same():
-    answers = []
-    for away in (1.0, 14.0):
-        appearance = learnt()
-        view_at(appearance, frame(), PLACE)
-        picture = frame(vehicle=OTHER)
-        view = view_at(appearance, picture, PLACE - [away, 0])
-        appearance.learn(picture, view, PLACE, SIZE, 0.0)
-        answers.append(view_at(appearance, picture, PLACE).response)
-    assert answers[0].max() == pytest.approx(answers[1].max(), rel=0.15)
-
-
 def parabola(top, width=40):
     """A view of 1 px per place whose response is a parabola with its vertex at `top`."""
     y, x = np.mgrid[:width, :width].astype(float)

@@ -37,11 +37,6 @@ def test_visibility_passes_one_frame_by_hand():
     assert passed.weights == pytest.approx([0.5, 0.5])
 
 
-def test_no_time_changes_no_visibility():
-    passed = hypotheses([0.9, 0.2], [0.5, 0.5]).passed(0.0, 0.02, 0.05)
-    assert passed.visible == pytest.approx([0.9, 0.2])
-
-
 def test_two_hypotheses_are_weighed_by_hand():
     """Ratio 8 for the first: 0.5 * 8 + 0.5 = 4.5 against 0.8 * 0.25 + 0.2 = 0.4 of the second."""
     observed = hypotheses([0.5, 0.8], [0.25, 0.75]).observed(np.log([8.0, 0.25]))
@@ -164,11 +159,3 @@ def test_weights_stay_normalised_and_probabilities_within_bounds(
     assert np.isfinite(one.positions).all()
     assert len(one.weights) == len(one.positions) == len(one.visible)
     assert len(one.weights) == count
-
-
-@given(high=st.floats(-6, 6), low=st.floats(-6, 6), visible=st.floats(0.01, 0.99))
-def test_better_evidence_never_loses_weight_or_visibility(high, low, visible):
-    low, high = sorted((low, high))
-    observed = hypotheses([visible, visible], [0.5, 0.5]).observed(np.array([high, low]))
-    assert observed.weights[0] >= observed.weights[1] - 1e-12
-    assert observed.visible[0] >= observed.visible[1] - 1e-12

@@ -53,14 +53,6 @@ def test_a_vehicle_that_comes_closer_by_hand():
     assert motion.growth_at(10.0) == pytest.approx(0.025)
 
 
-def test_velocity_and_growth_are_the_derivatives():
-    motion = PerspectiveMotion(np.array([100.0, 50.0]), np.array([4.0, 2.0]), -0.015)
-    before, after = motion.position_at(7.999), motion.position_at(8.001)
-    assert motion.velocity_at(8.0) == pytest.approx((after - before) / 0.002, rel=1e-4)
-    growth = np.log(motion.scale_at(8.001) / motion.scale_at(7.999)) / 0.002
-    assert motion.growth_at(8.0) == pytest.approx(growth, rel=1e-4)
-
-
 def test_a_vehicle_that_passes_the_camera_does_not_grow_without_bound():
     motion = PerspectiveMotion(np.zeros(2), np.array([4.0, 2.0]), 0.04)
     for time in (25.0, 60.0, 1e4):

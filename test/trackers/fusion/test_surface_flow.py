@@ -14,8 +14,6 @@
 
 """The share of a vehicle's surface that moves with it: an occluder lowers it, a turn does not."""
 
-import copy
-
 import cv2
 import numpy as np
 import pytest
@@ -196,23 +194,3 @@ def test_the_middle_of_a_wide_patch_will_do(side):
     drive.drive(10)
     patch = cut_patch(picture_of(drive.centre), drive.centre, 40.0 / SIZE, side).middle(128)
     assert drive.flow.judge(patch, drive.centre, SIZE) > 0.8
-
-
-def test_the_number_of_threads_changes_nothing():
-    threads = cv2.getNumThreads()
-    found = []
-    try:
-        for count in (1, 2, 4):
-            cv2.setNumThreads(count)
-            drive = Drive(speed=(2.3, 0.7), spin=1.0)
-            found.append([drive.step(wall(150)) for _ in range(40)])
-    finally:
-        cv2.setNumThreads(threads)
-    assert found[0] == found[1] == found[2]
-
-
-def test_a_copy_goes_on_by_itself():
-    drive = Drive()
-    drive.drive(10)
-    twin = copy.deepcopy(drive)
-    assert [twin.step() for _ in range(5)] == [drive.step() for _ in range(5)]

@@ -46,14 +46,6 @@ def test_equal_weights_take_the_largest_rate():
     assert annealing_rate(np.full(7, -3.0), 0.5, 4.0) == 4.0
 
 
-def test_weights_too_flat_for_the_wanted_survival_take_the_largest_rate():
-    assert annealing_rate(np.log([3.0, 1.0]), 0.8 - 1e-6, 1.0) == 1.0
-
-
-def test_everyone_survives_only_without_weighting():
-    assert annealing_rate(np.log([3.0, 1.0]), 1.0, 1.0) == pytest.approx(0.0, abs=1e-6)
-
-
 @given(
     st.lists(st.floats(-50, 0), min_size=2, max_size=60),
     st.floats(0.05, 1.0),

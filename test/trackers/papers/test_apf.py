@@ -53,13 +53,6 @@ def test_mean_velocity_by_hand():
     assert velocity.value == pytest.approx((2.5, 0.0))
 
 
-def test_mean_velocity_over_all_as_printed_telescopes():
-    velocity = MeanVelocity(0)
-    velocity.add((0, 0), (30, 8), 1.0)
-    velocity.add((30, 8), (32, 8), 1.0)
-    assert velocity.value == pytest.approx((16.0, 4.0))
-
-
 def test_a_shorter_window_looks_at_the_same_moves():
     velocity = MeanVelocity(4)
     for step in range(1, 5):
@@ -134,43 +127,12 @@ def test_interpretation_5_the_origin_counts_as_the_first_position():
     assert follow(make(), street, range(2))[-1].velocity == pytest.approx((0, 0), abs=6)
 
 
-def test_as_printed_overrides_every_interpretation():
-    settings = from_mapping(
-        ApfParameters, {"as_printed": True, "motion.sigma_w": 7.0, "motion.sigma_n": 2.0}
-    ).effective()
-    assert settings.likelihood == LikelihoodParameters(1.5, False)
-    assert not settings.reference.frozen_while_occluded
-    assert settings.occlusion.rule == "fixed"
-    assert not settings.occlusion.raw_histogram
-    assert settings.velocity.from_origin
-    assert settings.velocity.window == 0
-    assert not settings.motion.drift_from_velocity
-    assert (settings.motion.sigma_n, settings.motion.sigma_r, settings.motion.sigma_w) == (0, 0, 7)
-
-
-def test_as_printed_weights_are_almost_flat():
-    # interpretation 1: target to background is 1.16 to 1.
-    estimates = follow(make(as_printed=True), Street(), range(5))
-    assert min(e.effective_sample_size for e in estimates) > 190
-    assert max(e.effective_sample_size for e in follow(make(), Street(), range(5))[1:]) < 150
-
-
 def spread_after(elapsed, hidden):
     street = Street(speed=3.0, hidden=(10, 99) if hidden else (99, 99))
     tracker = make(num_particles=4000)
     parents = follow(tracker, street, range(12))[-1].particles
     particles = tracker.step(street.frame(12), elapsed).particles
     return particles, parents
-
-
-def test_equation_7_scales_with_the_elapsed_time():
-    def spread(elapsed):
-        particles, _ = spread_after(elapsed, hidden=False)
-        return particles[:, 1].std()
-
-    # Across the motion: the parents' own spread is small against 3 * 6 px.
-    assert spread(3.0) == pytest.approx(18.0, rel=0.15)
-    assert spread(1.0) < 9.0
 
 
 def test_the_drift_scales_with_the_elapsed_time():

@@ -24,7 +24,7 @@ SETTINGS = ClearLevelParameters(enter=4.0, leave=2.0, rate=0.5)
 def level_of(*similarities):
     level = ClearLevel()
     for similarity in similarities:
-        level.follow(similarity, SETTINGS)
+        level.add(similarity, SETTINGS.rate)
     return level
 
 
@@ -32,7 +32,7 @@ def test_the_first_similarity_is_clear_and_becomes_the_level():
     level = ClearLevel()
     level.judge(0.1, SETTINGS)
     assert level.clear
-    level.follow(0.1, SETTINGS)
+    level.add(0.1, SETTINGS.rate)
     assert level.value == pytest.approx(0.1)
     assert level.deviation == pytest.approx(0.05)
 
@@ -44,7 +44,7 @@ def test_level_and_deviation_by_hand():
     assert level.deviation == pytest.approx(0.075)
     assert level.value == pytest.approx(0.7)
     # Third: 0.1 away counts whole. A third is below the rate of a half, so the rate decides.
-    level.follow(0.8, SETTINGS)
+    level.add(0.8, SETTINGS.rate)
     assert level.deviation == pytest.approx(0.0875)
     assert level.value == pytest.approx(0.75)
 
@@ -56,7 +56,7 @@ def test_a_slow_fall_does_not_widen_its_own_bound():
         similarity, frames = similarity - 0.02, frames + 1
         level.judge(similarity, settings)
         if level.clear:
-            level.follow(similarity, settings)
+            level.add(similarity, settings.rate)
     assert not level.clear
     assert similarity > 0.6
 

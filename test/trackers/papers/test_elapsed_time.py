@@ -14,14 +14,12 @@
 
 """Spreads and speeds are per nominal period, so that a dropped frame changes neither."""
 
-import numpy as np
 import pytest
 from street import Street, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
+from vehicle_pf_tracker.trackers.registry import find_variant
 
-PAPERS = [name for name, variant in VARIANTS.items() if variant.classes.startswith("papers.")]
 # Flat weights: resampling and weighting leave the cloud as wide as the diffusion makes it.
 FLAT = {"likelihood.sigma_v": 100.0, "num_particles": 4000}
 FEATURES = {**FLAT, "dispersion.radius": 6.0, "confidence.threshold": 0.0}
@@ -58,11 +56,3 @@ def test_particles_spread_by_the_elapsed_time(name):
         before = variance(follow(tracker, street, range(2))[-1])
         added = variance(tracker.step(street.frame(2), elapsed)) - before
         assert added == pytest.approx(9.0 * elapsed**2, rel=0.25)
-
-
-@pytest.mark.parametrize("name", PAPERS)
-def test_the_velocity_is_the_same_when_every_other_frame_is_missing(name):
-    estimates = follow(make(name), Street(speed=3.0), range(0, 41, 2))
-    x, y = np.mean([estimate.velocity for estimate in estimates[-8:]], axis=0)
-    assert x == pytest.approx(3.0, abs=0.7)
-    assert y == pytest.approx(0.0, abs=0.7)

@@ -22,7 +22,7 @@ import pytest
 from street import Street, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
-from vehicle_pf_tracker.trackers.contract import ParticleParameters
+from vehicle_pf_tracker.trackers.parameters import ParticleParameters
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 PAGE = (Path(__file__).parents[3] / "docs" / "interpretations.md").read_text(encoding="utf-8")

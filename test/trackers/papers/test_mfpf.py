@@ -26,17 +26,12 @@ from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 from vehicle_pf_tracker.trackers.papers import mfpf
-from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters
 from vehicle_pf_tracker.trackers.papers.mfpf import MfpfTracker
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
-    ConfidenceParameters,
-    EdgeParameters,
     MfpfParameters,
 )
 from vehicle_pf_tracker.trackers.papers.sfpf import (
     SfpfColorParameters,
-    SfpfEdgeParameters,
-    SfpfTextureParameters,
 )
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
@@ -114,15 +109,6 @@ def test_claims_no_vehicle_while_only_one_feature_is_fooled():
     assert all(e.mode is Mode.OCCLUDED for e in estimates[21:])
 
 
-def test_interpretation_12_velocity_over_a_window_is_steadier_than_the_last_displacement():
-    street = Street(speed=2.0)
-    steps = {
-        window: [e.velocity[0] for e in follow(make(velocity_window=window), street, range(40))]
-        for window in (1, 5)
-    }
-    assert np.std(steps[5][10:]) < 0.6 * np.std(steps[1][10:])
-
-
 def test_interpretation_15_the_reference_is_the_first_histogram_and_the_last_one():
     street = Street()
     for weight in (1.0, 0.25):
@@ -160,21 +146,6 @@ def test_interpretation_17_the_best_particle_or_the_mean():
     assert np.hypot(*(estimate.particles - estimate.position).T).min() < 1e-9
 
 
-def test_interpretation_18_printed_resampling_repeats_the_common_survivors():
-    street = Street()
-    joint, printed = make(resample_below=1.0), make(resample_below=1.0, joint_resampling=False)
-    estimates = [follow(tracker, street, range(12))[-1] for tracker in (joint, printed)]
-    assert all(error(e, street, 11) < 10 for e in estimates)
-    assert not np.array_equal(estimates[0].particles, estimates[1].particles)
-
-
-def test_interpretation_19_the_mean_over_all_particles_is_lower():
-    street = Street()
-    best = follow(make(), street, range(4))[-1].similarities
-    every = follow(make(**{"confidence.best_share": 1.0}), street, range(4))[-1].similarities
-    assert all(every[f"as_{name}"] < best[f"as_{name}"] - 0.02 for name in NAMES)
-
-
 @pytest.mark.parametrize(
     ("word", "kind"),
     [("glcm", Cooccurrence), ("lbp", BinaryPatterns), ("haralick", HaralickStatistics)],
@@ -195,29 +166,6 @@ def test_a_feature_changed_while_hidden_is_rebuilt_from_the_first_frame():
     estimates = [tracker.step(street.frame(time)) for time in range(15, 35)]
     assert estimates[0].regime == "prediction"
     assert error(estimates[-1], street, 34) < 8
-
-
-@pytest.mark.parametrize(
-    "cls", [MfpfParameters, SfpfColorParameters, SfpfEdgeParameters, SfpfTextureParameters]
-)
-def test_as_printed_overrides_every_interpretation(cls):
-    assert cls().effective() == cls()
-    settings = cls(as_printed=True, reference_weight=0.6).effective()
-    assert settings.likelihood == LikelihoodParameters(sigma_v=1.5)
-    assert settings.confidence == ConfidenceParameters(best_share=1.0, threshold=0.8)
-    assert (settings.estimate, settings.velocity_window) == ("best", 1)
-    assert (settings.resample_below, settings.reference_weight) == (1.0, 0.6)
-    if cls in (MfpfParameters, SfpfEdgeParameters):
-        assert settings.edges == EdgeParameters(0.8, floor=0.0, in_frame=False, signed=False)
-    if cls is MfpfParameters:
-        assert not settings.joint_resampling
-
-
-def test_as_printed_weights_are_flat():
-    # interpretation 1: exp(-BD² / 4.5) lies between 0.80 and 1.
-    estimates = follow(make(as_printed=True), Street(), range(6))
-    assert min(e.effective_sample_size for e in estimates) > 190
-    assert min(e.effective_sample_size for e in follow(make(), Street(), range(6))[1:]) < 100
 
 
 @pytest.mark.parametrize("name", NAMES)

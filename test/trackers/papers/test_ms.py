@@ -36,12 +36,6 @@ def test_its_cloud_is_its_position():
     assert "num_particles" not in specs(MsParameters)
 
 
-def test_nothing_is_drawn_at_random():
-    street, times = Street(), range(20)
-    one, other = follow(make(seed=1), street, times), follow(make(seed=2), street, times)
-    assert [e.position for e in one] == [e.position for e in other]
-
-
 def test_steps_until_a_step_is_short():
     # From 10 px away one step does not arrive, fifteen do.
     street, away = Street(speed=0.0), Street(speed=10.0)
@@ -63,11 +57,6 @@ def test_a_vehicle_out_of_the_windows_reach_is_not_found_and_not_claimed():
     estimate = tracker.step(gone.frame(1))
     assert error(estimate, gone, 1) > SIZE[0]
     assert estimate.mode is Mode.OCCLUDED
-
-
-def test_velocity_is_that_of_the_vehicle():
-    velocity = follow(make(), Street(speed=2.0), range(20))[-1].velocity
-    assert velocity == pytest.approx((2.0, 0.0), abs=0.2)
 
 
 def test_evidence_at_the_target_is_high_and_at_a_stranger_low():

@@ -41,13 +41,6 @@ def test_weights_are_perez_exponential_of_the_squared_distance():
     assert estimate.position == pytest.approx(tuple(mean))
 
 
-def test_propagation_scales_with_the_elapsed_time():
-    street = Street(speed=0.0)
-    tracker = make(num_particles=4000)
-    follow(tracker, street, range(10))
-    assert tracker.step(street.frame(10), 3.0).particles[:, 0].std() == pytest.approx(24, rel=0.15)
-
-
 def test_it_stays_behind_where_the_vehicle_vanished():
     street = Street(speed=3.0, hidden=(15, 40))
     estimates = follow(make(sigma=3.0), street, range(50))

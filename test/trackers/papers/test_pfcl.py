@@ -70,14 +70,6 @@ def test_a_target_without_lines_is_tracked_by_colour_as_pf_does():
         assert np.array_equal(pfcl.step(smooth).particles, pf.step(smooth).particles)
 
 
-def test_lines_sharpen_the_weights():
-    street, times = Street(), range(20)
-    with_lines = follow(make(), street, times)
-    without = follow(make(**{"lines.sigma_v": 100.0}), street, times)
-    sizes = [np.mean([e.effective_sample_size for e in run[1:]]) for run in (with_lines, without)]
-    assert sizes[0] < sizes[1]
-
-
 def test_the_window_relearns_the_lines_of_the_first_frame():
     street = Street(speed=0.0, hidden=(5, 99))
     tracker = make()

@@ -16,12 +16,11 @@
 
 import numpy as np
 import pytest
+from traffic_samples import track
 
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
+from vehicle_pf_tracker.trackers.traffic.detections import DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import Track
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
 
 SIZE = (320, 240)
 SCORE = 0.8
@@ -32,16 +31,14 @@ def ended_unconfirmed(places):
     evidence = DetectionEvidence()
     existence = Existence(TrafficParameters(), evidence)
     for _ in range(10):
-        track = None
+        one = track(1, 0.0)
         for frame, (left, top) in enumerate(places):
-            edges = np.array([left, top, left + 40.0, top + 30.0])
-            state = VehicleState(edges, np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0))
-            track = track or Track(1, state)
-            track.state, track.age = state, float(frame)
-            existence.detected(track, edges, evidence.sample(edges, SCORE, SIZE), 0.0)
-        assert not track.confirmed
-        track.undetected = 100.0
-        assert existence.survivors([track], SIZE, 1 / 30) == []
+            one.state, one.age = track(1, left, top).state, float(frame)
+            edges = one.state.edges
+            existence.detected(one, edges, evidence.sample(edges, SCORE, SIZE), 0.0)
+        assert not one.confirmed
+        one.undetected = 100.0
+        assert existence.survivors([one], SIZE, 1 / 30) == []
     elsewhere = evidence.sample(np.array([200.0, 180.0, 240.0, 210.0]), SCORE, SIZE)
     return float(evidence.log_odds([elsewhere])[0])
 
@@ -61,18 +58,18 @@ def test_what_was_seen_a_few_times_speaks_against_its_scores():
 
 def missed(undetected, *, seen=()):
     """Evidence that confirmed vehicles in sight lose in a frame, undetected for so long."""
-    tracks = []
-    for identity, periods in enumerate(undetected, start=1):
-        left = 60.0 * identity
-        state = VehicleState(
-            np.array([left, 100.0, left + 40.0, 130.0]), np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0)
+    tracks = [
+        track(
+            identity,
+            60.0 * identity,
+            confirmed=True,
+            log_odds=5.0,
+            undetected=0.0 if identity in seen else periods,
         )
-        track = Track(identity, state)
-        track.confirmed, track.log_odds = True, 5.0
-        track.undetected = 0.0 if identity in seen else periods
-        tracks.append(track)
+        for identity, periods in enumerate(undetected, start=1)
+    ]
     Existence(TrafficParameters(), DetectionEvidence()).fade(tracks, 1.0)
-    return [5.0 - track.log_odds for track in tracks]
+    return [5.0 - one.log_odds for one in tracks]
 
 
 def test_a_vehicle_that_alone_is_missed_is_doubted():

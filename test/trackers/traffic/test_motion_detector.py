@@ -50,16 +50,6 @@ def test_masks_repeat_whatever_else_the_process_draws():
     assert runs[0] == runs[1]
 
 
-def test_a_camera_that_moves_is_told_and_reported_as_blind():
-    detector = MotionDetector()
-    for frame in frames(29):
-        detector.detect(frame)
-    assert not detector.disturbed
-    assert len(detector.detect(np.full((120, 160, 3), 255, np.uint8))) == 0
-    assert detector.disturbed
-    assert detector.is_blind
-
-
 def mask(*boxes):
     image = np.zeros((120, 160), np.uint8)
     for left, top, right, bottom in boxes:

@@ -16,22 +16,20 @@
 
 import numpy as np
 import pytest
+from traffic_samples import track
 
 from vehicle_pf_tracker.trackers.traffic.association import former, resume
-from vehicle_pf_tracker.trackers.traffic.track import BINS, Track
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
+from vehicle_pf_tracker.trackers.traffic.track import BINS
 
 RED, BLUE = np.eye(BINS)[:2]
 
 
-def track(number, left, colours=RED, **facts):
-    edges = np.array([left, 100.0, left + 40.0, 130.0])
-    state = VehicleState(edges, np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0))
-    return Track(number, state, colours=colours, confirmed=True, **facts)
+def confirmed(number, left, colours=RED, **facts):
+    return track(number, left, colours=colours, confirmed=True, **facts)
 
 
 def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
-    hidden, new = track(1, 100.0, undetected=20.0), track(2, 130.0)
+    hidden, new = confirmed(1, 100.0, undetected=20.0), confirmed(2, 130.0)
     assert former(new, [hidden, new]) is hidden
     resume(hidden, new)
     assert hidden.identity == 1
@@ -42,13 +40,13 @@ def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
 @pytest.mark.parametrize(
     "other",
     [
-        track(1, 100.0, undetected=2.0),
-        track(1, 300.0, undetected=20.0),
-        track(1, 100.0, BLUE, undetected=20.0),
-        track(1, 100.0, undetected=20.0, visible=0.2),
+        confirmed(1, 100.0, undetected=2.0),
+        confirmed(1, 300.0, undetected=20.0),
+        confirmed(1, 100.0, BLUE, undetected=20.0),
+        confirmed(1, 100.0, undetected=20.0, visible=0.2),
     ],
     ids=["just seen", "far away", "of another colour", "still behind another"],
 )
 def test_others_are_not_taken_for_it(other):
-    new = track(2, 130.0)
+    new = confirmed(2, 130.0)
     assert former(new, [other, new]) is None

@@ -23,7 +23,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     clipped,
     inside_image,
     intersections,
-    unions,
+    overlaps,
 )
 
 BOX = np.array([10.0, 10, 50, 40])
@@ -55,7 +55,7 @@ def test_the_assignment_is_the_cheapest_of_all_and_below_the_gate():
 def test_overlaps():
     others = np.array([[30.0, 10, 70, 40], [60, 60, 70, 70]])
     assert intersections(BOX, others).tolist() == [600, 0]
-    assert unions(BOX, others)[0] == pytest.approx(600 / 1800)
+    assert overlaps(BOX, others)[0] == pytest.approx(600 / 1800)
     assert areas(BOX) == 1200
     assert inside_image(BOX, (30, 240)) == 0.5
     assert clipped(np.array([[-5.0, 5, 20, 300]]), (100, 240)).tolist() == [[0, 5, 20, 240]]

@@ -16,6 +16,7 @@
 
 import numpy as np
 import pytest
+from traffic_samples import track
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.road.camera import Lens, Pose
@@ -25,9 +26,8 @@ from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.horizon import calibrated_row
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import Track, nearest_first
+from vehicle_pf_tracker.trackers.traffic.track import nearest_first
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
 
 SIZE = (640, 480)
 LENS = Lens((800.0, 800.0), (319.5, 239.5))
@@ -52,8 +52,7 @@ def test_the_horizon_of_a_camera_that_looks_down_is_far_above():
 
 
 def standing(number, left, bottom):
-    edges = np.array([left, bottom - 30.0, left + 40.0, bottom])
-    return Track(number, VehicleState(edges, np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0)))
+    return track(number, left, bottom - 30.0)
 
 
 def test_the_order_in_depth_is_that_on_the_road():

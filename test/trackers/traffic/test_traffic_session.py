@@ -18,8 +18,7 @@ import numpy as np
 import pytest
 from traffic_samples import vehicle
 
-from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.continuity import StrayImageError
+from vehicle_pf_tracker.trackers.image_stream import StrayImageError
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -70,13 +69,6 @@ def test_elapsed_is_in_nominal_periods():
     feed_all(session, [*regular, regular[-1] + 3 * PERIOD_NS])
     assert session.tracker.elapsed == pytest.approx([1.0] * 12 + [3.0])
     assert session.tracker.frame_period == pytest.approx(0.04)
-
-
-def test_a_given_rate_counts_at_once():
-    session = TrafficSession(Steps(), frame_rate=50.0)
-    feed_all(session, [0, PERIOD_NS])
-    assert session.tracker.elapsed == pytest.approx([1.0, 2.0])
-    assert session.tracker.frame_period == pytest.approx(0.02)
 
 
 def test_the_detector_is_given_the_tracks_of_the_image_before():
@@ -137,36 +129,6 @@ def test_a_rate_may_be_set_meanwhile():
     assert session.tracker.elapsed[-1] == pytest.approx(2.0)
 
 
-def test_a_stray_that_is_compressed_is_not_decoded():
-    class Coded:
-        size = (5000, 5000)
-        decoded = 0
-
-        def decode(self):
-            Coded.decoded += 1
-            return np.zeros((5000, 5000, 3), np.uint8)
-
-    session = TrafficSession(Steps())
-    session.feed(FRAME, 0)
-    with pytest.raises(StrayImageError):
-        session.feed(Coded(), PERIOD_NS)
-    assert Coded.decoded == 0
-    session.feed(Coded(), 2 * PERIOD_NS)
-    assert Coded.decoded == 2
-
-
-def test_one_odd_image_is_rejected_and_nothing_is_forgotten():
-    session = TrafficSession(Steps())
-    feed_all(session, [0, PERIOD_NS])
-    with pytest.raises(StrayImageError):
-        session.feed(np.zeros((10, 10, 3), np.uint8), 2 * PERIOD_NS)
-    with pytest.raises(StrayImageError):
-        session.feed(FRAME, 3 * PERIOD_NS - 10**12)
-    session.feed(FRAME, 4 * PERIOD_NS)
-    assert session.tracker.resets == 0
-    assert session.restarts == 0
-
-
 def test_a_size_that_stays_begins_anew():
     session = TrafficSession(Steps(), Eye)
     feed_all(session, [0, PERIOD_NS])
@@ -201,18 +163,3 @@ def test_time_that_goes_back_and_stays_there_begins_anew(resets, expected):
     session.feed(FRAME, PERIOD_NS)
     assert session.tracker.resets == expected
     assert "time jumped back" in session.events
-
-
-def test_a_stamp_that_was_ahead_does_not_end_anything():
-    session = TrafficSession(Steps())
-    feed_all(session, [k * PERIOD_NS for k in range(12)])
-    session.feed(FRAME, 12 * PERIOD_NS + 4_000_000_000)
-    session.feed(FRAME, 13 * PERIOD_NS)
-    session.feed(FRAME, 14 * PERIOD_NS)
-    assert session.tracker.resets == 0
-    assert session.tracker.elapsed[-2:] == pytest.approx([2.0, 1.0])
-
-
-def test_a_frame_that_is_none_is_refused():
-    with pytest.raises(InputError, match="a frame must be"):
-        TrafficSession(Steps()).feed(np.zeros((4, 4), np.uint8), 0)

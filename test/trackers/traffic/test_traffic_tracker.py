@@ -218,3 +218,24 @@ def test_a_vehicle_given_by_hand_is_not_refuted_by_a_detector_that_does_not_see_
     for _ in range(120):
         (estimate,) = tracker.step(scene(parked), Detections.none())
     assert (estimate.identity, estimate.mode) == (number, TrackMode.TRACKING)
+
+
+def test_a_reset_leaves_nothing_of_what_was_learnt():
+    """Else a restart after a bad state could fail at once."""
+    worn, new = TrafficTracker(FLAT), TrafficTracker(FLAT)
+    drive(worn, 40, seen=lambda index: index % 5 > 0)
+    worn.reset()
+    first = drive(new, 30, seen=lambda index: index % 3 > 0)
+    again = drive(worn, 30, seen=lambda index: index % 3 > 0)
+    assert repr([tuple(replace(one, identity=1) for one in found) for found in again]) == repr(
+        first
+    )
+
+
+def test_vehicles_can_be_added_as_soon_as_all_was_reset():
+    tracker = TrafficTracker(FLAT)
+    drive(tracker, 20)
+    tracker.reset()
+    number = tracker.add(Box(96, 100, 40, 30))
+    (estimate,) = tracker.step(scene((96, 100, 40, 30)))
+    assert (estimate.identity, estimate.mode) == (number, TrackMode.TRACKING)

@@ -33,10 +33,14 @@ STILL = Drive(acceleration=0.0, top_speed=0.5, focal=400.0)
 MOVING = Drive(acceleration=0.01, top_speed=0.5, focal=400.0)
 
 
-@pytest.fixture
-def state():
+def box_state():
     """A box 40 px wide and 30 px high whose lower edge is 100 px below the horizon."""
     return VehicleState(np.array([80.0, 120.0, 120.0, 150.0]), np.ones(4), 50.0, STILL)
+
+
+@pytest.fixture
+def state():
+    return box_state()
 
 
 def test_the_first_box_is_the_detection(state):
@@ -73,11 +77,11 @@ def test_another_horizon_changes_neither_box_nor_velocity_of_the_lower_edge(stat
 
 
 def test_the_jacobian_is_that_of_the_prediction():
-    start = VehicleState(np.array([80.0, 120.0, 120.0, 150.0]), np.ones(4), 50.0, STILL)
+    start = box_state()
     start.mean[4:] = (0.02, -0.0004)
 
     def predicted(mean):
-        one = VehicleState(np.array([80.0, 120.0, 120.0, 150.0]), np.ones(4), 50.0, STILL)
+        one = box_state()
         one.mean = mean.copy()
         one.predict(2.0)
         return one.mean

@@ -33,7 +33,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import Source, cell_folder,
 from vehicle_pf_tracker.evaluation.result_store import result_key, variant_modules
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs
-from vehicle_pf_tracker.trackers.contract import ParticleParameters
+from vehicle_pf_tracker.trackers.parameters import ParticleParameters
 from vehicle_pf_tracker.trackers.registry import Variant, find_variant
 
 BASELINE = "baseline:"

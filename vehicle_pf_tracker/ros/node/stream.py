@@ -35,9 +35,8 @@ from vehicle_pf_tracker.ros.node.image_input import SerializedImage, frame_of, r
 from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.estimate import Estimate
-from vehicle_pf_tracker.trackers.failures import TrackerError, unexpected
 from vehicle_pf_tracker.trackers.registry import Variant
-from vehicle_pf_tracker.trackers.session import Session, TargetError
+from vehicle_pf_tracker.trackers.session import Session, TargetError, TrackerError, unexpected
 
 _THROTTLE = 5.0
 """Interval between two lines of the same kind in the log, s."""

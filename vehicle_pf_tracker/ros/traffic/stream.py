@@ -37,7 +37,7 @@ from vehicle_pf_tracker.ros.traffic.messages import read_serialized_detections, 
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
-from vehicle_pf_tracker.trackers.failures import TrackerError, unexpected
+from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 

@@ -14,7 +14,7 @@
 
 """Appearance of the target: cells of gradients and colour, and the filter that finds them.
 
-Width and height of the box, by trying sizes a step larger and smaller.
+Width and height of the box follow the response to sizes a step larger and smaller.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class View:
     patch : Patch
         The surroundings.
     spectrum : (n, channels, 2, n // 2 + 1) array or None
-        Of their cells; None for a wide view.
+        Spectrum of their cells; None for a wide view.
     response : (m, m) array
         Response by [y, x], relative to the usual one of visible frames.
     """
@@ -150,13 +150,13 @@ class Appearance:
     Parameters
     ----------
     kernels : Kernels
-        What gradients are measured with, and spectra multiplied.
+        Implementation that measures gradients and multiplies spectra.
     size : (2,) array
         Width and height of the target in the first frame, px.
     penalty : float
         See `CorrelationFilter`.
     colour : bool
-        Whether cells have luminance and colour besides gradients.
+        True where cells have luminance and colour besides gradients.
     """
 
     def __init__(self, kernels: Kernels, size: Array, penalty: float, *, colour: bool) -> None:

@@ -58,9 +58,9 @@ class FrozenTrack:
     Attributes
     ----------
     appearance : Appearance
-        What had been learnt.
+        Appearance that had been learnt.
     sightings : Sightings
-        Where the vehicle had been seen.
+        Sightings of the vehicle until then.
     particles : Hypotheses
         Predicted, and never weighed: their spread is the prior of a return.
     size : (2,) array

@@ -22,8 +22,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.parameters.table import group, parameter
-from vehicle_pf_tracker.trackers.contract import ParticleParameters
-from vehicle_pf_tracker.trackers.evidence import EvidenceParameters
+from vehicle_pf_tracker.trackers.parameters import (
+    EvidenceParameters,
+    ParticleParameters,
+    particles_parameter,
+    share,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +59,9 @@ class FilterParameters:
         maximum=20,
         unit="dated filters",
     )
-    level_rate: float = parameter(
+    level_rate: float = share(
         0.05,
         "Higher: the usual response follows the response of visible frames faster.",
-        minimum=0.0,
-        maximum=1.0,
         unit="per frame",
         tuned=(0.02, 0.2),
     )
@@ -80,19 +82,15 @@ class VehicleMotionParameters:
         unit="of the size, per frame",
         tuned=(0.02, 0.15),
     )
-    velocity_sigma: float = parameter(
+    velocity_sigma: float = share(
         0.03,
         "Larger: follows quicker changes of speed of a visible vehicle; steadier if smaller.",
-        minimum=0.0,
-        maximum=1.0,
         unit="of the size, per frame squared",
         tuned=(0.01, 0.1),
     )
-    gain: float = parameter(
+    gain: float = share(
         0.3,
         "Higher: the velocity takes on more of each displacement.",
-        minimum=0.0,
-        maximum=1.0,
         tuned=(0.1, 0.7),
     )
     hidden_position_sigma: float = parameter(
@@ -103,19 +101,15 @@ class VehicleMotionParameters:
         unit="of the size, per frame",
         tuned=(0.005, 0.06),
     )
-    hidden_velocity_sigma: float = parameter(
+    hidden_velocity_sigma: float = share(
         0.005,
         "Larger: a hidden vehicle is expected to change its speed more.",
-        minimum=0.0,
-        maximum=1.0,
         unit="of the size, per frame squared",
         tuned=(0.002, 0.03),
     )
-    camera_velocity_sigma: float = parameter(
+    camera_velocity_sigma: float = share(
         0.011,
         "Larger: before a moving camera a hidden vehicle is looked for farther from its path.",
-        minimum=0.0,
-        maximum=1.0,
         unit="of the size, per frame squared",
         tuned=(0.004, 0.04),
     )
@@ -139,11 +133,9 @@ class VisibilityParameters:
         unit="log ratio per usual response",
         tuned=(5.0, 20.0),
     )
-    response_middle: float = parameter(
+    response_middle: float = share(
         0.5,
         "Higher: a smaller fall of the response speaks for an occlusion.",
-        minimum=0.0,
-        maximum=1.0,
         unit="of the usual response",
         tuned=(0.35, 0.7),
     )
@@ -155,11 +147,9 @@ class VisibilityParameters:
         unit="log ratio per usual share",
         tuned=(0.5, 8.0),
     )
-    points_middle: float = parameter(
+    points_middle: float = share(
         0.5,
         "Higher: a smaller loss of points speaks for an occlusion.",
-        minimum=0.0,
-        maximum=1.0,
         unit="of the usual share",
         tuned=(0.3, 0.8),
     )
@@ -190,11 +180,9 @@ class VisibilityParameters:
         unit="log ratio per usual share",
         tuned=(2.0, 20.0),
     )
-    partial_middle: float = parameter(
+    partial_middle: float = share(
         0.7,
         "Higher: a smaller loss of points speaks for a partial occlusion: nothing is learnt then.",
-        minimum=0.0,
-        maximum=1.0,
         unit="of the usual share",
         tuned=(0.4, 0.95),
     )
@@ -225,11 +213,9 @@ class SizeParameters:
         maximum=2.0,
         tuned=(0.1, 1.2),
     )
-    points_gain: float = parameter(
+    points_gain: float = share(
         0.5,
         "Higher: the size takes on more of the spread of points on the vehicle.",
-        minimum=0.0,
-        maximum=1.0,
         tuned=(0.0, 1.0),
     )
 
@@ -238,11 +224,9 @@ class SizeParameters:
 class FusionParameters(ParticleParameters):
     """Parameters of `fusion`."""
 
-    num_particles: int = parameter(
+    num_particles: int = particles_parameter(
         60,
         "More: a wider choice of paths behind an occluder, at more time per frame.",
-        minimum=1,
-        maximum=100_000,
     )
     filter: FilterParameters = group(FilterParameters)
     motion: VehicleMotionParameters = group(VehicleMotionParameters)

@@ -14,8 +14,7 @@
 
 """Constant velocity on the road as the camera sees it, fitted to where the vehicle was seen.
 
-Sightings that a standing occluder has cut, made whole.
-
+Before the fit, sightings that a standing occluder has cut are made whole.
 A vehicle that drives behind a wall slowly is followed while less and less of it shows: the box
 shrinks with what is visible. One of its sides then stands with the wall while the opposite one
 drives on; and the other dimension tells the size.
@@ -57,7 +56,7 @@ def made_whole(
     positions, sizes : (N, 2) arrays
         Centres, and widths and heights, px; the background stands.
     responses : (N,) array
-        Of the usual one.
+        Responses of the filter, fractions of the usual one.
 
     Returns
     -------
@@ -258,7 +257,7 @@ def fit_motion(
     sizes : (N,) array
         Geometric means of the sides, px.
     size_weights : (N,) array or None
-        How much each size counts; None for all alike.
+        Weight of each size; None for all alike.
     perspective : bool
         False holds the rate at 0: constant velocity and size in the image.
 

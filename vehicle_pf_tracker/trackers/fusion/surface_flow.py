@@ -82,7 +82,7 @@ class SurfaceFlow:
     Attributes
     ----------
     kernels : MotionKernels
-        What counts the points.
+        Implementation that counts the points.
     share : float
         Share of the points in the box that move with the vehicle, of the usual share; 1 where flow
         tells nothing.
@@ -97,7 +97,7 @@ class SurfaceFlow:
         self.restart()
 
     def restart(self) -> None:
-        """Forget all patches, but not the usual share."""
+        """Discard all patches, but not the usual share."""
         self._kept: deque[_Kept] = deque(maxlen=_KEPT)
         self.forget_share()
 

@@ -43,8 +43,8 @@ _SEEDED_EVERY = 5
 _OLDEST = 10
 """Age in frames at which a set ends; two sets overlap, so that sizes are told all the time."""
 _STRAYED = 0.2
-"""Distance from its place in the box, which turns with the others, of the size, from which on a
-point has left the vehicle."""
+"""A point farther than this (fraction of the box size) from its predicted position in the box has
+left the vehicle; the prediction turns with the other points."""
 _ROUND_TRIP_PX = 1.0
 """Largest error in canonical px of a point tracked forth and back (Kalal et al. 2010)."""
 _CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 8, 0.05)
@@ -78,7 +78,7 @@ class SurfacePoints:
     Attributes
     ----------
     kernels : MotionKernels
-        What fits the motion of points.
+        Implementation that fits the motion of points.
     stretch : (2,) array
         Change of the logarithm of width and height in the last frame by the points' spread.
     """

@@ -47,7 +47,7 @@ _TURNING_SHARE, _TURNING_RESPONSE = 0.85, 0.7
 """Share of the surface that still moves with a vehicle that turns, and response below which it
 does: it is learnt the faster then the lower the response, as what it looked like is out of date."""
 _LEAST_PLIANT = 0.2
-"""Response from which on learning becomes no faster: five times the usual speed."""
+"""Response below which learning becomes no faster: five times the usual speed."""
 _CALM_RESPONSE, _CALM_SHARE = 0.9, 0.9
 """Response, and share of the surface, above which a frame is calm: the size is followed in one,
 flow judged and appearance learnt in the next. That saves a quarter of the time and, over 633 runs,
@@ -75,8 +75,8 @@ _NEW_VELOCITY = 3.0
 """Spread of the first velocities in units of the change per frame: none is known yet."""
 
 
-class Seen(NamedTuple):
-    """Where the vehicle was found in the present frame.
+class Observation(NamedTuple):
+    """Vehicle as it was found in the present frame.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ class Track(ParticleTracker[FusionParameters]):
     _particles: Hypotheses
 
     def start(self, frame: Frame, box: Box) -> Estimate:
-        """Learn the target; see `Tracker.start`."""
+        """Learn the target; see `BaseTracker.start`."""
         self._size = np.array([box.width, box.height], float)
         self._position = np.array(box.centre, float)
         self._velocity = np.zeros(2)
@@ -123,7 +123,7 @@ class Track(ParticleTracker[FusionParameters]):
         return estimate
 
     def reconfigure(self, parameters: FusionParameters) -> None:
-        """Take new parameters; see `Tracker.reconfigure`."""
+        """Take new parameters; see `BaseTracker.reconfigure`."""
         recoloured = parameters.filter.colour != self.parameters.filter.colour
         super().reconfigure(parameters)
         if self._target is not None:
@@ -193,7 +193,7 @@ class Track(ParticleTracker[FusionParameters]):
 
     # A sighting
 
-    def _take_sighting(self, frame: Frame, seen: Seen, elapsed: float) -> None:
+    def _take_sighting(self, frame: Frame, seen: Observation, elapsed: float) -> None:
         """Follow position, velocity and, of a vehicle seen whole, size to the peak, and learn."""
         self._judge_wholeness(frame, elapsed, again=seen.again)
         self._gather(frame, seen.position, elapsed, again=seen.again)

@@ -49,7 +49,7 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     hidden_hypotheses,
 )
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.track import Seen, Track
+from vehicle_pf_tracker.trackers.fusion.track import Observation, Track
 from vehicle_pf_tracker.trackers.fusion.visibility import (
     CLIMB_FREELY,
     CLIMB_ON_PATH,
@@ -79,13 +79,13 @@ class FusionTracker(Track):
     """The flagship."""
 
     def start(self, frame: Frame, box: Box) -> Estimate:
-        """Learn the target; see `Tracker.start`."""
+        """Learn the target; see `BaseTracker.start`."""
         self._set_off = False
         self._frozen: FrozenTrack | None = None
         return super().start(frame, box)
 
     def reconfigure(self, parameters: FusionParameters) -> None:
-        """Take new parameters; see `Tracker.reconfigure`."""
+        """Take new parameters; see `BaseTracker.reconfigure`."""
         before = self._appearance if self._target is not None else None
         super().reconfigure(parameters)
         if before is not None and self._appearance is not before:
@@ -107,7 +107,7 @@ class FusionTracker(Track):
             self._judge_points(self._appearance.usual_patch(view.patch), position)
         was_visible = self._visible
         self._visible = self._particles.probability_visible > 0.5
-        seen = Seen(view, position, response, again=not was_visible)
+        seen = Observation(view, position, response, again=not was_visible)
         if self._follow_turn(frame, view, elapsed):
             self._visible, self._frozen = True, None
         elif self._visible:
@@ -241,7 +241,7 @@ class FusionTracker(Track):
             self._turning.end()
         return turned is not None
 
-    def _looked_at_again(self, frame: Frame, seen: Seen) -> Seen:
+    def _looked_at_again(self, frame: Frame, seen: Observation) -> Observation:
         """Compare a return with other places for a while; the likelier place."""
         frozen = self._frozen
         if frozen is None or not self.parameters.visibility.second_look:
@@ -260,7 +260,7 @@ class FusionTracker(Track):
             return seen
         view, position = found
         self._thaw(frozen)
-        return Seen(view, self._kept_inside(frame, position), view.at(position), again=True)
+        return Observation(view, self._kept_inside(frame, position), view.at(position), again=True)
 
     # Hidden
 

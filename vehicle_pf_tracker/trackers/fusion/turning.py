@@ -18,23 +18,168 @@ In a fast turn response and points end as they do behind an occluder, and the tr
 predicted straight on. Beside it the outline of what moves is followed. Where an occluder stands the
 outline is cut from one side, and where one drives by it becomes larger at once; only a vehicle that
 turns moves as a whole to one side of the predicted path.
+
+Outlines are found before a standing camera. Nothing is computed before it is asked for: frames are
+kept as they are, and their median around the vehicle is the background.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import SmallGrey
 from vehicle_pf_tracker.trackers.fusion.appearance import View
-from vehicle_pf_tracker.trackers.fusion.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.perspective import (
     CLEAR_RESPONSE,
     PerspectiveMotion,
     Sighting,
 )
+
+_KEPT_EVERY = 4
+"""Frames between two that are kept for the background."""
+_KEPT = 15
+"""Frames that the background is the median of: two seconds, of which a vehicle that moves by its
+length within one hides less than half."""
+_FEWEST = 6
+"""Frames below which there is no background yet."""
+_LATEST = 12
+"""Frames kept besides: outlines of just before a doubt are what later ones are compared with."""
+_AROUND = 1.5
+"""Half sides of the neighbourhood, of the box's longer side."""
+_LEAST_CONTRAST, _NOISE_FACTOR = 12.0, 4.0
+"""Difference in grey levels from which a pixel is foreground: at least that of a shadow's rim, and
+so many times the median difference around."""
+_GROWN = 1.3
+"""Size of the box, of itself, whose inside an outline has mostly to lie in."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outline:
+    """Bounding box of what moves.
+
+    Attributes
+    ----------
+    low, high : (2,) arrays
+        Left and upper, right and lower side, px.
+    """
+
+    low: Array
+    high: Array
+
+    @property
+    def centre(self) -> Array:
+        """Centre, px."""
+        return np.asarray((self.low + self.high) / 2)
+
+    @property
+    def size(self) -> Array:
+        """Width and height, px."""
+        return np.asarray(self.high - self.low)
+
+
+class Foreground:
+    """Keeps frames of a camera that stands."""
+
+    def __init__(self) -> None:
+        self._background: deque[SmallGrey] = deque(maxlen=_KEPT)
+        self._latest: deque[SmallGrey] = deque(maxlen=_LATEST)
+        self._frames = 0
+
+    def keep(self, small: SmallGrey, *, still: bool) -> None:
+        """Keep a frame; all earlier ones are discarded if the camera has moved."""
+        if not still:
+            self._background.clear()
+            self._latest.clear()
+            self._frames = 0
+        if self._frames % _KEPT_EVERY == 0:
+            self._background.append(small)
+        self._latest.append(small)
+        self._frames += 1
+
+    @property
+    def is_known(self) -> bool:
+        """True once the background has been seen for long enough, by a camera that stands."""
+        return len(self._background) >= _FEWEST
+
+    def outline(self, centre: Array, size: Array, ago: int = 0) -> Outline | None:
+        """Outline of what moves in a box of this centre and size, px, some frames `ago`.
+
+        None where there is no background, nothing moves, or it reaches out of the neighbourhood.
+        """
+        if not self.is_known or ago >= len(self._latest):
+            return None
+        small = self._latest[-1 - ago]
+        if any(each.image.shape != small.image.shape for each in self._background):
+            return None
+        rows, columns, corner = _neighbourhood(small, centre, size)
+        piece = small.image[rows, columns]
+        if min(piece.shape) < 3:
+            return None
+        usual = median([each.image[rows, columns] for each in self._background])
+        change = cv2.absdiff(piece, usual)
+        level = max(_LEAST_CONTRAST, _NOISE_FACTOR * float(np.median(change)))
+        moving = (cv2.GaussianBlur(change, (3, 3), 0) > level).astype(np.uint8)
+        closed = cv2.morphologyEx(moving, cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
+        inner = centre * small.zoom - corner
+        bounds = _bounds(np.asarray(closed, np.uint8), inner, size * small.zoom)
+        if bounds is None:
+            return None
+        low, high = bounds
+        return Outline((low + corner) / small.zoom, (high + corner) / small.zoom)
+
+
+def median(images: list[npt.NDArray[np.uint8]]) -> npt.NDArray[np.uint8]:
+    """Upper median, pixel by pixel.
+
+    Sorted by exchanges of whole images (odd-even transposition), which takes a tenth of the time of
+    sorting the values of each pixel.
+    """
+    images = images.copy()
+    for turn in range(len(images)):
+        for first in range(turn % 2, len(images) - 1, 2):
+            pair = images[first], images[first + 1]
+            images[first], images[first + 1] = np.minimum(*pair), np.maximum(*pair)
+    return np.ascontiguousarray(images[len(images) // 2])
+
+
+def _neighbourhood(small: SmallGrey, centre: Array, size: Array) -> tuple[slice, slice, Array]:
+    """Rows and columns of the reduced frame around a box, and the first of them as x and y."""
+    height, width = small.image.shape
+    half = _AROUND * float(size.max()) * small.zoom
+    low = np.clip(np.floor(centre * small.zoom - half), 0, (width, height)).astype(int)
+    high = np.clip(np.ceil(centre * small.zoom + half), 0, (width, height)).astype(int)
+    return slice(int(low[1]), int(high[1])), slice(int(low[0]), int(high[0])), low.astype(float)
+
+
+def _bounds(
+    moving: npt.NDArray[np.uint8], centre: Array, size: Array
+) -> tuple[Array, Array] | None:
+    """Bounds of the connected pieces that lie mostly in a box; None where they touch the rim."""
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(moving)
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    half = _GROWN * size / 2
+    rows, columns = moving.shape
+    x = np.clip(np.array([centre[0] - half[0], centre[0] + half[0]]), 0, columns).astype(int)
+    y = np.clip(np.array([centre[1] - half[1], centre[1] + half[1]]), 0, rows).astype(int)
+    inside = np.bincount(labels[y[0] : y[1], x[0] : x[1]].ravel(), minlength=count)
+    for label in range(1, count):
+        area = float(stats[label, cv2.CC_STAT_AREA])
+        if area < 4 or inside[label] < 0.5 * area:
+            continue
+        left, top, width, height = stats[label, :4].tolist()
+        low = np.minimum(low, [left, top])
+        high = np.maximum(high, [left + width, top + height])
+    if not np.isfinite(low).all():
+        return None
+    touches = low.min() <= 0 or high[0] >= columns or high[1] >= rows
+    return None if touches else (low, high)
+
 
 _ASIDE = 0.15
 """Distance of both sides from the predicted path, of the size, that proves a turn."""

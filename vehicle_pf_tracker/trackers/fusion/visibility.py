@@ -86,9 +86,9 @@ def response_evidence(
     view : View
         The response around the prediction.
     positions : (N, 2) array
-        Of the hypotheses, px.
+        Positions of the hypotheses, px.
     kernels : Kernels
-        What climbs.
+        Implementation that climbs.
 
     Returns
     -------

@@ -42,7 +42,6 @@ from vehicle_pf_tracker.image.colour import Histogram, JointColour
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_similarity
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.papers.clear_level import (
     RELATIVE,
     ClearLevel,
@@ -56,6 +55,7 @@ from vehicle_pf_tracker.trackers.papers.likelihood import (
     resampling_parameter,
 )
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.parameters import ParticleParameters, share
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,19 +99,15 @@ class ApfMotionParameters:
 class ApfReferenceParameters:
     """Adaptation of the reference histogram to the vehicle."""
 
-    alpha: float = parameter(
+    alpha: float = share(
         0.01,
         "Higher: the reference follows changes of appearance faster. Counts with the fixed "
         "occlusion rule.",
-        minimum=0.0,
-        maximum=1.0,
         source="P1 Algorithm 1 step 15 (no value printed)",
     )
-    steady_alpha: float = parameter(
+    steady_alpha: float = share(
         0.01,
         "Higher: as alpha, with the relative occlusion rule, which is regular in more frames.",
-        minimum=0.0,
-        maximum=1.0,
         source=RELATIVE,
     )
     steady_above: float = parameter(
@@ -141,12 +137,10 @@ class ApfOcclusionParameters:
         choices=("fixed", "relative"),
         source="P1 Algorithm 1 step 4, interpretation 27",
     )
-    tau: float = parameter(
+    tau: float = share(
         0.8,
         "Higher: smaller changes of the histogram switch to the occlusion regime. Counts with the "
         "fixed rule.",
-        minimum=0.0,
-        maximum=1.0,
         source="P1 Algorithm 1 step 4, interpretation 8",
     )
     raw_histogram: bool = parameter(
@@ -246,12 +240,12 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         super().reconfigure(parameters)
 
     def _learn(self) -> None:
-        bits = self.parameters.effective().histogram_bits
+        bits = self._settings.histogram_bits
         self._first = self.target.joint_histogram(self.window, bits)
         self.reference = Reference(self._first)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
-        settings = self.parameters.effective()
+        settings = self._settings
         self._pi = self._pi_up = 1.0  # step 2
         self._levels = ClearLevel(), ClearLevel()
         self._velocity = MeanVelocity(settings.velocity.window, settings.drift_delay)
@@ -260,7 +254,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         return np.asarray(centre) + moves  # step 1
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        settings = self.parameters.effective()
+        settings = self._settings
         bits, window = settings.histogram_bits, self.window
         regular = self._is_clear(settings)  # step 4
         if regular:
@@ -350,7 +344,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
             running.judge(similarity, level)
         if all(running.clear for running in self._levels):
             for running, similarity in zip(self._levels, similarities, strict=True):
-                running.follow(similarity, level)
+                running.add(similarity, level.rate)
 
     def _follow(
         self,

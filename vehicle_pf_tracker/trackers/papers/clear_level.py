@@ -26,6 +26,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.running_level import RunningLevel
 from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.trackers.parameters import share
 
 RELATIVE = "extension: the relative rule (interpretation 27)"
 """Source of the parameters that the extension has and the paper has not."""
@@ -55,50 +56,32 @@ class ClearLevelParameters:
         unit="mean deviations below the level",
         source=RELATIVE,
     )
-    certain: float = parameter(
+    certain: float = share(
         0.65,
         "Higher: smaller falls are occlusions however much the similarity varies; 0: never.",
-        minimum=0.0,
-        maximum=1.0,
         unit="of the level",
         source=RELATIVE,
         tuned=True,
     )
-    rate: float = parameter(
+    rate: float = share(
         0.05,
         "Higher: level and deviation follow the similarity faster.",
-        minimum=0.0,
-        maximum=1.0,
         unit="per frame",
         source=RELATIVE,
     )
 
 
-class ClearLevel:
+class ClearLevel(RunningLevel):
     """Level of one similarity in clear frames; `clear` is true while the similarity is at it."""
 
     def __init__(self) -> None:
+        super().__init__()
         self.clear = True
-        self._level = RunningLevel()
-
-    @property
-    def value(self) -> float:
-        """Level of the similarity in clear frames, 0 to 1."""
-        return self._level.value
-
-    @property
-    def deviation(self) -> float:
-        """Mean absolute deviation from the level in clear frames."""
-        return self._level.deviation
 
     def judge(self, similarity: float, parameters: ClearLevelParameters) -> None:
         """Compare `similarity` with the level, which sets `clear`; the level stays."""
-        if self._level.count > 0:
+        if self.count > 0:
             multiple = parameters.enter if self.clear else parameters.leave
             least = self.value - multiple * max(self.deviation, _LEAST_DEVIATION)
             # An occlusion in the first frames meets a deviation that is still wide.
             self.clear = similarity >= max(least, parameters.certain * self.value)
-
-    def follow(self, similarity: float, parameters: ClearLevelParameters) -> None:
-        """Let the level follow the similarity of a clear frame."""
-        self._level.add(similarity, parameters.rate)

@@ -16,11 +16,8 @@
 
 Few particles are spread according to the vehicle's speed and the confidence in the last frame. Each
 then climbs a few mean-shift steps to a maximum near it, so that few are enough. It has no
-occlusion branch.
-
-Every k-th pixel of large windows, so that a step takes as long for a near vehicle as for others.
-
-Where k is 1, nothing is changed by a single bit.
+occlusion branch. Of large windows every k-th pixel is measured, so that a step takes as long for a
+near vehicle as for others.
 """
 
 from __future__ import annotations
@@ -41,9 +38,10 @@ from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.parameters import particles_parameter
 
 MOST_PIXELS = 100_000
-"""Of a window: 25 particles of `hpfms` with three shifts each take 30 ms for so many. Vehicles of
+"""Most pixels of a window: 25 particles with three shifts each take 30 ms for so many. Vehicles of
 316 px squared and less are not reduced, which are all but the nearest in 1080p."""
 
 
@@ -104,11 +102,9 @@ class TransitionParameters:
 class HpfmsParameters(ColourParameters):
     """Parameters of `hpfms`."""
 
-    num_particles: int = parameter(
+    num_particles: int = particles_parameter(
         25,
         "More: steadier estimates, at more time per frame; mean shift makes few enough.",
-        minimum=1,
-        maximum=100_000,
         source="Maggio 2005 section 4",
     )
     iterations: int = parameter(

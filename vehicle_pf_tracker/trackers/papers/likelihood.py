@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Colour likelihood of particles from the Hellinger distance (P1 eq. 25).
-
-Parameters that variants of several papers have, each with one text.
-"""
+"""Colour likelihood (P1 eq. 25), and the parameters that variants of several papers have."""
 
 from __future__ import annotations
 

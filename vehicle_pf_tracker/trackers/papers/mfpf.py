@@ -100,13 +100,8 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     def _updates_unused(self) -> bool:
         return False
 
-    @property
-    @abstractmethod
-    def _settings(self) -> FilterParametersT:
-        """Effective parameters."""
-
     def reconfigure(self, parameters: FilterParametersT) -> None:
-        """Take new parameters; see `Tracker.reconfigure`."""
+        """Take new parameters; see `BaseTracker.reconfigure`."""
         if parameters.num_particles != self.parameters.num_particles:
             self._ancestors = None  # the particles themselves are drawn again
         super().reconfigure(parameters)
@@ -335,10 +330,6 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
 class MfpfTracker(FeatureFilter[MfpfParameters]):
     """Colour, edges and texture together."""
-
-    @property
-    def _settings(self) -> MfpfParameters:
-        return self.parameters.effective()
 
     @property
     def _is_joint(self) -> bool:

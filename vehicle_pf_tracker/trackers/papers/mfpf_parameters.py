@@ -24,12 +24,12 @@ from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
 from vehicle_pf_tracker.image.window import WindowFeature
 from vehicle_pf_tracker.parameters.table import group, parameter
-from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.papers.likelihood import (
     LikelihoodParameters,
     as_printed_switch,
     resampling_parameter,
 )
+from vehicle_pf_tracker.trackers.parameters import ParticleParameters, share
 
 TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
     "glcm": Cooccurrence,
@@ -109,20 +109,16 @@ class DispersionParameters:
 class ConfidenceParameters:
     """Confidence that a feature needs in order to count."""
 
-    best_share: float = parameter(
+    best_share: float = share(
         0.1,
         "Higher: the average similarity takes in particles further from the vehicle; 1 takes all, "
         "as printed.",
-        minimum=0.0,
-        maximum=1.0,
         unit="share of the particles",
         source="P2 section IV, interpretation 19",
     )
-    threshold: float = parameter(
+    threshold: float = share(
         0.7,
         "Higher: features drop out at smaller losses of similarity (printed: 0.8).",
-        minimum=0.0,
-        maximum=1.0,
         unit="share of the initial average similarity",
         source="P2 Table II, interpretation 19",
         tuned=True,
@@ -179,11 +175,9 @@ class FeatureFilterParameters(ParticleParameters):
     """Common parameters of `mfpf` and its single-feature filters."""
 
     as_printed: bool = as_printed_switch("interpretations 1, 12 to 19, 25, 26 and 30")
-    reference_weight: float = parameter(
+    reference_weight: float = share(
         0.7,
         "Higher: the reference keeps more of the first frame and follows the last one less.",
-        minimum=0.0,
-        maximum=1.0,
         source="P2 eq. 9, interpretation 15 (no value printed)",
         tuned=True,
     )
@@ -203,11 +197,9 @@ class FeatureFilterParameters(ParticleParameters):
         source="P2 eq. 12, 13 and 18, interpretation 17",
     )
     resampling: str = resampling_parameter("P2 eq. 15")
-    resample_below: float = parameter(
+    resample_below: float = share(
         0.5,
         "Higher: resamples at larger effective sample sizes; 1 always.",
-        minimum=0.0,
-        maximum=1.0,
         unit="share of the particles",
         source="P2 eq. 14, interpretation 16",
     )

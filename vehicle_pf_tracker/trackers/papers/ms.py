@@ -32,10 +32,10 @@ from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
-from vehicle_pf_tracker.trackers.contract import CommonParameters
 from vehicle_pf_tracker.trackers.papers.likelihood import histogram_bits_parameter
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.papers.pf import VELOCITY_WINDOW
+from vehicle_pf_tracker.trackers.parameters import CommonParameters
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,8 +18,6 @@ Resample, propagate with a Normal density, weight by the distance to the first h
 mean. It has no occlusion branch. P1 propagates it as its own filter; Perez et al. have second-order
 dynamics, which are an option.
 
-Common steps of the colour particle filters: first reference, Normal diffusion, mean.
-
 `pf`, `sapf`, `hpfms` and `pfcl` (the particle filters that P1 compares itself with) differ in how
 they bring particles to the vehicle. All compare windows with the histogram of the first frame, and
 none has an occlusion branch.
@@ -41,7 +39,6 @@ from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.contract import ParticleParameters
 from vehicle_pf_tracker.trackers.papers.likelihood import (
     LikelihoodParameters,
     histogram_bits_parameter,
@@ -49,6 +46,7 @@ from vehicle_pf_tracker.trackers.papers.likelihood import (
     resampling_parameter,
 )
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.parameters import ParticleParameters
 
 VELOCITY_WINDOW = 8
 """Displacements in the reported velocity where the filter itself does not use it: steadier than the
@@ -85,11 +83,6 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
         self._reference = Reference(np.zeros(0))
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
         self._position = (0.0, 0.0)
-
-    @property
-    def _settings(self) -> ColourParametersT:
-        """Effective parameters."""
-        return self.parameters
 
     def _learn(self) -> None:
         histogram = self.target.joint_histogram(self.window, self._settings.histogram_bits)

@@ -32,6 +32,7 @@ from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.parameters import particles_parameter
 
 _PRECISION = 1e-4
 """Relative precision of an annealing rate, far below the effect of a different random draw."""
@@ -140,11 +141,9 @@ class AnnealingParameters:
 class SapfParameters(ColourParameters):
     """Parameters of `sapf`."""
 
-    num_particles: int = parameter(
+    num_particles: int = particles_parameter(
         50,
         "Particles of each layer; more: steadier estimates, at more time per frame.",
-        minimum=1,
-        maximum=100_000,
     )
     annealing: AnnealingParameters = group(AnnealingParameters)
 

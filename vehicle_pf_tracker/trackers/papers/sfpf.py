@@ -72,10 +72,6 @@ class SfpfTextureParameters(FeatureFilterParameters):
 class SfpfColorTracker(FeatureFilter[SfpfColorParameters]):
     """Histograms of red, green and blue."""
 
-    @property
-    def _settings(self) -> SfpfColorParameters:
-        return self.parameters.effective()
-
     def _make_features(self) -> Mapping[str, WindowFeature]:
         return {"color": RgbMarginals()}
 
@@ -83,20 +79,12 @@ class SfpfColorTracker(FeatureFilter[SfpfColorParameters]):
 class SfpfEdgeTracker(FeatureFilter[SfpfEdgeParameters]):
     """Directions of the gradient at edge points."""
 
-    @property
-    def _settings(self) -> SfpfEdgeParameters:
-        return self.parameters.effective()
-
     def _make_features(self) -> Mapping[str, WindowFeature]:
         return {"edge": edge_feature(self._settings.edges)}
 
 
 class SfpfTextureTracker(FeatureFilter[SfpfTextureParameters]):
     """Grey-level co-occurrences, or another texture that P2 tried."""
-
-    @property
-    def _settings(self) -> SfpfTextureParameters:
-        return self.parameters.effective()
 
     def _make_features(self) -> Mapping[str, WindowFeature]:
         return {"texture": TEXTURES[self._settings.texture]()}

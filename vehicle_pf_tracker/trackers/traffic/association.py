@@ -12,18 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Assignment of detections to tracks.
+"""Assignment of detections to tracks, and of new tracks to vehicles that were hidden.
 
 The cost of a pair is the squared Mahalanobis distance of the four edges, or, where the detection
 lies inside the predicted box because something hides a part, that of the edges that are not drawn
-in; and the difference in colour.
-
-Detections of one frame, with what is known about each, while they are given to tracks.
-
-Re-identification of a vehicle that reappears away from its predicted position.
-
-Before a new vehicle is reported, those that are hidden near by are asked whether it is one of them:
-by distance, size and colours.
+in; and the difference in colour. Before a new vehicle is reported, it is compared with those that
+are hidden near by: by distance, size and colours.
 """
 
 from __future__ import annotations
@@ -36,13 +30,21 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
-from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, Detections, TrafficNumbers
-from vehicle_pf_tracker.trackers.traffic.track import ColourBins, Track, similarity
+from vehicle_pf_tracker.trackers.traffic.detections import (
+    SHIPPED,
+    DetectionEvidence,
+    Detections,
+    TrafficNumbers,
+    clipped,
+)
+from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
+from vehicle_pf_tracker.trackers.traffic.track import ColourBins, Track, edges_of, similarity
 
 GATE = 30.0
 """Largest cost of a pair: the 0.9999 quantile of chi-squared with four degrees of freedom is 23.5,
 and colours may differ."""
+_PIXEL_NOISE = 0.7
+"""Standard deviation of an edge in px however small the box: a detector's grid."""
 INWARD = np.array([1.0, 1.0, -1.0, -1.0])
 """Sign of a residual (detection less prediction) of left, top, right, bottom that points inward."""
 _LEAST_PART = 0.15
@@ -62,6 +64,20 @@ def check_library() -> None:
             "traffic needs the Python module scipy: install the extra [traffic], "
             "pip install 'vehicle_pf_tracker[traffic]', or with apt python3-scipy"
         )
+
+
+def deviations(edges: Array, noise: float) -> Array:
+    """Estimate the standard deviations (..., 4) of measured edges in px.
+
+    Parameters
+    ----------
+    edges : (..., 4) array
+        Boxes in px.
+    noise : float
+        Standard deviation of an edge, fraction of the size.
+    """
+    size = edges[..., 2:] - edges[..., :2]
+    return np.asarray(np.hypot(np.concatenate([size, size], axis=-1) * noise, _PIXEL_NOISE))
 
 
 def edge_costs(
@@ -105,22 +121,24 @@ def assign(costs: Array) -> list[tuple[int, int]]:
 _NOTHING = np.empty((0, 4))
 
 
-class Seen:
-    """Detections of one frame.
+class FrameDetections:
+    """Detections of one frame, with what is known about each, while they are given to tracks.
 
     Parameters
     ----------
     detections : Detections
         Usable ones.
     evidence : DetectionEvidence
-        What became of earlier ones.
+        Outcomes of earlier detections.
     colours : ColourBins
-        Of the frame.
+        Colours of the frame.
     size : (int, int)
         Width and height of the image.
 
     Attributes
     ----------
+    size : (int, int)
+        Width and height of the image.
     edges : (N, 4) array
         Left, top, right and bottom in px.
     scores : (N,) array
@@ -130,9 +148,9 @@ class Seen:
     samples : list of Sample
         For learning what becomes of them.
     log_odds : (N,) array
-        That each is a vehicle.
+        Log odds that each is a vehicle.
     free : list of int
-        Those that no track has taken.
+        Indices of those that no track has taken.
     """
 
     def __init__(
@@ -142,7 +160,7 @@ class Seen:
         colours: ColourBins,
         size: tuple[int, int],
     ) -> None:
-        boxes = detections.boxes
+        boxes, self.size = detections.boxes, size
         self.edges = np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
         self.scores = detections.scores
         self.labels = detections.labels
@@ -162,8 +180,27 @@ class Seen:
         return self._histograms[index]
 
 
+def pair_costs(
+    tracks: Sequence[Track],
+    found: FrameDetections,
+    indices: Sequence[int],
+    settings: DetectionParameters,
+    numbers: TrafficNumbers = SHIPPED,
+) -> Array:
+    """Cost of each pair of a track and one of the detections at `indices`, by edges and colours."""
+    predicted = edges_of(tracks)
+    variances = np.array([np.diag(track.state.edge_covariance) for track in tracks])
+    spread = np.sqrt(variances + deviations(predicted, settings.edge_noise) ** 2)
+    costs = edge_costs(clipped(predicted, found.size), spread, found.edges[indices], numbers)
+    if settings.colour_cost:
+        for row, column in np.argwhere(costs < GATE).tolist():
+            alike = similarity(tracks[row].colours, found.histogram(indices[column]))
+            costs[row, column] += settings.colour_cost * (1 - alike)
+    return costs
+
+
 _MISSED_FOR = 5.0
-"""Nominal periods without a detection from which on a vehicle may be hidden."""
+"""Nominal periods without a detection after which a vehicle may be hidden."""
 _IN_SIGHT = 0.5
 """Share of its prediction that is in sight, below which it is where it is thought to be, behind
 another one: what appears near by is not it. Without this a car that comes out behind a lorry is

@@ -34,6 +34,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     TrafficNumbers,
     areas,
     intersections,
+    overlaps,
 )
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
@@ -45,11 +46,11 @@ _LEAST_PIECE = 4
 _TRIMMED = 0.15
 """Rows and columns at the rim with less of the fullest one are cut off: reflections, shadows."""
 _COVERED = 0.5
-"""Share of a predicted vehicle in a blob from which on it may be a part of the blob."""
+"""Share of a predicted vehicle in a blob above which it may be a part of the blob."""
 _ALONE = 0.65
-"""Intersection over union with one prediction from which on a blob is that vehicle alone."""
+"""Intersection over union with one prediction above which a blob is that vehicle alone."""
 _PIECE = 0.8
-"""Share of a blob inside a prediction from which on it is a piece of that vehicle."""
+"""Share of a blob inside a prediction above which it is a piece of that vehicle."""
 _REACH = 1.25
 """Distance from a prediction's centre, of its half size, within which a pixel can be its own."""
 _ASPECT, _ASPECT_SPREAD = np.log(0.8), 0.3
@@ -61,11 +62,11 @@ _ASPECT_SIDE = 10
 _SPLIT_MARGIN = 1.0
 """Advantage of taking a blob for the several vehicles that are followed there."""
 _NOTABLE = 0.1
-"""Share of the largest piece from which on another one is part of the vehicle, and no noise."""
+"""Share of the largest piece above which another one is part of the vehicle, and no noise."""
 _OWN = 0.15
-"""Share of a blob from which on a part of it can be a vehicle."""
+"""Share of a blob above which a part of it can be a vehicle."""
 _SHAPED = 100
-"""Area in px from which on a blob has a shape."""
+"""Least area in px of a blob that has a shape."""
 _FULLNESS, _FULLNESS_SPREAD = np.log(0.8), 0.2
 """Usual logarithm of a vehicle's share of its box, to start from, and its standard deviation."""
 _NECK = 0.6
@@ -118,9 +119,8 @@ class BlobReader:
         found: list[Piece] = []
         pieces: dict[int, list[Piece]] = {}
         for part, box in _components(mask):
-            common = intersections(box, predicted)
-            members = np.flatnonzero(common > _COVERED * areas(predicted))
-            if self._is_divided(box, common, predicted, members):
+            members = np.flatnonzero(intersections(box, predicted) > _COVERED * areas(predicted))
+            if self._is_divided(box, predicted, members):
                 found += _divided(part, box, predicted[members])
                 continue
             for piece in self._apart(part, box):
@@ -147,7 +147,7 @@ class BlobReader:
         rows, columns = np.nonzero(part)
         points = np.column_stack([columns, rows]) + 0.5
         owners = np.argmin(
-            [((points - core.centre) ** 2).sum(axis=1) / core.area for core in cores], axis=0
+            [((points - centre) ** 2).sum(axis=1) / area for centre, area in cores], axis=0
         )
         parts = []
         for owner in range(len(cores)):
@@ -178,14 +178,9 @@ class BlobReader:
         fullness = np.log(piece.area / areas(piece.edges)) - self._fullness
         return float(aspect + (fullness / _FULLNESS_SPREAD) ** 2)
 
-    def _is_divided(
-        self, box: Array, common: Array, predicted: Array, members: npt.NDArray[np.intp]
-    ) -> bool:
+    def _is_divided(self, box: Array, predicted: Array, members: npt.NDArray[np.intp]) -> bool:
         """Test for several vehicles in a blob: none fits alone, and the aspects suggest it."""
-        if len(members) < 2:
-            return False
-        union = areas(box) + areas(predicted) - common
-        if (common / union).max() > _ALONE:
+        if len(members) < 2 or overlaps(box, predicted).max() > _ALONE:
             return False
         apart = self._aspect_cost(predicted[members]).mean()
         return bool(apart < self._aspect_cost(box[np.newaxis])[0] + _SPLIT_MARGIN)
@@ -219,16 +214,8 @@ def _components(mask: Mask) -> Iterator[tuple[npt.NDArray[np.bool_], Array]]:
             yield part, np.array([x, y, x + width, y + height], dtype=np.float64)
 
 
-@dataclass(frozen=True, slots=True)
-class _Core:
-    """Inner part of a blob: its centre in px from the blob's corner, and its area."""
-
-    centre: Array
-    area: float
-
-
-def _cores(part: npt.NDArray[np.bool_]) -> list[_Core]:
-    """Find the parts of a blob that hang together by necks only."""
+def _cores(part: npt.NDArray[np.bool_]) -> list[tuple[Array, float]]:
+    """Find the parts that hang together by necks only: centre in px from the corner, and area."""
     if min(part.shape) < _ASPECT_SIDE:
         return []
     padded = cv2.copyMakeBorder(part.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
@@ -239,7 +226,7 @@ def _cores(part: npt.NDArray[np.bool_]) -> list[_Core]:
         (depth > _NECK * depth.max()).astype(np.uint8)
     )
     return [
-        _Core(centres[index] - 0.5, float(stats[index, cv2.CC_STAT_AREA]))
+        (centres[index] - 0.5, float(stats[index, cv2.CC_STAT_AREA]))
         for index in range(1, count)
         if depth[labels == index].max() > _SECOND * depth.max()
     ]

@@ -59,7 +59,7 @@ class Crossing:
     identity : int
         Number of the vehicle.
     label : str
-        Its class; "" where it is unknown.
+        Class of the vehicle; "" where it is unknown.
     mode : TrackMode
         Claim about it when it crossed: where that is `OCCLUDED`, its path was predicted; where it
         is `LOST`, it was seen before and after, and its path is taken to be straight.
@@ -133,7 +133,7 @@ class Counter:
         )
 
     def forget_vehicles(self) -> None:
-        """Forget where all vehicles were, as when a recording begins again; totals stay."""
+        """Discard where all vehicles were, as when a recording begins again; totals stay."""
         self.vehicles.clear()
         self._occupancy = {zone.name: 0 for zone in self.plan.zones}
         self._last_ns = None

@@ -12,14 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Boxes that a detector found in a frame.
+"""Boxes that a detector found, their overlaps, and what experience says about them.
 
-Overlaps of boxes that are given by their edges: left, top, right, bottom in px.
-
-Numbers of `traffic` that can be fitted but that no user turns.
-
-`laboratory/traffic_fit.py` fits them to synthetic scenes. The defaults were chosen by hand;
-laboratory/notes/traffic.md has the comparison.
+The probability that a detection is a vehicle is learnt from the outcomes of earlier ones. Two
+things tell: the score, of which only the order counts, so that a detector whose scores are squared
+or halved is the same one; and the place, because a tree in the wind is reported again and again. A
+place only speaks against a detection: where many vehicles pass, parts of vehicles are detected as
+well.
 """
 
 from __future__ import annotations
@@ -118,8 +117,8 @@ def areas(edges: Array) -> Array:
     return np.asarray(np.maximum(sides[..., 0] * sides[..., 1], 1.0))
 
 
-def unions(edges: Array, others: Array) -> Array:
-    """Divide intersections of one box (4,) with others (N, 4) by their unions."""
+def overlaps(edges: Array, others: Array) -> Array:
+    """Measure the intersection over union of one box (4,) with others (N, 4)."""
     common = intersections(edges, others)
     return np.asarray(common / (areas(edges) + areas(others) - common))
 
@@ -137,16 +136,101 @@ def clipped(edges: Array, size: tuple[int, int]) -> Array:
     return np.hstack([low, np.maximum(np.clip(edges[:, 2:], 0.0, limits[2:]), low + 1)])
 
 
+_REMEMBERED = 2000
+"""Detections that are remembered: some minutes of a few vehicles."""
+_NEIGHBOURS = 40
+"""Detections of about the same score, by rank, that a probability is taken from."""
+_PRIOR = 2.0
+"""Weight of the prior on each side, in detections."""
+_REFRESHED_EVERY = 20
+"""New outcomes after which the order is taken anew."""
+_GRID = 16
+"""Places along each side of the image."""
+_OLD = 200.0
+"""Outcomes at a place above which they are halved: light and wind change."""
+_LARGEST_LOG_ODDS = 6.0
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """Score and place of a detection whose outcome is to be learnt."""
+
+    score: float
+    place: tuple[int, int]
+
+
+class DetectionEvidence:
+    """Outcomes of detections by score and place."""
+
+    def __init__(self) -> None:
+        self._scores = np.empty(_REMEMBERED)
+        self._genuine = np.empty(_REMEMBERED)
+        self._count = 0
+        self._fresh = 0
+        self._sorted = np.empty(0)
+        self._sums = np.zeros(1)
+        self._places = np.full((2, _GRID, _GRID), _PRIOR)
+
+    def sample(self, edges: Array, score: float, size: tuple[int, int]) -> Sample:
+        """Describe a detection by its edges (px) and its score."""
+        centre = (edges[:2] + edges[2:]) / 2
+        column, row = np.clip(centre / size * _GRID, 0, _GRID - 1).astype(int).tolist()
+        return Sample(score, (row, column))
+
+    def learn(self, sample: Sample, genuine: bool) -> None:
+        """Add the outcome of a detection."""
+        index = self._count % _REMEMBERED
+        self._scores[index], self._genuine[index] = sample.score, genuine
+        self._count += 1
+        self._fresh += 1
+        if self._fresh >= min(_REFRESHED_EVERY, self._count):
+            self._refresh()
+        row, column = sample.place
+        self._places[int(genuine), row, column] += 1
+        if self._places[:, row, column].sum() > _OLD:
+            self._places[:, row, column] /= 2
+
+    def log_odds(self, samples: list[Sample]) -> Array:
+        """Logarithm of the odds that detections are vehicles, (N,); 0 where nothing is known."""
+        if not samples:
+            return np.zeros(0)
+        by_score = self._by_score(np.array([one.score for one in samples]))
+        rows, columns = np.array([one.place for one in samples]).T
+        totals = self._places.sum(axis=(1, 2))
+        here = self._places[:, rows, columns]
+        by_place = np.log(here[1] / here[0]) - np.log(totals[1] / totals[0])
+        both = by_score + np.minimum(by_place, 0.0)
+        return np.asarray(np.clip(both, -_LARGEST_LOG_ODDS, _LARGEST_LOG_ODDS))
+
+    def _by_score(self, scores: Array) -> Array:
+        left = np.searchsorted(self._sorted, scores, "left")
+        middle = (left + np.searchsorted(self._sorted, scores, "right")) // 2
+        low = np.maximum(middle - _NEIGHBOURS // 2, 0)
+        high = np.minimum(middle + _NEIGHBOURS // 2, len(self._sorted))
+        genuine = self._sums[high] - self._sums[low]
+        return np.asarray(np.log((genuine + _PRIOR) / (high - low - genuine + _PRIOR)))
+
+    def _refresh(self) -> None:
+        count = min(self._count, _REMEMBERED)
+        order = np.argsort(self._scores[:count], kind="stable")
+        self._sorted = self._scores[order]
+        self._sums = np.concatenate([[0.0], np.cumsum(self._genuine[order])])
+        self._fresh = 0
+
+
 @dataclass(frozen=True, slots=True)
 class TrafficNumbers:
-    """Weights and thresholds.
+    """Weights and thresholds of `traffic` that can be fitted but that no user turns.
+
+    `laboratory/traffic_fit.py` fits them to synthetic scenes. The defaults were chosen by hand;
+    laboratory/notes/traffic.md has the comparison.
 
     Attributes
     ----------
     agreement : float
         Log odds that a detection adds by being where a track predicts it.
     proven_by_scores : float
-        Sum of the log odds of scores from which on no drive is asked for.
+        Sum of the log odds of scores above which no drive is asked for.
     missed_held, missed_hidden : float
         Log odds that a detection missed in plain sight takes off a vehicle that its pixels hold,
         and off one that may be hidden by something unknown.
@@ -155,18 +239,18 @@ class TrafficNumbers:
     missing : float
         Cost of all of the vehicle that the detection lacks.
     held_fall : float
-        Fall of the colours' similarity below its usual value from which on pixels do not hold it.
+        Fall of the colours' similarity below its usual value above which pixels do not hold it.
     held_caution : float
         Factor on the deviations of pixels: errors of successive frames go the same way and add up.
     colour_threshold : float
-        Sum of the differences of the three channels from which on a pixel has changed.
+        Least sum of the differences of the three channels of a pixel that has changed.
     patience : float
         Images for which what has changed is not learnt as background: four seconds, in which a slow
         lorry passes.
     shadow : float
         Least brightness of a shadow, of the background's.
     apart : float
-        Advantage in shape from which on a blob is taken for several vehicles.
+        Advantage in shape above which a blob is taken for several vehicles.
     """
 
     agreement: float = 1.2

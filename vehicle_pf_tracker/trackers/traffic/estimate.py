@@ -47,11 +47,11 @@ class TrackEstimate:
     identity : int
         Number of the vehicle, from 1; never used for another one.
     box : Box
-        Its box in px, predicted while it is hidden; it may extend beyond the image.
+        Box of the vehicle in px, predicted while it is hidden; it may extend beyond the image.
     velocity : (float, float)
         Velocity of the box's centre in px per nominal frame period.
     mode : TrackMode
-        Claim about it.
+        Claim about the vehicle.
     confidence : float
         Probability that the vehicle is where the box says, 0 to 1.
     label : str

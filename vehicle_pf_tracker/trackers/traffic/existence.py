@@ -18,20 +18,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence, Sample
 from vehicle_pf_tracker.trackers.traffic.detections import (
     SHIPPED,
+    DetectionEvidence,
+    Sample,
     TrafficNumbers,
     areas,
     inside_image,
     intersections,
-    unions,
+    overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track
+from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track, edges_of
 
 _LEAST, _MOST = -0.6, 2.0
 """Bounds of the log odds that one detection adds: a few good scores are no proof, and a detector
@@ -53,13 +52,13 @@ _ONE_PERIOD = 1.5
 _DOUBLE = 0.3
 """Log odds that a track without a detection loses while it is one box with a detected one."""
 _SAME = 0.5
-"""Intersection over union from which on two boxes are one."""
+"""Intersection over union above which two boxes are one."""
 _PART = 0.7
-"""Share of a young track inside a detected one from which on it is taken for a part of it."""
+"""A young track covered by a detected one by more than this fraction is taken for a part of it."""
 _YOUNG = 30
-"""Detections from which on a track has shown that it is a vehicle of its own."""
+"""Detections by which a track has shown that it is a vehicle of its own."""
 _BLIND_FROM = 2
-"""Vehicles in sight, all missed in one image, from which on it is the detector that has failed:
+"""Least vehicles in sight, all missed in one image, for the detector to have failed:
 they did not all vanish at once."""
 _BLIND_FOR = 150.0
 """Nominal periods after which a vehicle that no detector sees is doubted even so: 5 s at 30 Hz."""
@@ -141,7 +140,7 @@ class Existence:
         detected = [one for one in tracks if one.confirmed and one.undetected == 0]
         if not detected and _in_sight(tracks) >= _BLIND_FROM:
             return
-        boxes = np.array([track.state.edges for track in detected]).reshape(-1, 4)
+        boxes = edges_of(detected)
         for track in tracks:
             if track.undetected == 0 or (track.given and track.unseen <= _ONE_PERIOD):
                 continue
@@ -211,7 +210,7 @@ def _is_double(track: Track, detected: Array) -> bool:
     if not len(detected):
         return False
     edges = track.state.edges
-    if unions(edges, detected).max() > _SAME:
+    if overlaps(edges, detected).max() > _SAME:
         return True
     share = intersections(edges, detected).max() / areas(edges)
     return track.matches < _YOUNG and float(share) > _PART

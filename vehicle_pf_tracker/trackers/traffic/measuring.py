@@ -23,15 +23,13 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.association import INWARD
+from vehicle_pf_tracker.trackers.traffic.association import INWARD, deviations
 from vehicle_pf_tracker.trackers.traffic.detections import areas, intersections
 from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
-_PIXEL_NOISE = 0.7
-"""Standard deviation of an edge in px however small the box: a detector's grid."""
 _BORDER = 1.0
-"""Distance in px from the border of the image from which on an edge counts as cut."""
+"""Distance in px from the border of the image up to which an edge counts as cut."""
 _PUSHED = 1.0
 """Standard deviations that the opposite edge may at most be pushed out by, where an edge is drawn
 in because it is covered. A vehicle that brakes pushes it out."""
@@ -49,7 +47,7 @@ _FADED = 0.985
 """Decay per detection of the largest latest width and height: a vehicle that drives away
 becomes smaller by about 1 % per frame."""
 _SETTLED = 4
-"""Detections from which on a box is known well enough to tell that an edge is covered."""
+"""Least detections by which a box is known well enough to tell that an edge is covered."""
 _ASPECT = 0.8
 """Height of a vehicle over its width where a border cuts it when it is first seen: that of cars
 from the front. From the side it is half of it, hence the deviation."""
@@ -57,30 +55,16 @@ _ASPECT_DEVIATION = 0.25
 _IMPLAUSIBLE = 0.6
 """Side of a first box, of the usual one, below which something hides a part: its edges may grow."""
 _INSIDE = 0.7
-"""Share of a detection inside the prediction from which on it can be one of several in it."""
+"""Share of a detection inside the prediction above which it can be one of several in it."""
 _BESIDE = 0.1
 """Share of another detection up to which it overlaps with this one and is still beside it."""
 _NOTABLE = 0.15
-"""Share of the prediction that another detection takes up, from which on it is no fragment."""
+"""Share of the prediction above which another detection in it is no fragment."""
 _CROWDED = 3
 """Detections in a row that tell: one may have been torn apart by chance."""
 NO_OTHERS = np.empty((0, 4))
 """Edges of other detections where there are none."""
 _OPPOSITE = (Edge.RIGHT, Edge.BOTTOM, Edge.LEFT, Edge.TOP)
-
-
-def deviations(edges: Array, noise: float) -> Array:
-    """Estimate the standard deviations (..., 4) of measured edges in px.
-
-    Parameters
-    ----------
-    edges : (..., 4) array
-        Boxes in px.
-    noise : float
-        Of the size.
-    """
-    size = edges[..., 2:] - edges[..., :2]
-    return np.asarray(np.hypot(np.concatenate([size, size], axis=-1) * noise, _PIXEL_NOISE))
 
 
 def first_state(
@@ -91,13 +75,13 @@ def first_state(
     Parameters
     ----------
     edges : (4,) array
-        Of the detection, px.
+        Edges of the detection, px.
     noise : float
-        Of an edge, of the size.
+        Standard deviation of an edge, fraction of the size.
     horizon : float
-        Its row in px.
+        Row of the horizon, px.
     drive : Drive
-        Motion of vehicles.
+        Motion model of vehicles.
     size : (int, int)
         Width and height of the image.
     """
@@ -136,9 +120,9 @@ def measure(
     edges : (4,) array
         Edges of the detection, px.
     noise : float
-        Of an edge, of the size.
+        Standard deviation of an edge, fraction of the size.
     covered : float
-        Standard deviations inward from which on an edge is taken to be covered.
+        Standard deviations inward above which an edge is taken to be covered.
     size : (int, int)
         Width and height of the image.
     others : (N, 4) array

@@ -14,12 +14,11 @@
 
 """Detection of moving vehicles before a standing camera.
 
-Model of what a standing camera sees without vehicles: a few earlier colours of every pixel.
-
-A pixel is background where two of its samples have its colour; samples are renewed at random where
-the background is seen, and some are given to a neighbour, so that leaves and uncovered road are
-learnt from their surroundings (Barnich and Van Droogenbroeck 2011). What has changed is not learnt
-until it has stayed for long: a lorry of one colour hides a place for seconds, and would melt in.
+The background is a few earlier colours of every pixel. A pixel is background where two of its
+samples have its colour; samples are renewed at random where the background is seen, and some are
+given to a neighbour, so that leaves and uncovered road are learnt from their surroundings (Barnich
+and Van Droogenbroeck 2011). What has changed is not learnt until it has stayed for long: a lorry of
+one colour hides a place for seconds, and would melt in.
 """
 
 from __future__ import annotations
@@ -44,7 +43,7 @@ _SAMPLES = 10
 _BETWEEN = 2
 """Images from one of the first samples to the next: most pixels are free in two of ten."""
 _AGREEING = 2
-"""Samples of the pixel's colour from which on it is background: one may be of a vehicle."""
+"""Least samples of the pixel's colour for it to be background: one may be of a vehicle."""
 _RENEWED = 40
 """Images after which a sample is renewed, on average: light and leaves change within a second."""
 _RECOVERY = 0.1
@@ -57,7 +56,7 @@ _COMPARED = 3
 _SPARSE = (slice(None, None, 4), slice(None, None, 4))
 """Pixels that the camera's gain is taken from."""
 _LIT = 60
-"""Sum of the channels from which on a pixel tells the gain."""
+"""Sum of the channels above which a pixel tells the gain."""
 _MOST_GAIN = 1.3
 """Largest change of the camera's gain, either way; beyond it the light was switched."""
 _NEIGHBOURS = ((-1, 0), (1, 0), (0, -1), (0, 1))
@@ -174,7 +173,7 @@ _WIDEST = 400
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
 """Holes and gaps up to this size are closed: windscreens show the sky."""
 _ALL_MOVES = 0.5
-"""Share of the image that moves from which on it is the camera that does, or the light."""
+"""Share of moving pixels above which the camera moves, or the light was switched."""
 
 
 class MotionDetector:

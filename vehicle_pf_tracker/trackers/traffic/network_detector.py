@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Detection by a network that somebody else has loaded, told apart by the form of its outputs.
-
-Images fitted into the input of a network.
-"""
+"""Detection by a network that somebody else has loaded, in whose input images are fitted."""
 
 from __future__ import annotations
 
@@ -84,22 +81,19 @@ def letterboxed(frame: Frame, width: int, height: int, *, centred: bool) -> tupl
     """
     across, down = frame_size(frame)
     ratio = min(width / across, height / down)
-    size = max(1, round(across * ratio)), max(1, round(down * ratio))
+    small, fit = stretched(frame, max(1, round(across * ratio)), max(1, round(down * ratio)))
+    size = frame_size(small)
     left, top = ((width - size[0]) // 2, (height - size[1]) // 2) if centred else (0, 0)
     picture: Frame = np.full((height, width, 3), PADDING, np.uint8)
-    picture[top : top + size[1], left : left + size[0]] = _resized(frame, *size)
-    return picture, Fit((size[0] / across, size[1] / down), (float(left), float(top)))
+    picture[top : top + size[1], left : left + size[0]] = small
+    return picture, Fit(fit.scale, (float(left), float(top)))
 
 
 def stretched(frame: Frame, width: int, height: int) -> tuple[Frame, Fit]:
     """Resize an image to `width` x `height` px, whatever its proportions."""
     across, down = frame_size(frame)
-    return _resized(frame, width, height), Fit((width / across, height / down), (0.0, 0.0))
-
-
-def _resized(frame: Frame, width: int, height: int) -> Frame:
-    resized: Frame = cv2.resize(frame, (width, height), interpolation=cv2.INTER_LINEAR)  # type: ignore[assignment]
-    return resized
+    resized = cv2.resize(frame, (width, height), interpolation=cv2.INTER_LINEAR)
+    return np.asarray(resized, np.uint8), Fit((width / across, height / down), (0.0, 0.0))
 
 
 _TYPES: Mapping[str, Any] = {
@@ -166,7 +160,7 @@ class NetworkDetector:
     name : str
         Name of the network in errors, such as its file.
     parameters : DetectorParameters
-        Its classes, thresholds.
+        Classes and thresholds.
 
     Attributes
     ----------

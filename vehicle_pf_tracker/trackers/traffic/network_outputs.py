@@ -24,9 +24,8 @@ form       outputs                                           input it is given
            classes or labels                                 where the input has real numbers
 =========  ================================================  =======================================
 
-N is the number of cells of 8, 16 and 32 px (and 64 px) that the input has.
-
-Names of the classes that networks tell apart.
+N is the number of cells of 8, 16 and 32 px (and 64 px) that the input has. The names of a network's
+classes come from a parameter, from its file, or are those of COCO.
 """
 
 from __future__ import annotations
@@ -63,7 +62,7 @@ class Found:
     scores : array, shape (N,)
         Score of the best class.
     classes : integer array, shape (N,)
-        Its number.
+        Number of that class.
     """
 
     boxes: Array

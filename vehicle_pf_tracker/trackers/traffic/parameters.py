@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameters of `traffic`; laboratory/notes/traffic.md has the model.
-
-Parameters of where detections come from.
-"""
+"""Parameters of `traffic` and of its detector; docs/traffic.md has the model."""
 
 from __future__ import annotations
 
@@ -23,6 +20,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import group, parameter
+from vehicle_pf_tracker.trackers.parameters import frame_rate_parameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,49 +112,6 @@ class BirthParameters:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class TrafficParameters:
-    """Parameters of `traffic`."""
-
-    seed: int = parameter(
-        0,
-        "Seed of everything random; -1: another one in each run, which is reported.",
-        minimum=-1,
-        maximum=2**31 - 1,
-        effect="restarts",
-    )
-    num_particles: int = parameter(
-        50,
-        "More: steadier where pixels alone hold a vehicle, at more time per frame.",
-        minimum=10,
-        maximum=10_000,
-    )
-    lost_after: float = parameter(
-        2.0,
-        "Longer: a hidden vehicle is predicted for longer before it is LOST.",
-        minimum=0.0,
-        maximum=60.0,
-        unit="s",
-    )
-    forgotten_after: float = parameter(
-        3.0,
-        "Longer: a LOST vehicle keeps its number for longer, should it reappear.",
-        minimum=0.0,
-        maximum=600.0,
-        unit="s",
-    )
-    pixels: bool = parameter(True, "Off: a vehicle that is not detected is only predicted.")
-    occlusions: bool = parameter(
-        True, "Off: vehicles are followed as if none could hide another; to compare."
-    )
-    returning: bool = parameter(
-        True, "Off: a vehicle that reappears away from its prediction gets a new number."
-    )
-    motion: RoadMotionParameters = group(RoadMotionParameters)
-    detections: DetectionParameters = group(DetectionParameters)
-    birth: BirthParameters = group(BirthParameters)
-
-
 MOTION, MODEL, TOPIC, NONE = "motion", "model", "topic", "none"
 
 
@@ -211,7 +166,6 @@ class DetectorParameters:
         unit="px",
         read_only=True,
     )
-
     max_wait: float = parameter(
         0.5,
         "Longer: an image waits longer for its detections from a topic, and a detector that has "
@@ -235,17 +189,47 @@ class DetectorParameters:
 
 
 @dataclass(frozen=True, slots=True)
-class TrafficRunParameters(TrafficParameters):
-    """Parameters of the tracker of many vehicles with its clock and its detector."""
+class TrafficParameters:
+    """Parameters of `traffic`: of the tracker, its clock and its detector."""
 
-    frame_rate: float = parameter(
-        0.0,
-        "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
-        "intervals.",
-        minimum=0.0,
-        maximum=1000.0,
-        unit="1/s",
+    seed: int = parameter(
+        0,
+        "Seed of everything random; -1: another one in each run, which is reported.",
+        minimum=-1,
+        maximum=2**31 - 1,
+        effect="restarts",
     )
+    num_particles: int = parameter(
+        50,
+        "More: steadier where pixels alone hold a vehicle, at more time per frame.",
+        minimum=10,
+        maximum=10_000,
+    )
+    lost_after: float = parameter(
+        2.0,
+        "Longer: a hidden vehicle is predicted for longer before it is LOST.",
+        minimum=0.0,
+        maximum=60.0,
+        unit="s",
+    )
+    forgotten_after: float = parameter(
+        3.0,
+        "Longer: a LOST vehicle keeps its number for longer, should it reappear.",
+        minimum=0.0,
+        maximum=600.0,
+        unit="s",
+    )
+    pixels: bool = parameter(True, "Off: a vehicle that is not detected is only predicted.")
+    occlusions: bool = parameter(
+        True, "Off: vehicles are followed as if none could hide another; to compare."
+    )
+    returning: bool = parameter(
+        True, "Off: a vehicle that reappears away from its prediction gets a new number."
+    )
+    motion: RoadMotionParameters = group(RoadMotionParameters)
+    detections: DetectionParameters = group(DetectionParameters)
+    birth: BirthParameters = group(BirthParameters)
+    frame_rate: float = frame_rate_parameter()
     lines: str = parameter(
         "",
         "YAML of lines and zones to count at; empty: nothing is counted.",

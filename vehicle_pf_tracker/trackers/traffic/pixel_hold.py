@@ -56,7 +56,7 @@ _LEAST_SHARE = 0.5
 _GROWTH_SIGMA = 0.02
 """Standard deviation of the change of size in a frame beyond the predicted one."""
 _DRIVES_PX = 0.7
-"""Predicted way in a frame from which on standing points are told from those on the vehicle, px."""
+"""Least predicted way in a frame that tells standing points from those on the vehicle, px."""
 _STANDS = 0.4
 """Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
 _SLIP, _SLIP_PX = 0.02, 0.3

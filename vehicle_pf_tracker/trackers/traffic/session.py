@@ -28,8 +28,8 @@ from typing import Protocol
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import CodedFrame, Frame
-from vehicle_pf_tracker.trackers.failures import Failures
-from vehicle_pf_tracker.trackers.image_stream import ImageStream, Turn
+from vehicle_pf_tracker.trackers.image_stream import Turn
+from vehicle_pf_tracker.trackers.session import StreamSession
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
@@ -59,7 +59,7 @@ class Detector(Protocol):
         ...
 
 
-class TrafficSession:
+class TrafficSession(StreamSession[TrafficTracker]):
     """Control of the tracker: elapsed time, restarts, detections.
 
     Odd images are rejected, or admitted after all, by `ImageStream`; then only the estimates of the
@@ -81,15 +81,13 @@ class TrafficSession:
     Attributes
     ----------
     estimates : tuple of TrackEstimate
-        Those of the last image.
+        Estimates of the last image.
     detector : Detector or None
         The detector in use.
-    events : list of str
-        Irregularities of the last image.
+    events, recovered
+        See `StreamSession`.
     restarts : int
         Times that all vehicles were discarded, so that whoever counts knows.
-    recovered : bool
-        True where the tracker failed and started anew in the last image.
     successors : mapping of int to int
         Identities before the last restart of the vehicles that it kept, with those after it.
     """
@@ -102,23 +100,14 @@ class TrafficSession:
         frame_rate: float = 0.0,
         reset_on_time_jump: bool = True,
     ) -> None:
-        self.tracker = tracker
+        super().__init__(tracker, frame_rate, reset_on_time_jump)
         self.estimates: tuple[TrackEstimate, ...] = ()
-        self.events: list[str] = []
         self.restarts = 0
-        self.recovered = False
         self.successors: Mapping[int, int] = MappingProxyType({})
         self.detector = make_detector() if make_detector else None
         self._make_detector = make_detector
-        self._stream = ImageStream(frame_rate, reset_on_time_jump)
-        self._failures = Failures()
         self._given: dict[int, tuple[Box, str]] = {}
         self._detections: Detections | None = None
-
-    @property
-    def size(self) -> tuple[int, int] | None:
-        """Width and height in px that images are expected to have; None for any size."""
-        return self._stream.size
 
     def add(self, box: Box, label: str = "") -> int:
         """Follow the vehicle in `box` of the last image; see `TrafficTracker.add`."""
@@ -163,10 +152,9 @@ class TrafficSession:
         TrackerError
             If the tracker fails, and does not start anew for it.
         """
-        self.events, self.recovered = [], False
         given = self._detections, detections  # of the image before, which may be admitted only now
         self._detections = detections
-        turns = self._stream.admit(image, stamp_ns)
+        turns = self._admit(image, stamp_ns)
         for turn, found in zip(turns, given[-len(turns) :], strict=True):
             self._take(turn, found)
         return self.estimates
@@ -176,17 +164,7 @@ class TrafficSession:
         if turn.begins_anew:
             self._restart()
         self.tracker.frame_period = turn.period
-        self._track(turn, detections)
-
-    def _track(self, turn: Turn, detections: Detections | None) -> None:
-        try:
-            self._step(turn, detections)
-        except Exception as error:  # whatever a tracker or a network raises
-            self.events.append(self._failures.judge(error))
-            self._recover()
-            self._track(turn, detections)
-        else:
-            self._failures.clear()
+        self._attempt(lambda: self._step(turn, detections))
 
     def _step(self, turn: Turn, detections: Detections | None) -> None:
         if detections is None and self.detector is not None:
@@ -210,7 +188,7 @@ class TrafficSession:
         if self._make_detector is not None:
             self.detector = self._make_detector()
 
-    def _recover(self) -> None:
+    def _start_anew(self) -> None:
         """Start anew with the vehicles given by hand, where each was in the last estimates."""
         given, successors = self._given, {}
         self._restart()
@@ -218,4 +196,3 @@ class TrafficSession:
             with suppress(InputError):  # of a box that has left the image
                 successors[identity] = self.add(box, label)
         self.successors = MappingProxyType(successors)
-        self.recovered = True

@@ -12,11 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""One vehicle that is followed: its state, the evidence that it exists, and its looks.
+"""Vehicles that are followed: state, evidence of existence, colours, and occlusions among them.
 
-Occlusions among vehicles: the one whose lower edge is nearer on the road hides the other.
-
-Colour histograms of boxes, from an image whose colours are quantised once for all vehicles.
+Colours are histograms of boxes, from an image that is quantised once for all vehicles. Of two
+vehicles, the one whose lower edge is nearer on the road hides the other.
 """
 
 from __future__ import annotations
@@ -31,8 +30,12 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import Sample
-from vehicle_pf_tracker.trackers.traffic.detections import areas, inside_image, intersections
+from vehicle_pf_tracker.trackers.traffic.detections import (
+    Sample,
+    areas,
+    inside_image,
+    intersections,
+)
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
@@ -42,7 +45,7 @@ BINS = 64
 _INNER = 0.1
 """Margin on each side, of the size, that is left out: background."""
 _WIDE = 48
-"""Width in px from which on every other row and column is enough."""
+"""Width in px above which every other row and column is enough."""
 
 
 class ColourBins:
@@ -141,11 +144,11 @@ class Track:
     before : (4,) array
         Edges in the frame before, px.
     samples : list of Sample
-        Its detections before it was confirmed.
+        Detections before the vehicle was confirmed.
     usual_similarity : float
         Similarity of its colours to those learnt, while it is detected.
     growth : Growth
-        How its size depends on its place.
+        Regression of the width on the lower edge.
     """
 
     identity: int
@@ -257,7 +260,12 @@ class Track:
 _OCCLUDER_SEEN = 3.0
 """Nominal periods since it was seen, up to which a vehicle can hide others."""
 _NAMED_SHARE = 0.3
-"""Share of a vehicle that another hides from which on it is named as its occluder."""
+"""Share of a vehicle above which the one that hides it is named as its occluder."""
+
+
+def edges_of(tracks: Sequence[Track]) -> Array:
+    """Return the edges (T, 4) of tracks, px."""
+    return np.array([track.state.edges for track in tracks]).reshape(-1, 4)
 
 
 def nearest_first(tracks: Sequence[Track], road: RoadPlane | None) -> list[Track]:
@@ -270,17 +278,13 @@ def nearest_first(tracks: Sequence[Track], road: RoadPlane | None) -> list[Track
     road : RoadPlane or None
         Road that they stand on; None: the lower a vehicle stands in the image, the nearer it is.
     """
-    edges = np.array([track.state.edges for track in tracks]).reshape(-1, 4)
+    edges = edges_of(tracks)
     feet = np.column_stack([(edges[:, 0] + edges[:, 2]) / 2, edges[:, 3]])
     nearness = feet[:, 1] if road is None else road.homography.nearness(road.ideal(feet))
     # What a lens cannot show is out of the image, and last.
     distances = np.nan_to_num(-nearness, nan=np.inf).tolist()
-    order = sorted(zip(distances, tracks, strict=True), key=_by_distance)
-    return [track for _, track in order]
-
-
-def _by_distance(pair: tuple[float, Track]) -> tuple[float, int]:
-    return pair[0], pair[1].identity
+    order = sorted(range(len(tracks)), key=lambda index: (distances[index], tracks[index].identity))
+    return [tracks[index] for index in order]
 
 
 def cover(tracks: Sequence[Track], size: tuple[int, int], occlusions: bool) -> None:

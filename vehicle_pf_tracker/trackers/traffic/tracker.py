@@ -26,27 +26,26 @@ from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.trackers.base import drawn_seed
 from vehicle_pf_tracker.trackers.traffic.association import (
-    GATE,
-    Seen,
+    FrameDetections,
     assign,
-    edge_costs,
     former,
+    pair_costs,
     resume,
 )
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.detections import (
     SHIPPED,
+    DetectionEvidence,
     Detections,
     TrafficNumbers,
     areas,
-    clipped,
     intersections,
 )
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
-from vehicle_pf_tracker.trackers.traffic.measuring import deviations, first_state, is_cut, measure
+from vehicle_pf_tracker.trackers.traffic.measuring import first_state, is_cut, measure
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
 from vehicle_pf_tracker.trackers.traffic.track import (
@@ -54,6 +53,7 @@ from vehicle_pf_tracker.trackers.traffic.track import (
     ColourBins,
     Track,
     cover,
+    edges_of,
     nearest_first,
     similarity,
 )
@@ -66,16 +66,16 @@ _FOCAL = 1.2
 _RECENT = 4.0
 """Nominal periods since it was seen, up to which a track chooses first among the detections."""
 _STRONG = -0.4
-"""Log odds from which on a detection is offered to the tracks in the first round."""
+"""Least log odds of a detection that is offered to the tracks in the first round."""
 _NESTED = 0.7
-"""Share of a detection inside a detected vehicle from which on it is a part of that vehicle."""
+"""Share of a detection inside a detected vehicle above which it is a part of that vehicle."""
 _HELD_WITHIN = 4.0
 """Nominal periods since it was seen, up to which pixels can hold a vehicle: later the points lie on
 what hides it."""
 _HELD_SHARE = 0.3
-"""Least share of a vehicle in sight, and in the image, that pixels can hold it by."""
+"""Least visible share of a vehicle, and share in the image, for pixels to hold it."""
 _LEARNING_SHARE = 0.8
-"""Least share of a vehicle in sight that its colours are learnt from."""
+"""Least visible share of a vehicle for its colours to be learnt."""
 
 
 class TrafficTracker:
@@ -115,15 +115,12 @@ class TrafficTracker:
         self.road = road
         self.frame_period = DEFAULT_PERIOD
         self.bad_states = 0
-        self._restart_random()
         self.last_identity = 0
+        self._numbers = numbers
+        self._seed = drawn_seed(self.parameters.seed)
         self._frame: Frame | None = None
         self._tracks: list[Track] = []
-        self._numbers = numbers
-        self._pixels = PixelHold(numbers)
-        self._evidence = DetectionEvidence()
-        self._existence = Existence(self.parameters, self._evidence, numbers)
-        self._horizon = Horizon()
+        self._clear()
 
     @property
     def seed(self) -> int:
@@ -185,26 +182,34 @@ class TrafficTracker:
         return track.identity
 
     def remove(self, identity: int) -> bool:
-        """Forget a vehicle; False if there is none of this identity."""
+        """Discard a vehicle; False if there is none of this identity."""
         count = len(self._tracks)
         self._tracks = [track for track in self._tracks if track.identity != identity]
         return len(self._tracks) < count
 
     def reset(self) -> None:
-        """Forget all vehicles; identities go on from where they were."""
+        """Discard all vehicles and all that was learnt; identities go on from where they were.
+
+        Vehicles can still be added to the latest frame.
+        """
+        self._clear()
+        if self._frame is not None:
+            self._look_for_horizon()
+
+    def _clear(self) -> None:
+        self._rng = np.random.default_rng(self._seed)
         self._tracks = []
+        self._pixels = PixelHold(self._numbers)
+        self._evidence = DetectionEvidence()
+        self._existence = Existence(self.parameters, self._evidence, self._numbers)
+        self._horizon = Horizon()
 
     def reconfigure(self, parameters: TrafficParameters) -> None:
         """Take new parameters between two frames; no vehicle is lost by it."""
-        changed = parameters.seed != self.parameters.seed
+        if parameters.seed != self.parameters.seed:
+            self._seed = drawn_seed(parameters.seed)
+            self._rng = np.random.default_rng(self._seed)
         self.parameters = self._existence.parameters = parameters
-        if changed:
-            self._restart_random()
-
-    def _restart_random(self) -> None:
-        seed = self.parameters.seed
-        self._seed = seed if seed >= 0 else int(np.random.default_rng().integers(2**31))
-        self._rng = np.random.default_rng(self._seed)
 
     def _look(self, frame: Frame) -> None:
         """Do once what all vehicles need of a frame."""
@@ -226,88 +231,80 @@ class TrafficTracker:
 
     def _take(self, detections: Detections, elapsed: float) -> None:
         """Give the detections to the tracks; what is left over may be new vehicles."""
-        seen = Seen(detections, self._evidence, self._colours, self._size)
+        found = FrameDetections(detections, self._evidence, self._colours, self._size)
         recent = [one for one in self._tracks if one.confirmed and one.unseen < _RECENT]
-        strong = np.flatnonzero(seen.log_odds >= _STRONG).tolist()
-        self._match(recent, seen, strong)
-        self._drop_parts(seen)
-        self._match([one for one in self._tracks if one.confirmed], seen, seen.free)
-        self._drop_parts(seen)
-        self._match([one for one in self._tracks if not one.confirmed], seen, seen.free)
+        strong = np.flatnonzero(found.log_odds >= _STRONG).tolist()
+        self._match(recent, found, strong)
+        self._drop_parts(found)
+        self._match([one for one in self._tracks if one.confirmed], found, found.free)
+        self._drop_parts(found)
+        self._match([one for one in self._tracks if not one.confirmed], found, found.free)
         self._existence.fade(self._tracks, elapsed)
-        for index in seen.free:
-            if self._is_taken(seen.edges[index]):
-                self._evidence.learn(seen.samples[index], False)
+        for index in found.free:
+            if self._is_taken(found.edges[index]):
+                self._evidence.learn(found.samples[index], False)
             else:
-                self._begin_from(seen, index)
+                self._begin_from(found, index)
 
-    def _match(self, tracks: Sequence[Track], seen: Seen, indices: Sequence[int]) -> None:
+    def _match(
+        self, tracks: Sequence[Track], found: FrameDetections, indices: Sequence[int]
+    ) -> None:
         """Pair tracks that have no detection yet with some of the free detections."""
         tracks = [track for track in tracks if track.undetected > 0]
-        indices = [index for index in indices if index in seen.free]
+        indices = [index for index in indices if index in found.free]
         if not tracks or not indices:
             return
         settings = self.parameters.detections
-        predicted = np.array([track.state.edges for track in tracks])
-        variances = np.array([np.diag(track.state.edge_covariance) for track in tracks])
-        spread = np.sqrt(variances + deviations(predicted, settings.edge_noise) ** 2)
-        costs = edge_costs(
-            clipped(predicted, self._size), spread, seen.edges[indices], self._numbers
-        )
-        if settings.colour_cost:
-            for row, column in np.argwhere(costs < GATE).tolist():
-                alike = similarity(tracks[row].colours, seen.histogram(indices[column]))
-                costs[row, column] += settings.colour_cost * (1 - alike)
-        pairs = assign(costs)
+        pairs = assign(pair_costs(tracks, found, indices, settings, self._numbers))
         for _, column in pairs:
-            seen.free.remove(indices[column])
+            found.free.remove(indices[column])
         for row, column in pairs:
-            self._correct(tracks[row], seen, indices[column])
+            self._correct(tracks[row], found, indices[column])
 
-    def _correct(self, track: Track, seen: Seen, index: int) -> None:
+    def _correct(self, track: Track, found: FrameDetections, index: int) -> None:
         """Correct a track by its detection."""
         settings = self.parameters.detections
-        edges = seen.edges[index]
-        others = np.delete(seen.edges, index, axis=0)
+        edges = found.edges[index]
+        others = np.delete(found.edges, index, axis=0)
         whole = measure(track, edges, settings.edge_noise, settings.covered, self._size, others)
-        track.score = float(seen.scores[index])
-        track.label = seen.labels[index] or track.label
+        track.score = float(found.scores[index])
+        track.label = found.labels[index] or track.label
         if whole and track.visible > _LEARNING_SHARE:
-            track.learn_colours(seen.histogram(index))
+            track.learn_colours(found.histogram(index))
             if not is_cut(edges, self._size):
                 track.growth.add(edges)
         known = track.confirmed
-        self._existence.detected(track, edges, seen.samples[index], float(seen.log_odds[index]))
+        self._existence.detected(track, edges, found.samples[index], float(found.log_odds[index]))
         if track.confirmed and not known and self.parameters.returning:
             hidden = former(track, self._tracks)
             if hidden is not None:
                 resume(hidden, track)
                 self._tracks.remove(track)
 
-    def _drop_parts(self, seen: Seen) -> None:
+    def _drop_parts(self, found: FrameDetections) -> None:
         """Drop detections inside vehicles that have one: their bonnets, or second boxes."""
         detected = [one for one in self._tracks if one.confirmed and one.undetected == 0]
-        boxes = np.array([track.state.edges for track in detected]).reshape(-1, 4)
-        for index in tuple(seen.free):
-            edges = seen.edges[index]
+        boxes = edges_of(detected)
+        for index in tuple(found.free):
+            edges = found.edges[index]
             if (intersections(edges, boxes) > _NESTED * areas(edges)).any():
-                seen.free.remove(index)
-                self._evidence.learn(seen.samples[index], False)
+                found.free.remove(index)
+                self._evidence.learn(found.samples[index], False)
 
     def _is_taken(self, edges: Array) -> bool:
         """Test whether a tracked vehicle is where a new one would begin."""
         there = [one for one in self._tracks if one.confirmed and one.unseen < _RECENT]
-        boxes = np.array([track.state.edges for track in there]).reshape(-1, 4)
+        boxes = edges_of(there)
         smaller = np.minimum(areas(boxes), areas(edges))
         return bool((intersections(edges, boxes) > _NESTED * smaller).any())
 
-    def _begin_from(self, seen: Seen, index: int) -> None:
+    def _begin_from(self, found: FrameDetections, index: int) -> None:
         """Take a detection for a new vehicle, as yet without evidence."""
-        edges = seen.edges[index]
-        track = self._begin(edges, seen.labels[index])
-        track.score = float(seen.scores[index])
-        track.learn_colours(seen.histogram(index))
-        self._existence.detected(track, edges, seen.samples[index], float(seen.log_odds[index]))
+        edges = found.edges[index]
+        track = self._begin(edges, found.labels[index])
+        track.score = float(found.scores[index])
+        track.learn_colours(found.histogram(index))
+        self._existence.detected(track, edges, found.samples[index], float(found.log_odds[index]))
 
     def _begin(self, edges: Array, label: str) -> Track:
         """Begin a track in a box, with the next identity."""

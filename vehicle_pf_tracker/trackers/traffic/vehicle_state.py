@@ -58,7 +58,7 @@ _HORIZON_MOVED = 0.05
 """Change of the horizon that is applied, of the lower edge's distance from it: speeds are known no
 better when a vehicle is new."""
 _HORIZON_LEAPT = 0.3
-"""Change of the logarithm of the distance from the horizon from which on it leaps: less is the
+"""Change of the logarithm of the distance from the horizon above which it leaps: less is the
 usual error of an estimate."""
 _SIZE_WALK = 0.004
 """Change of a vehicle's shape as the camera sees it, of its size per nominal period: a vehicle that

@@ -12,12 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Crossings of one line by one vehicle.
-
-Presence of one vehicle in one zone.
-
-Speed of a vehicle as it passes a line.
-"""
+"""One vehicle at one place: crossings of a line, presence in a zone, and speed of the passage."""
 
 from __future__ import annotations
 
@@ -206,7 +201,7 @@ class PassageSpeed:
             self._path.popleft()
 
     def clear(self) -> None:
-        """Forget the path."""
+        """Discard the path."""
         self._path.clear()
 
     def pixels(self) -> float | None:

@@ -12,17 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`conventional`: the particle filter that P3 improves on (Khong et al., Table I).
-
-While the effective sample size is too small, every particle is replaced by a jittered copy drawn
-from the weighted ones, and weighted again. Step numbers are those of Table I.
-
-Repeated resampling within a frame: common part of `conventional` and `adaptive` (P3).
+"""`conventional` and `adaptive`: repeated resampling within a frame (P3, Khong et al.).
 
 Particles are weighted, and while their effective sample size is too small they are replaced and
-weighted again (Tables I and II). The two filters differ in which particles they replace. Equation 6
-has a particle's previous weight as a factor, the tables have not; as in the tables, the next frame
-starts without it also where no pass has run (interpretation 28).
+weighted again. `conventional` (Table I) replaces every particle by a jittered copy drawn from the
+weighted ones. `adaptive` (Table II) replaces only the particles of low weight; under occlusion all
+but the best one, by copies around it. Step numbers are those of the tables. Equation 6 has a
+particle's previous weight as a factor, the tables have not; as in the tables, the next frame starts
+without it also where no pass has run (interpretation 28).
 """
 
 from __future__ import annotations
@@ -31,9 +28,13 @@ from abc import abstractmethod
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+import numpy as np
+import numpy.typing as npt
+
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import sample_normal
+from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
 from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.image.window import keep_inside
@@ -45,6 +46,7 @@ from vehicle_pf_tracker.trackers.papers.likelihood import (
     log_likelihood,
 )
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.parameters import share
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,12 +72,10 @@ class RepeatedResamplingParameters(ColourParameters):
         source="P3 Table I step 16, interpretation 23",
         tuned=True,
     )
-    criterion: float = parameter(
+    criterion: float = share(
         0.7,
         "Higher: more passes a frame until the effective sample size is reached; 1, as printed, "
         "never is.",
-        minimum=0.0,
-        maximum=1.0,
         unit="share of the particles",
         source="P3 Table I step 13, interpretation 21",
         tuned=True,
@@ -117,26 +117,18 @@ class WeighedParticles:
 
     Attributes
     ----------
-    positions : (N, 2) array
-        Positions in px.
     coefficients : (N,) array
         Bhattacharyya coefficients with the reference.
     cloud : Cloud
-        The positions with their normalised weights.
+        Positions in px with their normalised weights.
     """
 
-    positions: Array
     coefficients: Array
     cloud: Cloud
 
 
 class RepeatedResampling(ColourTracker[RepeatedParametersT]):
     """Tables I and II of P3 but for the pass of resampling."""
-
-    @property
-    @abstractmethod
-    def _settings(self) -> RepeatedParametersT:
-        """Effective parameters."""
 
     @abstractmethod
     def resample_once(
@@ -169,10 +161,10 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
     def weigh(self, positions: Array, coefficients: Array) -> WeighedParticles:
         """Weigh particles by their Bhattacharyya coefficients, (N,)."""
         weights = from_log(log_likelihood(coefficients, self._settings.likelihood))
-        return WeighedParticles(positions, coefficients, Cloud(positions, *weights))
+        return WeighedParticles(coefficients, Cloud(positions, *weights))
 
     def _is_degenerate(self, particles: WeighedParticles) -> bool:
-        limit = self._settings.criterion * len(particles.positions)
+        limit = self._settings.criterion * len(particles.cloud.positions)
         return effective_sample_size(particles.cloud.weights) < limit
 
     def _scattered(self, frame: Frame, parents: Array, spread: float) -> Array:
@@ -192,10 +184,6 @@ class ConventionalParameters(RepeatedResamplingParameters):
 class ConventionalTracker(RepeatedResampling[ConventionalParameters]):
     """Table I of P3."""
 
-    @property
-    def _settings(self) -> ConventionalParameters:
-        return self.parameters.effective()
-
     def resample_once(
         self, frame: Frame, particles: WeighedParticles, elapsed: float
     ) -> tuple[WeighedParticles, int, str]:
@@ -206,3 +194,109 @@ class ConventionalTracker(RepeatedResampling[ConventionalParameters]):
         copies = self._scattered(frame, parents, spread)  # step 16
         weighed = self.weigh(copies, self.similarity(frame, copies))  # step 17
         return weighed, len(copies), "regular"
+
+
+OCCLUSION_TESTS = ("n_eff", "similarity")
+
+
+@dataclass(frozen=True, slots=True)
+class OcclusionTestParameters:
+    """Occlusion test, and the regeneration around the best particle that follows it."""
+
+    test: str = parameter(
+        "n_eff",
+        "Take a small effective sample size as occlusion, as printed, or a low similarity "
+        "of the best particle.",
+        choices=OCCLUSION_TESTS,
+        source="P3 Table II step 15, interpretation 22",
+    )
+    n_eff: float = share(
+        0.3,
+        "Higher: more peaked weights count as occlusion.",
+        unit="share of the particles",
+        source="P3 T_thres, interpretation 22",
+        tuned=True,
+    )
+    similarity: float = share(
+        0.7,
+        "Higher: smaller losses of the best particle's similarity count as occlusion.",
+        unit="share of the clear level",
+        source="interpretation 22",
+    )
+    jitter: float = parameter(
+        0.25,
+        "Larger: searches further around the best particle.",
+        minimum=0.0,
+        maximum=10.0,
+        unit="share of sigma",
+        source="P3 Table II step 17, interpretation 23",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class AdaptiveParameters(RepeatedResamplingParameters):
+    """Parameters of `adaptive`."""
+
+    low_weight: float = parameter(
+        1.0,
+        "Higher: more particles are replaced in each pass.",
+        minimum=0.0,
+        maximum=100.0,
+        unit="of the mean weight 1/N",
+        source="P3 Table II step 19, interpretation 23",
+        tuned=True,
+    )
+    occlusion: OcclusionTestParameters = group(OcclusionTestParameters)
+
+    def effective(self) -> AdaptiveParameters:
+        """Return the effective parameters: as printed where `as_printed` is set."""
+        if not self.as_printed:
+            return self
+        return replace(common_print(self), occlusion=replace(self.occlusion, test="n_eff"))
+
+
+class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
+    """Table II of P3."""
+
+    def resample_once(
+        self, frame: Frame, particles: WeighedParticles, elapsed: float
+    ) -> tuple[WeighedParticles, int, str]:
+        """Replace particles once; see `RepeatedResampling.resample_once`."""
+        settings = self._settings
+        weights, count = particles.cloud.weights, len(particles.cloud.positions)
+        occluded = self._is_occluded(particles)  # step 15
+        if occluded:
+            kept = np.arange(count) == weights.argmax()  # step 16
+            spread = settings.occlusion.jitter * settings.sigma * elapsed
+        else:
+            kept = weights >= min(settings.low_weight / count, weights.max())  # step 19
+            spread = settings.jitter * settings.sigma * elapsed
+        weighed = self._regenerate(frame, particles, kept, spread)  # steps 17, 20 and 22
+        return weighed, count - int(kept.sum()), "occlusion" if occluded else "regular"
+
+    def _is_occluded(self, particles: WeighedParticles) -> bool:
+        test = self._settings.occlusion
+        if test.test == "n_eff":
+            limit = test.n_eff * len(particles.cloud.positions)
+            return effective_sample_size(particles.cloud.weights) < limit
+        best = 1.0 - hellinger_distance(particles.coefficients.max())
+        return bool(best < test.similarity * self._judge.level)
+
+    def _regenerate(
+        self,
+        frame: Frame,
+        particles: WeighedParticles,
+        kept: npt.NDArray[np.bool_],
+        spread: float,
+    ) -> WeighedParticles:
+        """Replace all particles but the kept ones by copies of those; only these are weighed."""
+        missing = len(kept) - int(kept.sum())
+        if missing == 0:
+            return particles
+        scheme = SCHEMES[self._settings.resampling]
+        ancestors = scheme(np.where(kept, particles.cloud.weights, 0.0), missing, self._rng)
+        copies = self._scattered(frame, particles.cloud.positions[ancestors], spread)
+        positions, coefficients = particles.cloud.positions.copy(), particles.coefficients.copy()
+        positions[~kept] = copies
+        coefficients[~kept] = self.similarity(frame, copies)
+        return self.weigh(positions, coefficients)

@@ -1,0 +1,158 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Parameters that variants have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.image.kernels.choice import CHOICES, load_kernels
+from vehicle_pf_tracker.parameters.table import Effect, group, parameter
+
+
+def share(
+    default: float,
+    doc: str,
+    *,
+    unit: str = "",
+    source: str = "",
+    effect: Effect = "keeps",
+    tuned: bool | tuple[float, float] = False,
+) -> Any:
+    """Make a parameter from 0 to 1."""
+    return parameter(
+        default, doc, minimum=0.0, maximum=1.0, unit=unit, source=source, effect=effect, tuned=tuned
+    )
+
+
+def particles_parameter(default: int, doc: str, *, source: str = "") -> Any:
+    """Make the number of particles."""
+    return parameter(default, doc, minimum=1, maximum=100_000, source=source)
+
+
+def frame_rate_parameter() -> Any:
+    """Make the nominal rate of the images."""
+    return parameter(
+        0.0,
+        "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
+        "intervals.",
+        minimum=0.0,
+        maximum=1000.0,
+        unit="1/s",
+    )
+
+
+def side_parameter(doc: str) -> Any:
+    """Make a side of the window, in px."""
+    return parameter(0.0, doc, minimum=0.0, maximum=4096.0, unit="px", effect="relearns")
+
+
+@dataclass(frozen=True, slots=True)
+class WindowParameters:
+    """Size of the window that features are taken from."""
+
+    width: float = side_parameter(
+        "Wider: more of the surroundings count as the target; 0 takes the target box's width."
+    )
+    height: float = side_parameter(
+        "Higher: more of the surroundings count as the target; 0 takes the target box's height."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class EvidenceParameters:
+    """Thresholds of the evidence, relative to its clear level."""
+
+    occluded_below: float = share(
+        0.7,
+        "Lower: deeper occlusions are needed before the mode leaves TRACKING.",
+        unit="share of the clear level",
+    )
+    clear_above: float = share(
+        0.8,
+        "Higher: more of the vehicle must be visible again before the mode returns to TRACKING.",
+        unit="share of the clear level",
+    )
+    minimum: float = share(
+        0.3,
+        "Similarity below which there is no evidence, whatever the clear level is.",
+    )
+    level_rate: float = share(
+        0.05,
+        "Higher: the clear level follows the similarity faster.",
+        unit="per frame",
+    )
+
+    def validate(self) -> None:
+        """Check that the two thresholds are in order."""
+        if self.occluded_below > self.clear_above:
+            raise InputError(
+                f"evidence.occluded_below ({self.occluded_below:g}) must not be above "
+                f"evidence.clear_above ({self.clear_above:g})"
+            )
+
+
+ParametersT = TypeVar("ParametersT", bound="CommonParameters")
+
+
+@dataclass(frozen=True, slots=True)
+class CommonParameters:
+    """Parameters of every variant."""
+
+    seed: int = parameter(
+        0,
+        "Same seed, frames and parameters give the same estimates; -1 draws one and reports it.",
+        minimum=-1,
+        maximum=2**31 - 1,
+        effect="restarts",
+    )
+    frame_rate: float = frame_rate_parameter()
+    lost_after: float = parameter(
+        5.0,
+        "Longer: the mode stays OCCLUDED longer before it becomes LOST.",
+        minimum=0.0,
+        maximum=86_400.0,
+        unit="s",
+    )
+    kernels: str = parameter(
+        "auto",
+        "Code that measures windows: numba is several times faster, opencv always available; "
+        "auto takes numba where it is installed. Estimates may differ in their last digits.",
+        choices=CHOICES,
+    )
+    window: WindowParameters = group(WindowParameters)
+    evidence: EvidenceParameters = group(EvidenceParameters)
+
+    def effective(self: ParametersT) -> ParametersT:
+        """Return the effective parameters, where some override others."""
+        return self
+
+    def validate(self) -> None:
+        """Check parameters against each other, and that the kernels are available."""
+        self.evidence.validate()
+        if self.kernels == "numba":
+            load_kernels(self.kernels)
+
+
+@dataclass(frozen=True, slots=True)
+class ParticleParameters(CommonParameters):
+    """Parameters of every particle filter."""
+
+    num_particles: int = particles_parameter(
+        200,
+        "More: steadier estimates, at more time per frame.",
+    )
