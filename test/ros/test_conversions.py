@@ -46,7 +46,12 @@ from vehicle_pf_tracker.ros.messages import (
     velocity_message,
 )
 from vehicle_pf_tracker.ros.node.image_input import read_image
-from vehicle_pf_tracker.ros.node.target_messages import box_of_point, box_of_polygon, box_of_region
+from vehicle_pf_tracker.ros.node.input_messages import (
+    box_of_point,
+    box_of_polygon,
+    box_of_region,
+    check_frame_id,
+)
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
@@ -161,33 +166,34 @@ def test_a_region_is_a_box():
 
 
 def test_a_box_message_comes_back(header, estimate):
-    assert box_of_polygon(box_message(header, estimate), "camera") == estimate.box
+    assert box_of_polygon(box_message(header, estimate)) == estimate.box
 
 
 @given(st.permutations([(1, 2), (5, 2), (5, 9), (1, 9)]))
 def test_corners_may_come_in_any_order(corners):
-    assert box_of_polygon(polygon(*corners), None) == Box(1, 2, 4, 7)
+    assert box_of_polygon(polygon(*corners)) == Box(1, 2, 4, 7)
 
 
-@pytest.mark.parametrize("frame_id", ["", "camera"])
-def test_a_point_centres_the_present_box(frame_id):
-    box = box_of_point(point(50, 40, frame_id), "camera", Box(0, 0, 20, 10))
-    assert box == Box(40, 35, 20, 10)
+def test_a_point_centres_the_present_box():
+    assert box_of_point(point(50, 40), Box(0, 0, 20, 10)) == Box(40, 35, 20, 10)
 
 
-def test_any_frame_will_do_before_the_first_image():
-    assert box_of_point(point(5, 5, "map"), None, Box(0, 0, 2, 2)) == Box(4, 4, 2, 2)
+@pytest.mark.parametrize(
+    ("frame_id", "image_frame"),
+    [("", "camera"), ("camera", "camera"), ("camera_px", "camera"), ("map", None)],
+)
+def test_any_frame_will_do_before_the_first_image_and_then_the_images(frame_id, image_frame):
+    check_frame_id("~/set_box", Header(frame_id=frame_id), image_frame, "_px")
 
 
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: box_of_polygon(polygon((1, 1), (2, 2), frame_id="map"), "camera"),
-        lambda: box_of_polygon(polygon((1, 1)), None),
-        lambda: box_of_polygon(polygon((1, math.nan), (2, 2)), None),
-        lambda: box_of_point(point(1, 1, "map"), "camera", Box(0, 0, 2, 2)),
-        lambda: box_of_point(point(-math.inf, 1), None, Box(0, 0, 2, 2)),
-        lambda: box_of_point(point(1, 1), None, None),
+        lambda: check_frame_id("~/set_box", Header(frame_id="map"), "camera", ""),
+        lambda: box_of_polygon(polygon((1, 1))),
+        lambda: box_of_polygon(polygon((1, math.nan), (2, 2))),
+        lambda: box_of_point(point(-math.inf, 1), Box(0, 0, 2, 2)),
+        lambda: box_of_point(point(1, 1), None),
     ],
 )
 def test_what_is_no_target_is_said_in_one_sentence(make):

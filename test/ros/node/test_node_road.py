@@ -53,8 +53,8 @@ from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.camera import Lens
 from vehicle_pf_tracker.ros.node import camera_inputs, outputs
+from vehicle_pf_tracker.ros.node.input_messages import lens_of_info
 from vehicle_pf_tracker.ros.replay.tracker_link import Answers
-from vehicle_pf_tracker.ros.road_messages import lens_of_info
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 pytestmark = pytest.mark.ros

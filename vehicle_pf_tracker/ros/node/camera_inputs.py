@@ -35,7 +35,7 @@ from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.camera import Pose, PoseTree
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.image_input import image_topic
-from vehicle_pf_tracker.ros.road_messages import ImageLens, lens_of_info, pose_of_transform
+from vehicle_pf_tracker.ros.node.input_messages import ImageLens, lens_of_info, pose_of_transform
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.localisation import Localisation
 

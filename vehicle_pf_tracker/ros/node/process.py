@@ -44,7 +44,7 @@ from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedE
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
-from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
+from vehicle_pf_tracker.ros.node.stream import is_loading
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.ros.process import end_at_once, run_process
 from vehicle_pf_tracker.ros.rclpy_internals import (
