@@ -12,18 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Interface of a recording that can be played; `recordings.reader.Recording` has it.
-
-Where the images of a recording are, for the launch file of a replay.
-
-Quality of service of a replay's publishers: as recorded, or as a file says.
-"""
+"""Quality of service of a replay's publishers: as recorded, or as a file says."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import Any
 
 import yaml
 from rclpy.duration import Duration
@@ -36,125 +31,7 @@ from rclpy.qos import (
 )
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.parameters.files import read_yaml_file
-from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
-
-
-class PlayableTopic(Protocol):
-    """A topic of a recording."""
-
-    @property
-    def name(self) -> str:
-        """Its name."""
-
-    @property
-    def type_name(self) -> str:
-        """Its ROS type, empty where it is not known."""
-
-    @property
-    def is_cdr(self) -> bool:
-        """True where its messages are serialized as ROS 2 does it."""
-
-    @property
-    def offered_qos(self) -> str:
-        """Its recorded QoS profiles as YAML text, empty where they are not known."""
-
-
-class PlayableMessage(Protocol):
-    """A message as it was recorded."""
-
-    @property
-    def topic(self) -> str:
-        """Its topic."""
-
-    @property
-    def log_time_ns(self) -> int:
-        """When it was recorded, in ns."""
-
-    @property
-    def stamp_ns(self) -> int | None:
-        """Stamp of its header in ns, None without one."""
-
-    @property
-    def data(self) -> bytes:
-        """The message in CDR."""
-
-
-class Playable(Protocol):
-    """A recording, read anew by each call of `messages`."""
-
-    @property
-    def path(self) -> object:
-        """Path or URL, for messages to the user."""
-
-    @property
-    def image_topic(self) -> str:
-        """The topic whose images are tracked."""
-
-    @property
-    def image_type(self) -> str:
-        """Its ROS type."""
-
-    @property
-    def topics(self) -> Sequence[PlayableTopic]:
-        """All topics."""
-
-    @property
-    def start_ns(self) -> int:
-        """Log time of the first message in ns."""
-
-    @property
-    def end_ns(self) -> int:
-        """Log time of the last message in ns."""
-
-    def messages(
-        self,
-        topics: Collection[str] | None = None,
-        start_offset: float = 0.0,
-        duration: float | None = None,
-    ) -> Iterator[PlayableMessage]:
-        """Yield messages in the order of their log times."""
-
-    def truth(self) -> tuple[Truth, ...]:
-        """Read all truth."""
-
-    def first_truth(self) -> Truth | None:
-        """Read the earliest truth."""
-
-
-_COMPRESSED = "/compressed"
-
-
-class RecordedImages(NamedTuple):
-    """Where the images of a recording are, and how a node hears them.
-
-    Attributes
-    ----------
-    topic : str
-        As recorded.
-    base : str
-        What the node's ``image`` is remapped to.
-    transport : str
-        The node's parameter ``image_transport``.
-    published : str
-        What the replay publishes them as.
-    """
-
-    topic: str
-    base: str
-    transport: str
-    published: str
-
-
-def recorded_images(recording: Playable) -> RecordedImages:
-    """Find how nodes hear the images of a recording."""
-    name = recording.image_topic
-    if recording.image_type != COMPRESSED_IMAGE:
-        return RecordedImages(name, name, "raw", name)
-    base = name.removesuffix(_COMPRESSED)
-    return RecordedImages(name, base, "compressed", base + _COMPRESSED)
-
 
 _POLICIES = {
     "history": HistoryPolicy,
