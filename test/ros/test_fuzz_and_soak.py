@@ -55,18 +55,6 @@ def test_a_short_soak(start_process):
     assert "MB a minute" in told
 
 
-def test_a_few_service_requests(start_process):
-    told = run(start_process, "service_requests.py", "--quick")
-    assert "| burst | 1 | 1000 | 30 | 30 |" in told
-    assert "| one by one | 1 | 10 | 50 | 50 |" in told
-
-
-def test_a_few_vehicles_come_and_go(start_process):
-    told = run(start_process, "traffic_soak.py", "--vehicles", "200")
-    assert "200 vehicles in" in told
-    assert "; twice: 0" in told
-
-
 @pytest.mark.parametrize("detector", ["topic", "motion"])
 def test_a_few_vehicles_come_and_go_before_the_node(start_process, detector):
     if detector == "topic" and find_spec("vision_msgs") is None and (reason := missing()):
