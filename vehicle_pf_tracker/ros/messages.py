@@ -101,9 +101,14 @@ def stamp_ns(header: Header) -> int:
     return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
 
 
-def key_values(values: Mapping[str, object]) -> list[KeyValue]:
-    """Format values as text; every number can be read back to its last digit."""
-    return [KeyValue(key=key, value=_text(value)) for key, value in values.items()]
+def status(
+    level: bytes, name: str, words: str, hardware_id: str, values: Mapping[str, object]
+) -> DiagnosticStatus:
+    """Make a status; every number in it can be read back to its last digit."""
+    pairs = [KeyValue(key=key, value=_text(value)) for key, value in values.items()]
+    return DiagnosticStatus(
+        level=level, name=name, message=words, hardware_id=hardware_id, values=pairs
+    )
 
 
 def _text(value: object) -> str:
@@ -127,14 +132,8 @@ def mode_message(
     values : mapping
         Scalars of the estimate, or the reason of a rejection.
     """
-    status = DiagnosticStatus(
-        level=LEVELS[mode],
-        name=name,
-        message=mode,
-        hardware_id=hardware_id,
-        values=key_values({"mode": mode, **values}),
-    )
-    return DiagnosticArray(header=header, status=[status])
+    one = status(LEVELS[mode], name, mode, hardware_id, {"mode": mode, **values})
+    return DiagnosticArray(header=header, status=[one])
 
 
 def position_message(

@@ -322,11 +322,3 @@ def test_numbers_are_those_of_an_offline_run_and_of_a_replay(bench, rig):
     assert columns == replayed.road_columns()
     for name, numbers in columns.items():
         assert [float(values_of(answer)[name]) for answer in answers] == numbers
-
-
-def test_a_replay_without_a_road_has_no_columns_of_it(bench):
-    rig, replayed = Rig(bench, on_target()), Answers()
-    replayed.expect(0, FIRST_NS)
-    replayed.receive(rig.show_frame(road(1)[0], 0))
-    assert replayed.count == 1
-    assert replayed.road_columns() == {}

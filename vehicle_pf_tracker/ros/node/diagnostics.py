@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`/diagnostics` at 1 Hz: the node's health, and why no images arrive.
-
-Counts of a node's input and work, for `/diagnostics`.
-"""
+"""`/diagnostics` at 1 Hz: counts of a node's input and work, and why no images arrive."""
 
 from __future__ import annotations
 
@@ -27,7 +24,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from vehicle_pf_tracker.ros.messages import LEVELS, WAITING, key_values
+from vehicle_pf_tracker.ros.messages import LEVELS, WAITING, status
 from vehicle_pf_tracker.ros.node.image_input import ImageInput
 
 
@@ -200,14 +197,8 @@ class Diagnostics:
         level, words = self._judge()
         publishers = self.source.publisher_count if self.source else 0
         values = {**self.health.report(), "matched publishers": publishers, **self.facts}
-        status = DiagnosticStatus(
-            level=level,
-            name=f"{self._node.get_name()}: tracker",
-            message=words,
-            hardware_id=self.source.topic if self.source else "",
-            values=key_values(values),
-        )
-        message = DiagnosticArray(status=[status])
+        name, topic = self._node.get_name(), self.source.topic if self.source else ""
+        message = DiagnosticArray(status=[status(level, f"{name}: tracker", words, topic, values)])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
 

@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from geometry_msgs.msg import PointStamped
@@ -31,7 +31,6 @@ from vehicle_pf_tracker.ros.messages import detections_type
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.input_messages import box_of_region, check_frame_id, finite
-from vehicle_pf_tracker.ros.node.process import run_node_of
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.stream import MOST_WAITING, TrafficStream
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles, plane_of
@@ -179,19 +178,3 @@ class TrafficNode(ImageNode):
         if self.stream is not None:
             self.stream.reconfigure(configuration)
             self.diagnostics.facts.update(self.stream.facts)
-
-
-def run_traffic(arguments: Sequence[str]) -> int:
-    """Run the node until it is told to end.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        Command line without the program's name.
-
-    Returns
-    -------
-    int
-        Exit status; see `vehicle_pf_tracker.ros.node.process.run_node`.
-    """
-    return run_node_of(TRAFFIC.executable, TrafficNode, arguments)

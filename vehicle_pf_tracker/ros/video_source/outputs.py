@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Publishers of a source's images.
-
-A camera's calibration file, as ROS's `camera_calibration` writes it.
-"""
+"""Publishers of a source's images, and of the calibration that a file gives for them."""
 
 from __future__ import annotations
 

@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
@@ -38,36 +37,8 @@ _SPECS: dict[str, tuple[object, str]] = {
 _RANGES = {"jpeg_quality": {"integer_range": [IntegerRange(from_value=1, to_value=100, step=1)]}}
 
 
-@dataclass(frozen=True, slots=True)
-class SourceSettings:
-    """Values of the parameters.
-
-    Attributes
-    ----------
-    source : str
-        Path, index of a camera, or URL.
-    fps : float or None
-        Frame rate, 1/s; None where the source's own holds.
-    loop : bool
-        Whether to begin again at the end.
-    frame_id : str
-        Of the headers.
-    jpeg_quality : int or None
-        Of compressed images; None for none.
-    camera_info_url : str
-        Of the calibration; empty for none.
-    """
-
-    source: str
-    fps: float | None
-    loop: bool
-    frame_id: str
-    jpeg_quality: int | None
-    camera_info_url: str
-
-
-def declare(node: Node) -> SourceSettings:
-    """Declare the parameters of `node` and return their values.
+def declare(node: Node) -> dict[str, Any]:
+    """Declare the parameters of `node` and return their values, by name.
 
     Raises
     ------
@@ -81,14 +52,7 @@ def declare(node: Node) -> SourceSettings:
             f"the parameter fps is neither 0 nor from {LOWEST_FPS:g} to {HIGHEST_FPS:g} images per "
             f"second: {fps!r}"
         )
-    return SourceSettings(
-        source=str(values["source"]),
-        fps=float(fps) if fps else None,
-        loop=values["loop"],
-        frame_id=values["frame_id"],
-        jpeg_quality=values["jpeg_quality"] if values["compressed"] else None,
-        camera_info_url=values["camera_info_url"],
-    )
+    return values
 
 
 def _declared(node: Node, name: str) -> Any:

@@ -12,12 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node that publishes the images of a source.
-
-Stamps of published images, and the moment at which each is due.
-
-The executable `video_source`.
-"""
+"""The executable `video_source`: a node that publishes the images of a source."""
 
 from __future__ import annotations
 
@@ -37,10 +32,26 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.recordings.footage import Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
-from vehicle_pf_tracker.ros.process import end_at_once, run_process
+from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process
 from vehicle_pf_tracker.ros.transport import image_transport
 from vehicle_pf_tracker.ros.video_source.outputs import ImageOutputs, read_calibration
 from vehicle_pf_tracker.ros.video_source.parameters import declare
+
+_NAME = "video_source"
+_LATE = 1.0
+"""Seconds behind the source's rate that are worth a warning: more than a hiccup of the disk."""
+_SAY_AGAIN = 10.0
+"""Seconds between two warnings of a kind."""
+_IMAGE_BYTES = 1920 * 1080 * 3
+"""Size of an image of which the segment holds four; one of 4K still fits once."""
+_LAST_WAIT = 2.0
+"""Seconds that the thread gets to end; one that waits for a silent camera is left behind."""
+_LOOK_EVERY = 0.1
+"""Seconds between two looks whether the source has ended."""
+_USAGE = """\
+usage: video_source SOURCE [--ros-args -p NAME:=VALUE -r image:=TOPIC ...]
+SOURCE is a video file, a folder of images, a camera's index or a stream's URL. Parameters: source,
+fps, loop, frame_id, compressed, jpeg_quality, camera_info_url."""
 
 
 class Pace:
@@ -109,13 +120,6 @@ class BackOff:
         self.seconds = min(2 * self.seconds, self._longest)
 
 
-_NAME = "video_source"
-_LATE = 1.0
-"""Seconds behind the source's rate that are worth a warning: more than a hiccup of the disk."""
-_SAY_AGAIN = 10.0
-"""Seconds between two warnings of a kind."""
-
-
 class VideoSourceNode(Node):  # type: ignore[misc]
     """Publishes images of a source from a thread of its own.
 
@@ -140,14 +144,15 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     def __init__(self, source: str = "", **keywords: Any) -> None:
         super().__init__(_NAME, **keywords)
         settings = declare(self)
-        self._source_name = source or settings.source
+        self._source_name = source or str(settings["source"])
         if not self._source_name:
             raise InputError("give a source: `video_source SOURCE`, or -p source:=SOURCE")
-        self._settings = settings
-        url = settings.camera_info_url
+        self._fps = float(settings["fps"]) or None  # 0 leaves the source's own
+        self._loops, self._frame_id = bool(settings["loop"]), str(settings["frame_id"])
+        url = settings["camera_info_url"]
         self._outputs = ImageOutputs(
             self,
-            jpeg_quality=settings.jpeg_quality,
+            jpeg_quality=settings["jpeg_quality"] if settings["compressed"] else None,
             calibration=read_calibration(url) if url else None,
         )
         self._is_live = False
@@ -177,7 +182,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         name = self._source_name
         if is_recording(Path(name)):
             raise InputError(f"{name} is a recording; `bag_replay {name}` plays it")
-        return open_footage(name, fps=self._settings.fps)
+        return open_footage(name, fps=self._fps)
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
@@ -212,9 +217,9 @@ class VideoSourceNode(Node):  # type: ignore[misc]
             if notice not in self._told:
                 self._told.add(notice)
                 self.get_logger().warning(notice)
-        if not self._settings.loop:
+        if not self._loops:
             self.get_logger().info(f"the source has ended after {self._shown} images")
-        return self._settings.loop
+        return self._loops
 
     def _show_images(self, source: Footage) -> None:
         self._is_live = is_live(source)
@@ -228,7 +233,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         stamp = self._pace.stamp(picture.stamp_ns)
         if self._stop.is_set():
             return
-        header = Header(frame_id=self._settings.frame_id)
+        header = Header(frame_id=self._frame_id)
         header.stamp.sec, header.stamp.nanosec = divmod(stamp, 1_000_000_000)
         self._outputs.publish(header, picture.frame)
         if not self._shown:
@@ -252,7 +257,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
 
     def _note_break(self, why: str) -> None:
         """Wait before the next try, or raise where there is none."""
-        if not self._is_live and not self._settings.loop:
+        if not self._is_live and not self._loops:
             raise InputError(why)
         if self._stop.is_set() or not self.context.ok():
             return
@@ -271,19 +276,6 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         except InputError as error:
             self._note_break(str(error))
             return None
-
-
-_NODE_NAME = "video_source"
-_IMAGE_BYTES = 1920 * 1080 * 3
-"""Size of an image of which the segment holds four; one of 4K still fits once."""
-_LAST_WAIT = 2.0
-"""Seconds that the thread gets to end; one that waits for a silent camera is left behind."""
-_LOOK_EVERY = 0.1
-"""Seconds between two looks whether the source has ended."""
-_USAGE = """\
-usage: video_source SOURCE [--ros-args -p NAME:=VALUE -r image:=TOPIC ...]
-SOURCE is a video file, a folder of images, a camera's index or a stream's URL. Parameters: source,
-fps, loop, frame_id, compressed, jpeg_quality, camera_info_url."""
 
 
 def run_video_source(arguments: Sequence[str]) -> int:
@@ -305,11 +297,11 @@ def run_video_source(arguments: Sequence[str]) -> int:
     def serve(words: list[str]) -> int:
         nonlocal is_left_behind
         if len(words) > 1 or any(word.startswith("-") for word in words):
-            return _usage(words)
+            return answer_usage(_NAME, words, _USAGE)
         status, is_left_behind = _serve(*words)
         return status
 
-    status = run_process(_NODE_NAME, arguments, serve)
+    status = run_process(_NAME, arguments, serve)
     if is_left_behind:
         end_at_once(status)
     return status
@@ -342,13 +334,5 @@ def _end(node: VideoSourceNode) -> tuple[int, bool]:
     has_ended = node.stop(_LAST_WAIT)
     node.destroy_node()
     if node.problem:
-        print(f"{_NODE_NAME}: {node.problem}", file=sys.stderr)
+        print(f"{_NAME}: {node.problem}", file=sys.stderr)
     return (1 if node.problem else 0), not has_ended
-
-
-def _usage(words: Sequence[str]) -> int:
-    is_asked = set(words) <= {"-h", "--help"}
-    if not is_asked:
-        print(f"{_NODE_NAME}: unknown arguments: {' '.join(words)}", file=sys.stderr)
-    print(_USAGE, file=sys.stdout if is_asked else sys.stderr)
-    return 0 if is_asked else 2
