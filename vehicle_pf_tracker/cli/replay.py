@@ -267,8 +267,7 @@ def run(request: Request) -> int:
 
 def options_of(request: Request) -> ReplayOptions:
     """Collect the options of a parsed command line."""
-    from vehicle_pf_tracker.ros.replay.qos import read_qos_overrides
-    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, read_qos_overrides
 
     qos_file = request.qos_profile_overrides_path
     return ReplayOptions(

@@ -30,7 +30,6 @@ from sensor_msgs.msg import RegionOfInterest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.replay.discovery import full_name, owner
 
 _LOOK_EVERY = 0.05
 """Seconds between two looks at the graph, which wakes nobody when it changes."""
@@ -60,7 +59,7 @@ def set_target(node_name: str, box: Box, timeout: float, ros_args: Sequence[str]
     InputError
         If no such node listens within `timeout`, or does not confirm that it got the target.
     """
-    name = full_name(node_name)
+    name = "/" + node_name.strip("/")
     # Python's own handlers stay: Ctrl-C is to end the wait.
     rclpy.init(
         args=["--ros-args", *ros_args] if ros_args else [],
@@ -102,7 +101,10 @@ def _await_subscription(node: Node, publisher: Publisher, name: str, timeout: fl
 
 def _listens(node: Node, topic: str, name: str) -> bool:
     """Return whether the node `name` itself subscribes to `topic`."""
-    return name in map(owner, node.get_subscriptions_info_by_topic(topic))
+    return any(
+        "/" + f"{one.node_namespace}/{one.node_name}".strip("/") == name
+        for one in node.get_subscriptions_info_by_topic(topic)
+    )
 
 
 def _others(node: Node) -> str:

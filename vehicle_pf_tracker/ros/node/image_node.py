@@ -188,7 +188,9 @@ class ImageNode(ManagedNode):
     table : ParameterTable
         The parameters.
     diagnostics : Diagnostics
-        What is published on /diagnostics.
+        Reports on /diagnostics.
+    inputs : list of Subscription
+        Subscriptions that a deactivation ends, beside that to images.
     """
 
     stream: NodeStream | None
@@ -198,7 +200,7 @@ class ImageNode(ManagedNode):
         super().__init__(name, **options)
         self.stream = None
         self._outputs: Outputs | None = None
-        self._inputs: list[Subscription] = []
+        self.inputs: list[Subscription] = []
         self._requests: list[Service] = []
         self._polls: list[Timer] = []
 
@@ -240,7 +242,7 @@ class ImageNode(ManagedNode):
 
     def listen(self, kind: Any, topic: str, callback: Callable[[Any], None]) -> None:
         """Subscribe until the node is deactivated."""
-        self._inputs.append(self.create_subscription(kind, topic, callback, 10))
+        self.inputs.append(self.create_subscription(kind, topic, callback, 10))
 
     def serve(self, name: str, act: Callable[[], str]) -> None:
         """Offer a service until clean-up; `act` returns words for people, or raises InputError."""
@@ -275,8 +277,8 @@ class ImageNode(ManagedNode):
     def deactivate(self) -> None:
         """Close the inputs: an inactive node pays nothing for images."""
         self.diagnostics.cease()
-        while self._inputs:
-            self.destroy_subscription(self._inputs.pop())
+        while self.inputs:
+            self.destroy_subscription(self.inputs.pop())
 
     def cleanup(self) -> None:
         """Release session, outputs and services."""

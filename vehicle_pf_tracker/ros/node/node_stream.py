@@ -84,6 +84,14 @@ class NodeStream(ABC):
 
     Attributes
     ----------
+    log : RcutilsLogger
+        The node's log.
+    warnings, errors : Notices
+        Lines in it that would come with every image.
+    health : Health
+        As given.
+    publish_mode : callable
+        Publishes the one `~/mode` of an image; see `Outputs.publish_mode`.
     frame_id : str or None
         Frame of the last image that was used; None before the first.
     """
@@ -91,13 +99,13 @@ class NodeStream(ABC):
     def __init__(
         self, node: Node, configuration: Configuration, outputs: Outputs, health: Health
     ) -> None:
-        self._log = node.get_logger()
+        self.log = node.get_logger()
         # A line of code each: rclpy refuses to log with two severities from one.
-        self._warnings = Notices(lambda words: self._log.warning(words))  # noqa: PLW0108
-        self._errors = Notices(lambda words: self._log.error(words))  # noqa: PLW0108
+        self.warnings = Notices(lambda words: self.log.warning(words))  # noqa: PLW0108
+        self.errors = Notices(lambda words: self.log.error(words))  # noqa: PLW0108
         self._configuration = configuration
-        self._publish_mode = outputs.publish_mode
-        self._health = health
+        self.publish_mode = outputs.publish_mode
+        self.health = health
         self.frame_id: str | None = None
 
     @property
@@ -140,8 +148,8 @@ class NodeStream(ABC):
 
     def refuse(self, what: str, reason: str) -> None:
         """Report that a target or a selection cannot be used; all vehicles are kept."""
-        self._health.refuse_target(reason)
-        self._errors.say(what, f"{what} refused: {reason}")
+        self.health.refuse_target(reason)
+        self.errors.say(what, f"{what} refused: {reason}")
 
     def decline(self, header: Header, error: InputError) -> None:
         """Answer an image that cannot be used."""
@@ -149,17 +157,17 @@ class NodeStream(ABC):
 
     def answer_without_estimate(self, header: Header, mode: str, reason: str) -> None:
         """Publish a mode with its reason, and count it."""
-        self._health.answered(mode)
-        self._publish_mode(header, mode, {"reason": reason})
+        self.health.answered(mode)
+        self.publish_mode(header, mode, {"reason": reason})
 
     def tell_drawn_seed(self, seed: int) -> None:
         """Log a seed that was drawn, so that a run can be repeated."""
         if self._configuration.tracker.seed < 0:
-            self._log.info(f"drew the seed {seed}; set it to repeat this run")
+            self.log.info(f"drew the seed {seed}; set it to repeat this run")
 
     def _reject(self, header: Header, reason: str) -> None:
-        self._health.reject(reason)
-        self._errors.say("rejected", f"image rejected: {reason}")
+        self.health.reject(reason)
+        self.errors.say("rejected", f"image rejected: {reason}")
         self.answer_without_estimate(header, REJECTED, reason)
 
     def _fail(self, header: Header, error: Exception) -> None:
@@ -167,7 +175,7 @@ class NodeStream(ABC):
 
         One image must not end a node that others rely on; a broken tracker must.
         """
-        self._errors.say("error", traceback.format_exc())
+        self.errors.say("error", traceback.format_exc())
         self._reject(header, unexpected(error))
         if not isinstance(error, TrackerError) or error.persists:
             raise error

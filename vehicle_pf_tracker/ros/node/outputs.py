@@ -83,11 +83,16 @@ class Outputs:
         Where the images come from, for the statuses.
     more : Topics
         Topics of this kind of node.
+
+    Attributes
+    ----------
+    node_name, hardware_id : str
+        Node, and where its images come from.
     """
 
     def __init__(self, node: LifecycleNode, hardware_id: str, more: Topics) -> None:
         self._node = node
-        self._hardware_id = hardware_id
+        self.node_name, self.hardware_id = str(node.get_name()), hardware_id
         self._kept_position = PointStamped()
         self._publishers = {
             name: node.create_lifecycle_publisher(kind, f"~/{name}", qos)
@@ -121,8 +126,8 @@ class Outputs:
 
     def publish_mode(self, header: Header, mode: str, values: Mapping[str, object]) -> None:
         """Publish the one `~/mode` of an image."""
-        name = f"{self._node.get_name()}: target"
-        self.send("mode", mode_message, header, name, self._hardware_id, mode, values)
+        name = f"{self.node_name}: target"
+        self.send("mode", mode_message, header, name, self.hardware_id, mode, values)
 
 
 def in_frame(header: Header, frame_id: str) -> Header:

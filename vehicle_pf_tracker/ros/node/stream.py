@@ -148,7 +148,7 @@ class Stream(NodeStream):
         self.localisation = StreamLocalisation(variant.name, configuration.session.road)
         self.estimate: Estimate | None = None
         if not self.get_ready():
-            self._log.info(self._loading.reason)
+            self.log.info(self._loading.reason)
 
     def get_ready(self) -> bool:
         """Make the session, and take new parameters, as soon as their kernels are loaded.
@@ -252,7 +252,7 @@ class Stream(NodeStream):
         )
         self.tell_drawn_seed(self._session.tracker.seed)
         for notice in self._session.tracker.kernels.notices:
-            self._log.warning(notice)
+            self.log.warning(notice)
 
     def _apply(self, session: Session) -> None:
         before = session.tracker.seed
@@ -298,7 +298,7 @@ class Stream(NodeStream):
         session, estimate = self._session, self.estimate
         assert session is not None
         if session.refusal:
-            self._health.refuse_target(session.refusal)
+            self.health.refuse_target(session.refusal)
         events = self._events(session)
         if estimate is None and self._target_problem:
             events["reason"] = self._target_problem
@@ -310,18 +310,18 @@ class Stream(NodeStream):
             self.localisation.locate(estimate, header, frame, period)
             self._outputs.publish_estimate(header, estimate, own, self.localisation, period)
             words = self.localisation.words
-            self._health.road = self.localisation.values
-            events |= self._health.road
+            self.health.road = self.localisation.values
+            events |= self.health.road
         if own.publish.overlay:
             self._outputs.publish_overlay(header, frame, mode, estimate, words)
-        self._health.answered(mode, estimate.duration * 1e3 if estimate else None)
+        self.health.answered(mode, estimate.duration * 1e3 if estimate else None)
         scalars = estimate.scalars() if estimate else {}
-        self._publish_mode(header, mode, {**scalars, **events})
+        self.publish_mode(header, mode, {**scalars, **events})
 
     def _events(self, session: Session) -> dict[str, object]:
         words = "; ".join(session.events)
         if not words:
             return {}
-        self._health.restarts += session.recovered
-        (self._errors if session.recovered else self._warnings).say("event", words)
+        self.health.restarts += session.recovered
+        (self.errors if session.recovered else self.warnings).say("event", words)
         return {"event": words}

@@ -180,11 +180,11 @@ class Lookout:
             if topic.endswith(_MODE)
             and DIAGNOSTIC_ARRAY in types
             and topic.removesuffix(_MODE)
-            in map(owner, self._node.get_publishers_info_by_topic(topic))
+            in map(_owner, self._node.get_publishers_info_by_topic(topic))
         }
 
     def _subscribers(self, topic: str) -> set[str]:
-        return set(map(owner, self._node.get_subscriptions_info_by_topic(topic)))
+        return set(map(_owner, self._node.get_subscriptions_info_by_topic(topic)))
 
     def _inputs(self, name: str) -> str:
         inputs = [
@@ -197,8 +197,7 @@ class Lookout:
         return f"{name} takes images from {', '.join(inputs)}; use --remap"
 
 
-def owner(endpoint: Any) -> str:
-    """Return the full name of the node that has a publisher or subscription."""
+def _owner(endpoint: Any) -> str:
     return full_name(f"{endpoint.node_namespace}/{endpoint.node_name}")
 
 

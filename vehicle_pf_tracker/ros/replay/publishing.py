@@ -34,8 +34,7 @@ from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.topic_table import TopicInfo
 from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 from vehicle_pf_tracker.ros.messages import image_message
-from vehicle_pf_tracker.ros.replay.qos import recorded_qos
-from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, recorded_qos
 
 _SUFFIX = "/compressed"
 _IMAGE_DEPTH = 10

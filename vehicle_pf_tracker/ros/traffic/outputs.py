@@ -73,9 +73,9 @@ class TrafficOutputs(Outputs):
         frame_period: float,
     ) -> None:
         """Publish all vehicles; `frame_period` in s makes px/frame to px/s."""
-        name, there = self._node.get_name(), in_pixels(header, own)
+        name, there = self.node_name, in_pixels(header, own)
         self.send("tracks", tracks_message, there, estimates, frame_period)
-        self.send("modes", modes_message, header, name, self._hardware_id, estimates)
+        self.send("modes", modes_message, header, name, self.hardware_id, estimates)
         self.send("detections", detections_message, there, estimates)
         self.send("markers", markers_message, there, estimates)
 
@@ -83,8 +83,8 @@ class TrafficOutputs(Outputs):
         self, header: Header, counter: Counter, latest: Mapping[str, Crossing]
     ) -> None:
         """Publish what was counted, and the last crossing of each place."""
-        name = self._node.get_name()
-        self.send("counts", counts_message, header, name, self._hardware_id, counter, latest)
+        name = self.node_name
+        self.send("counts", counts_message, header, name, self.hardware_id, counter, latest)
 
     def publish_overlay(
         self,

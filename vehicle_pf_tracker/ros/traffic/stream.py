@@ -240,26 +240,26 @@ class TrafficStream(NodeStream):
         try:
             stamp = read_stamp(message)
         except InputError as error:
-            self._warnings.say("flood", str(error))
+            self.warnings.say("flood", str(error))
             return
         self._waiting.add_detections(stamp, self._read(message), every)
         if self._waiting.late > late:
             words = "detections came after their image had waited for detector.max_wait s"
-            self._warnings.say("late", f"{words}, {self._waiting.late} times; they are not used")
+            self.warnings.say("late", f"{words}, {self._waiting.late} times; they are not used")
         if self._waiting.unmatched > unmatched:
             words = f"{self._waiting.unmatched} messages of detections have the stamp of no image"
-            self._warnings.say("unmatched", f"{words}; the detector must copy the image's header")
+            self.warnings.say("unmatched", f"{words}; the detector must copy the image's header")
         self.go_on()
 
     def _read(self, message: bytes) -> Detections | None:
         try:
             detections = read_serialized_detections(message)
         except InputError as error:
-            self._warnings.say("flood", f"{error}; {_BY_PIXELS}")
+            self.warnings.say("flood", f"{error}; {_BY_PIXELS}")
             return None
         if len(detections) > MOST_DETECTIONS:
             words = f"a message has {len(detections)} detections, of which the {MOST_DETECTIONS}"
-            self._warnings.say("flood", f"{words} of the highest scores are used")
+            self.warnings.say("flood", f"{words} of the highest scores are used")
         return detections
 
     def go_on(self) -> None:
@@ -271,7 +271,7 @@ class TrafficStream(NodeStream):
             self.process(message, detections)
         if self._waiting.missed > missed:
             words = f"{self._waiting.missed} images waited in vain for detections"
-            self._warnings.say("missed", f"{words}; {_BY_PIXELS}")
+            self.warnings.say("missed", f"{words}; {_BY_PIXELS}")
 
     def drop_waiting(self) -> None:
         """Forget the images that wait for detections."""
@@ -299,7 +299,7 @@ class TrafficStream(NodeStream):
         if left_out > 0:
             words = f"{left_out} of {len(detections)} detections of an image cannot be used"
             reasons = "not finite, without an area, outside the image, or there twice"
-            self._warnings.say("unusable", f"{words}: {reasons}")
+            self.warnings.say("unusable", f"{words}: {reasons}")
 
     def answer(self, header: Header, frame: Frame) -> None:
         """Publish all vehicles of the last image, the selected one, and its mode."""
@@ -318,13 +318,13 @@ class TrafficStream(NodeStream):
         mode = WAITING if selected is None else selected.mode.value
         values = {"reason": self._reason} if selected is None else scalars(selected)
         values |= {**vehicles.summary(), "step_ms": step_ms}
-        self._health.restarts += vehicles.session.recovered
+        self.health.restarts += vehicles.session.recovered
         for event in events:
-            self._warnings.say(" ".join(event.split()[:3]), event)  # without numbers
+            self.warnings.say(" ".join(event.split()[:3]), event)  # without numbers
         if events:
             values["event"] = "; ".join(events)
-        self._health.answered(mode, step_ms)
-        self._publish_mode(header, mode, values)
+        self.health.answered(mode, step_ms)
+        self.publish_mode(header, mode, values)
 
     @property
     def _reason(self) -> str:

@@ -96,7 +96,7 @@ class TrafficNode(ImageNode):
             qos = QoSProfile(depth=MOST_WAITING)
             topic = self.resolve_topic_name("detections")
             take = self._on_detections
-            self._inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
+            self.inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
         self.warn_of_overrides()
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
 
