@@ -49,7 +49,7 @@ class Health:
     road : mapping
         Place and speed on the road with the last estimate, by name; empty without a road.
     mode : str
-        What the last `~/mode` said.
+        Mode of the last `~/mode`.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -85,7 +85,7 @@ class Health:
         age : float
             Time from the image's stamp to now, in s.
         publishers : int
-            How many publish on the topic; the numbers of several cannot be told apart.
+            Number of publishers on the topic; the numbers of several cannot be told apart.
         """
         self.images += 1
         self._heard = self._clock()
@@ -149,7 +149,7 @@ class Diagnostics:
     Parameters
     ----------
     node : Node
-        Whose health it is.
+        Node to report on.
 
     Attributes
     ----------
@@ -158,7 +158,7 @@ class Diagnostics:
     source : ImageInput or None
         The open subscription; None while the node is not active.
     facts : dict
-        What else to publish, by name.
+        Other values to publish, by name.
     """
 
     def __init__(self, node: Node) -> None:

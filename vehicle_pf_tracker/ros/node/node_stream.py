@@ -78,7 +78,7 @@ class NodeStream(ABC):
     configuration : Configuration
         The node's parameters.
     outputs : Outputs
-        Where answers go.
+        Publishers of the answers.
     health : Health
         Counts what happens.
 

@@ -73,21 +73,21 @@ _COMMON: Topics = MappingProxyType(
 
 
 class Outputs:
-    """What every node publishes; what nobody listens to is not even made.
+    """Publishers of a node; outputs without subscribers are not computed.
 
     Parameters
     ----------
     node : LifecycleNode
         Its publishers are silent unless it is active.
     hardware_id : str
-        Where the images come from, for the statuses.
+        Topic of the images, for the statuses.
     more : Topics
         Topics of this kind of node.
 
     Attributes
     ----------
     node_name, hardware_id : str
-        Node, and where its images come from.
+        Name of the node, and topic of its images.
     """
 
     def __init__(self, node: LifecycleNode, hardware_id: str, more: Topics) -> None:
@@ -151,7 +151,7 @@ class TrackerOutputs(Outputs):
     node : LifecycleNode
         Its publishers are silent unless it is active.
     hardware_id : str
-        Where the images come from, for `~/mode`.
+        Topic of the images, for `~/mode`.
     """
 
     def __init__(self, node: LifecycleNode, hardware_id: str) -> None:

@@ -66,7 +66,7 @@ def keep_image_memory() -> bool:
     Returns
     -------
     bool
-        Whether it was done: not where the C library has no such options, or where the environment
+        True if it was done: not where the C library has no such options, or where the environment
         already says what to do.
     """
     if any(name in os.environ for name in _OPTIONS):
@@ -143,7 +143,7 @@ _BROKEN = "a request could not be answered:"
 
 
 def run_node(name: str, make_node: Callable[[], Node], arguments: Sequence[str]) -> int:
-    """Run a node that takes images until it is told to end.
+    """Run a node that takes images until a signal ends it.
 
     Parameters
     ----------

@@ -111,11 +111,11 @@ class Stream(NodeStream):
     node : Node
         For its log.
     variant : Variant
-        From the registry.
+        Variant from the registry.
     configuration : Configuration
         Parameters of this variant.
     outputs : TrackerOutputs
-        Where estimates go.
+        Publishers of the estimates.
     health : Health
         Counts what happens.
 
@@ -156,7 +156,7 @@ class Stream(NodeStream):
         Returns
         -------
         bool
-            Whether images can be tracked in.
+            True once images can be tracked in.
         """
         if self._loading.is_done:
             if self._session is None:
@@ -276,7 +276,7 @@ class Stream(NodeStream):
 
     @staticmethod
     def _misfit(configuration: Configuration, size: tuple[int, int] | None) -> str:
-        """Say why images of this size cannot be started in on the configured target, if so."""
+        """Return why the configured target does not fit images of this size; empty if it does."""
         box = configuration.session.target.box
         if box is None or size is None:
             return ""

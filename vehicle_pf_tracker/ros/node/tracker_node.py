@@ -52,7 +52,7 @@ class TrackerNode(ImageNode):
     Parameters
     ----------
     variant : Variant
-        From the registry; the node is called ``<variant>_tracker``.
+        Variant from the registry; the node is called ``<variant>_tracker``.
     **options
         Passed on to `rclpy.node.Node`.
 
@@ -82,7 +82,7 @@ class TrackerNode(ImageNode):
         self._outputs = outputs
         self.stream = Stream(self, self._variant, configuration, outputs, self.diagnostics.begin())
         self.diagnostics.facts = {"variant": self._variant.name, **self.stream.facts}
-        self._is_told_ready = False
+        self._has_logged_ready = False
         self._ready_timer = self.poll(_POLL, self._await_kernels)
         self.serve("~/reset", self._reset)
 
@@ -96,7 +96,7 @@ class TrackerNode(ImageNode):
         self.listen(PointStamped, "~/clicked_point", self._on_point)
         if detection_type() is not None:
             self.listen(detection_type(), "~/set_detection", self._on_detection)
-        self._is_told_ready = False
+        self._has_logged_ready = False
         self._await_kernels()
 
     def deactivate(self) -> None:
@@ -152,8 +152,8 @@ class TrackerNode(ImageNode):
             return
         self._ready_timer.cancel()
         self.diagnostics.facts.update(self.stream.facts)
-        if source is not None and not self._is_told_ready:
-            self._is_told_ready = True
+        if source is not None and not self._has_logged_ready:
+            self._has_logged_ready = True
             kernels = self.stream.facts["kernels"]
             words = f"ready: images on {source}, {self.stream.target_words}, {kernels} kernels"
             self.get_logger().info(words)

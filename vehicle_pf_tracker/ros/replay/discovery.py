@@ -148,7 +148,7 @@ class Lookout:
         Parameters
         ----------
         timeout : float
-            How long to look for the first in s, if that is longer than `DISCOVERY`.
+            Longest search for the first, s; at least `DISCOVERY`.
         """
         found: set[str] = set()
         deadline = time.monotonic() + max(timeout, DISCOVERY)

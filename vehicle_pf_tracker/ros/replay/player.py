@@ -43,9 +43,9 @@ class Player:
     spinner : Spinner
         Runs the callbacks while waiting.
     recording : Recording
-        What to play.
+        Recording to play.
     options : ReplayOptions
-        How to play it.
+        Options of the replay.
     publishers : mapping of str to TopicPublisher
         By recorded topic.
     links : sequence of TrackerLink

@@ -49,11 +49,11 @@ class RecordedImages(NamedTuple):
     topic : str
         As recorded.
     base : str
-        What the node's ``image`` is remapped to.
+        Topic that the node's ``image`` is remapped to.
     transport : str
         The node's parameter ``image_transport``.
     published : str
-        What the replay publishes them as.
+        Topic that the replay publishes them on.
     """
 
     topic: str
@@ -79,7 +79,7 @@ class TopicPublisher:
     node : Node
         The player's own node.
     name : str
-        What to publish under.
+        Topic to publish on.
     kind : type
         Class of the messages.
     qos : QoSProfile

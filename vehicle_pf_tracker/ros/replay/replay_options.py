@@ -78,11 +78,11 @@ class ReplayOptions:
     target : Box or None
         The box to start on; None takes the first true box.
     set_target : bool
-        Whether to set the nodes' targets and reset them.
+        True to set the nodes' targets and reset them.
     timeout : float
         Longest wait for an answer, in s; the search for nodes lasts at least as long as discovery.
     ros_args : tuple of str
-        What follows ``--ros-args`` on the command line.
+        Words after ``--ros-args`` on the command line.
     """
 
     rate: float | None = None
@@ -126,7 +126,7 @@ class NodeReport:
     name : str
         Its full name.
     answered : int
-        How many images it answered, in all passes of a loop.
+        Number of images answered, in all passes of a loop.
     rows : tuple of EstimateRow
         One for each image of the last pass, in order; mode `DROPPED` where no answer came.
     road : mapping of str to list of float or None
@@ -150,13 +150,13 @@ class ReplayReport:
     messages : int
         Messages published, the images among them.
     seconds : float
-        From the first message to the last answer.
+        Time from the first message to the last answer.
     nodes : tuple of NodeReport
         The tracker nodes that took part.
     notices : tuple of str
-        What was not as it should be, a sentence each.
+        Irregularities, a sentence each.
     interrupted : bool
-        Whether the user ended it.
+        True if the user ended it.
     """
 
     frames: int
@@ -190,7 +190,7 @@ def recorded_qos(offered: str, depth: int) -> QoSProfile:
     offered : str
         The recorded profiles as the recording's YAML text; may be empty or damaged.
     depth : int
-        Of topics that are not latched.
+        Depth of topics that are not latched.
     """
     profiles = [one for one in _listed(offered) if isinstance(one, dict)]
     # rosbag2 writes names since Jazzy, and the numbers of rmw before.

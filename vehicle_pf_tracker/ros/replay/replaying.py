@@ -100,7 +100,7 @@ def replay(
     recording : Recording
         Recording to play.
     options : ReplayOptions
-        How to play it.
+        Options of the replay.
     on_progress : callable
         Called after each image.
     tell : callable

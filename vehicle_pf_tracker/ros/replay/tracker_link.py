@@ -167,7 +167,7 @@ class TrackerLink:
         box : Box or None
             The target.
         may_reset : bool
-            Whether to reset the node and try again if it refuses.
+            True to reset the node and try again if it refuses.
 
         Raises
         ------

@@ -192,7 +192,7 @@ def counts_message(
     node, hardware_id : str
         Node, and topic of its images.
     counter : Counter
-        What was counted.
+        Counter of the lines and zones.
     latest : mapping of str to Crossing
         The last crossing of each place, by the place's name.
     """

@@ -52,7 +52,7 @@ class TrafficOutputs(Outputs):
     node : LifecycleNode
         Its publishers are silent unless it is active.
     hardware_id : str
-        Where the images come from, for the statuses.
+        Topic of the images, for the statuses.
     """
 
     def __init__(self, node: LifecycleNode, hardware_id: str) -> None:

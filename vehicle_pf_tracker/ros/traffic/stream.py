@@ -171,7 +171,7 @@ class TrafficStream(NodeStream):
     configuration : Configuration
         Parameters of `TRAFFIC`.
     outputs : TrafficOutputs
-        Where estimates go.
+        Publishers of the estimates.
     health : Health
         Counts what happens.
 

@@ -47,7 +47,7 @@ class ImageOutputs:
     node : Node
         The node.
     jpeg_quality : int or None
-        Of compressed images; None for none.
+        Quality of compressed images, 1 to 100; None publishes none.
     calibration : CameraInfo or None
         Published with each image of its size.
     """
