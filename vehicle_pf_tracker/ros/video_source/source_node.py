@@ -19,23 +19,29 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import rclpy
+from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
-from vehicle_pf_tracker.recordings.footage import Footage, Picture
+from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, LOWEST_FPS, Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
 from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process
 from vehicle_pf_tracker.ros.transport import image_transport
-from vehicle_pf_tracker.ros.video_source.outputs import ImageOutputs, read_calibration
-from vehicle_pf_tracker.ros.video_source.parameters import declare
+from vehicle_pf_tracker.ros.video_source.outputs import (
+    BackOff,
+    ImageOutputs,
+    Pace,
+    read_calibration,
+)
 
 _NAME = "video_source"
 _LATE = 1.0
@@ -52,72 +58,49 @@ _USAGE = """\
 usage: video_source SOURCE [--ros-args -p NAME:=VALUE -r image:=TOPIC ...]
 SOURCE is a video file, a folder of images, a camera's index or a stream's URL. Parameters: source,
 fps, loop, frame_id, compressed, jpeg_quality, camera_info_url."""
+_SPECS: dict[str, tuple[object, str]] = {
+    "source": ("", "A video file, a folder of images, a camera's index, a stream's URL"),
+    "fps": (0.0, "Frame rate of a folder or a video, 1/s; 0 takes what it states"),
+    "loop": (False, "Begin a video or a folder again at its end"),
+    "frame_id": ("camera", "Frame of the images' headers"),
+    "compressed": (False, "Publish JPEG images too, on image/compressed"),
+    "jpeg_quality": (95, "Of these, 1 to 100"),
+    "camera_info_url": ("", "Calibration YAML, a path or file:///URL; published as camera_info"),
+}
+_RANGES = {"jpeg_quality": {"integer_range": [IntegerRange(from_value=1, to_value=100, step=1)]}}
 
 
-class Pace:
-    """Stamps for the images of one pass through a source.
+def declare(node: Node) -> dict[str, Any]:
+    """Declare the parameters of `node` and return their values, by name.
 
-    Images of a file keep the intervals that it states: the first is stamped by the clock, and the
-    others follow, so that stamps do not carry the jitter of this process. Live images are stamped
-    by the clock as they come.
-
-    Parameters
-    ----------
-    clock : callable
-        Returns the present time in ns.
-    stop : threading.Event
-        Ends every wait.
+    Raises
+    ------
+    InputError
+        Naming the parameter that has a wrong value.
     """
-
-    def __init__(self, clock: Callable[[], int], stop: threading.Event) -> None:
-        self._clock, self._stop, self._is_live = clock, stop, False
-        self._began: tuple[int, int, float] | None = None
-        self.last = 0
-
-    def begin(self, *, is_live: bool) -> None:
-        """Begin a pass, of images that come by themselves where `is_live`."""
-        self._began, self._is_live = None, is_live
-
-    def stamp(self, recorded_ns: int) -> int:
-        """Return the stamp of an image with the source's own time, once it is due.
-
-        It is later than any before. Returns early when the process ends.
-        """
-        if self._is_live:
-            self.last = max(self._clock(), self.last + 1)
-            return self.last
-        if self._began is None:
-            self._began = recorded_ns, max(self._clock(), self.last + 1), time.monotonic()
-        first, stamped, when = self._began
-        passed = recorded_ns - first
-        self._stop.wait(max(when + passed / 1e9 - time.monotonic(), 0.0))
-        self.last = stamped + passed
-        return self.last
+    values = {name: _declared(node, name) for name in _SPECS}
+    fps = values["fps"]
+    if not isinstance(fps, int | float) or (fps and not LOWEST_FPS <= fps <= HIGHEST_FPS):
+        raise InputError(
+            f"the parameter fps is neither 0 nor from {LOWEST_FPS:g} to {HIGHEST_FPS:g} images per "
+            f"second: {fps!r}"
+        )
+    return values
 
 
-class BackOff:
-    """Waits before one more try, twice as long as before the last.
-
-    Parameters
-    ----------
-    stop : threading.Event
-        Ends every wait.
-    shortest, longest : float
-        First wait, and the one that is kept to in the end, s.
-    """
-
-    def __init__(self, stop: threading.Event, shortest: float = 1.0, longest: float = 30.0) -> None:
-        self._stop, self._shortest, self._longest = stop, shortest, longest
-        self.seconds = shortest
-
-    def reset(self) -> None:
-        """Begin with the shortest wait again: an image came."""
-        self.seconds = self._shortest
-
-    def wait(self) -> None:
-        """Wait, unless the process ends meanwhile."""
-        self._stop.wait(self.seconds)
-        self.seconds = min(2 * self.seconds, self._longest)
+def _declared(node: Node, name: str) -> Any:
+    default, description = _SPECS[name]
+    descriptor = ParameterDescriptor(
+        description=description,
+        read_only=True,
+        # A camera's index and a whole frame rate are integers on a command line.
+        dynamic_typing=name in {"source", "fps"},
+        **_RANGES.get(name, {}),
+    )
+    try:
+        return node.declare_parameter(name, default, descriptor).value
+    except (InvalidParameterTypeException, InvalidParameterValueException) as error:
+        raise InputError(f"the parameter {name} cannot have this value: {error}") from None
 
 
 class VideoSourceNode(Node):  # type: ignore[misc]
