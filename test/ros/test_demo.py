@@ -33,10 +33,10 @@ pytestmark = pytest.mark.ros
 # A process of its own, as Fast DDS makes room for images only with the first participant of one.
 SHORT_DEMO = """
 import sys
-from vehicle_pf_tracker.cli import demo, demo_runs
+from vehicle_pf_tracker.cli import demo
 from vehicle_pf_tracker.cli.main import main
 demo.SCENE = "bar"
-demo.CONTESTANTS = demo_runs.CONTESTANTS = {"apf": {"motion.sigma_w": 5.0}, "pf": {"sigma": 2.0}}
+demo.CONTESTANTS = {"apf": {"motion.sigma_w": 5.0}, "pf": {"sigma": 2.0}}
 sys.exit(main(["demo", "-o", sys.argv[1], "--seeds", "1"]))
 """
 

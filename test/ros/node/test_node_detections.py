@@ -133,6 +133,9 @@ class FakeNode:
     def __init__(self):
         self.sent = {}
 
+    def get_name(self):
+        return "fake"
+
     def create_lifecycle_publisher(self, kind, topic, qos):
         kept = self.sent.setdefault(topic, [])
 
