@@ -30,7 +30,7 @@ from launch_ros.actions import Node
 from launch_ros.substitutions import FindPackageShare
 
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.ros.replay.playable import RecordedImages, recorded_images
+from vehicle_pf_tracker.ros.replay.publishing import RecordedImages, recorded_images
 
 OWN = {
     "topic": ("", "Image topic of the recording, if it has several"),

@@ -196,8 +196,15 @@ def is_for_files_or_painting(function: ast.expr) -> bool:
 
 
 def node_closure(modules: dict[str, Module]) -> set[str]:
-    """Names of all modules of the package that starting a node may load, packages included."""
-    waiting = [name for name, module in modules.items() if module.room == "ros"]
+    """Names of all modules of the package that starting a node may load, packages included.
+
+    A replay is no node of a robot: it reads recordings, with the readers that this takes.
+    """
+    waiting = [
+        name
+        for name, module in modules.items()
+        if module.room == "ros" and not covers({"ros.replay"}, name)
+    ]
     seen: set[str] = set()
     while waiting:
         name = waiting.pop()

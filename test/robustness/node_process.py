@@ -28,6 +28,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from faulty_messages import TARGET
@@ -47,6 +48,9 @@ RELIABLE = "qos_overrides./image.subscription.reliability:=reliable"
 
 An image without an answer would then say nothing about the node.
 """
+MB = 1e6
+SETTLED = 600.0
+"""Seconds until memory has to stay as it is; a shorter run shows its second half."""
 TRACKED = {"TRACKING", "OCCLUDED", "LOST"}
 _TOPICS = {RegionOfInterest: "set_target", PolygonStamped: "set_box", PointStamped: "clicked_point"}
 
@@ -209,6 +213,20 @@ class NodeProcess:
         text = self.output
         if status or "Traceback" in text:
             raise SystemExit(f"the node ended with {status}:\n{text[-4000:]}")
+
+
+def growth(sizes: list[tuple[float, int]]) -> float:
+    """Print how the resident memory went; returns by how many MB it grew once settled."""
+    times, memory = np.array(sizes).T
+    since = min(SETTLED, times[-1] / 2)
+    settled = memory[times >= since] / MB
+    print(
+        f"resident memory {settled[0]:.1f} MB after {since / 60:.1f} minutes, {settled[-1]:.1f} MB "
+        f"at the end ({settled[-1] - settled[0]:+.1f} MB), {settled.max():.1f} MB at most"
+    )
+    for at, size in list(zip(times, memory, strict=True))[:: max(len(times) // 12, 1)]:
+        print(f"  {at / 60:5.1f} minutes: {size / MB:.1f} MB")
+    return float(settled[-1] - settled[0]) if times[-1] > SETTLED else 0.0
 
 
 def _is_right(mode: str, values: Mapping[str, str], image: Image, is_good: bool) -> bool:

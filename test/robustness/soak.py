@@ -31,16 +31,13 @@ from collections import Counter
 
 import numpy as np
 from faulty_messages import Drive, Faults
-from node_process import NodeProcess
+from node_process import NodeProcess, growth
 from sensor_msgs.msg import Image
 
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
-MB = 1e6
-SETTLED = 600.0
-"""Seconds until memory has to stay as it is; a shorter run counts from its half on."""
 OCCLUSION_EVERY, OCCLUSION = 20.0, 2.0
 TARGET_EVERY = 13.0
 CHANGE_EVERY = 5.0
@@ -188,15 +185,7 @@ def report(soak: Soak) -> None:
     print(f"changes of parameters: {soak.asked} asked, {len(soak.changes)} answered, {taken} taken")
     middle, high, most = np.percentile(np.array(soak.latencies) * 1e3, [50, 95, 99])
     print(f"answers to good images after {middle:.1f} ms (p50), {high:.1f} (p95), {most:.1f} (p99)")
-    times, sizes = np.array(soak.sizes).T
-    since = min(SETTLED, times[-1] / 2)
-    settled = sizes[times >= since]
-    slope = np.polyfit(times[times >= since] / 60, settled / MB, 1)[0]
-    print(
-        f"resident memory {settled[0] / MB:.1f} MB after {since / 60:.1f} minutes, "
-        f"{settled[-1] / MB:.1f} MB at the end ({100 * (settled[-1] / settled[0] - 1):+.1f} %), "
-        f"{settled.max() / MB:.1f} MB at most, {slope:+.3f} MB a minute"
-    )
+    growth(soak.sizes)
 
 
 def main() -> None:

@@ -47,14 +47,13 @@ from typing import Any
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
 from lanes import Corners, Numbers, Road, Sighting, Traffic
-from node_process import NodeProcess
+from node_process import NodeProcess, growth
 from sensor_msgs.msg import Image, PointCloud2
 from std_msgs.msg import Header
 from visualization_msgs.msg import MarkerArray
 
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 
-MB = 1e6
 WIDTH, HEIGHT = 320, 180
 BRIDGE = slice(150, 180)
 """Columns under the bridge: a vehicle of 32 px is hidden for a few images."""
@@ -62,8 +61,6 @@ LEAST = 3.0
 """Least width in px that the detector sees of a vehicle that enters."""
 LINE = 260
 """Column of the line at which vehicles are counted, px."""
-SETTLED = 600.0
-"""Seconds until memory has to stay as it is; a shorter run shows its second half."""
 GROWTH = 2.0
 """MB that the resident memory may grow by from then on: 200 bytes for each vehicle."""
 FAULT_EVERY = 20.0
@@ -298,20 +295,6 @@ class Soak:
             else:
                 self.latencies.append(now - sent)
             self.answers[f"mode: {answer.status[0].message}"] += 1
-
-
-def growth(sizes: list[tuple[float, int]]) -> float:
-    """Print how the resident memory went; returns by how many MB it grew once settled."""
-    times, memory = np.array(sizes).T
-    since = min(SETTLED, times[-1] / 2)
-    settled = memory[times >= since] / MB
-    print(
-        f"resident memory {settled[0]:.1f} MB after {since / 60:.1f} minutes, {settled[-1]:.1f} MB "
-        f"at the end ({settled[-1] - settled[0]:+.1f} MB), {settled.max():.1f} MB at most"
-    )
-    for at, size in list(zip(times, memory, strict=True))[:: max(len(times) // 12, 1)]:
-        print(f"  {at / 60:5.1f} minutes: {size / MB:.1f} MB")
-    return float(settled[-1] - settled[0]) if times[-1] > SETTLED else 0.0
 
 
 def report(soak: Soak, seconds: float, output: str) -> bool:

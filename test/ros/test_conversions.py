@@ -38,15 +38,20 @@ from vehicle_pf_tracker.ros.messages import (
     WAITING,
     box_message,
     image_message,
-    key_values,
     mode_message,
     particles_message,
     position_message,
     stamp_ns,
+    status,
     velocity_message,
 )
 from vehicle_pf_tracker.ros.node.image_input import read_image
-from vehicle_pf_tracker.ros.node.target_messages import box_of_point, box_of_polygon, box_of_region
+from vehicle_pf_tracker.ros.node.input_messages import (
+    box_of_point,
+    box_of_polygon,
+    box_of_region,
+    check_frame_id,
+)
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
@@ -80,9 +85,13 @@ def test_stamp_in_nanoseconds(header):
     assert stamp_ns(header) == 12_000_000_034
 
 
+def written(value) -> str:
+    return status(b"\0", "node", "words", "topic", {"x": value}).values[0].value
+
+
 @given(st.floats(allow_nan=False))
 def test_no_digit_of_a_number_is_lost(number):
-    assert float(key_values({"x": number})[0].value) == number
+    assert float(written(number)) == number
 
 
 @pytest.mark.parametrize(
@@ -90,7 +99,7 @@ def test_no_digit_of_a_number_is_lost(number):
     [(np.float64(0.1), "0.1"), (3, "3"), (True, "True"), ("LOST", "LOST"), (math.inf, "inf")],
 )
 def test_values_are_written_plainly(value, text):
-    assert key_values({"x": value})[0].value == text
+    assert written(value) == text
 
 
 def test_every_mode_has_a_level():
@@ -161,33 +170,34 @@ def test_a_region_is_a_box():
 
 
 def test_a_box_message_comes_back(header, estimate):
-    assert box_of_polygon(box_message(header, estimate), "camera") == estimate.box
+    assert box_of_polygon(box_message(header, estimate)) == estimate.box
 
 
 @given(st.permutations([(1, 2), (5, 2), (5, 9), (1, 9)]))
 def test_corners_may_come_in_any_order(corners):
-    assert box_of_polygon(polygon(*corners), None) == Box(1, 2, 4, 7)
+    assert box_of_polygon(polygon(*corners)) == Box(1, 2, 4, 7)
 
 
-@pytest.mark.parametrize("frame_id", ["", "camera"])
-def test_a_point_centres_the_present_box(frame_id):
-    box = box_of_point(point(50, 40, frame_id), "camera", Box(0, 0, 20, 10))
-    assert box == Box(40, 35, 20, 10)
+def test_a_point_centres_the_present_box():
+    assert box_of_point(point(50, 40), Box(0, 0, 20, 10)) == Box(40, 35, 20, 10)
 
 
-def test_any_frame_will_do_before_the_first_image():
-    assert box_of_point(point(5, 5, "map"), None, Box(0, 0, 2, 2)) == Box(4, 4, 2, 2)
+@pytest.mark.parametrize(
+    ("frame_id", "image_frame"),
+    [("", "camera"), ("camera", "camera"), ("camera_px", "camera"), ("map", None)],
+)
+def test_any_frame_will_do_before_the_first_image_and_then_the_images(frame_id, image_frame):
+    check_frame_id("~/set_box", Header(frame_id=frame_id), image_frame, "_px")
 
 
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: box_of_polygon(polygon((1, 1), (2, 2), frame_id="map"), "camera"),
-        lambda: box_of_polygon(polygon((1, 1)), None),
-        lambda: box_of_polygon(polygon((1, math.nan), (2, 2)), None),
-        lambda: box_of_point(point(1, 1, "map"), "camera", Box(0, 0, 2, 2)),
-        lambda: box_of_point(point(-math.inf, 1), None, Box(0, 0, 2, 2)),
-        lambda: box_of_point(point(1, 1), None, None),
+        lambda: check_frame_id("~/set_box", Header(frame_id="map"), "camera", ""),
+        lambda: box_of_polygon(polygon((1, 1))),
+        lambda: box_of_polygon(polygon((1, math.nan), (2, 2))),
+        lambda: box_of_point(point(-math.inf, 1), Box(0, 0, 2, 2)),
+        lambda: box_of_point(point(1, 1), None),
     ],
 )
 def test_what_is_no_target_is_said_in_one_sentence(make):

@@ -25,7 +25,7 @@ pytest.importorskip("rclpy")
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.ros.replay.tracker_process import tracker_process
+from vehicle_pf_tracker.ros.replay.discovery import tracker_process
 
 pytestmark = pytest.mark.ros
 

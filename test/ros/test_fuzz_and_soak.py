@@ -52,19 +52,7 @@ def test_fuzzed_files_end_in_a_sentence_or_in_the_truth(start_process):
 def test_a_short_soak(start_process):
     told = run(start_process, "soak.py", "--minutes", "0.05")
     assert "good images without an answer: 0" in told
-    assert "MB a minute" in told
-
-
-def test_a_few_service_requests(start_process):
-    told = run(start_process, "service_requests.py", "--quick")
-    assert "| burst | 1 | 1000 | 30 | 30 |" in told
-    assert "| one by one | 1 | 10 | 50 | 50 |" in told
-
-
-def test_a_few_vehicles_come_and_go(start_process):
-    told = run(start_process, "traffic_soak.py", "--vehicles", "200")
-    assert "200 vehicles in" in told
-    assert "; twice: 0" in told
+    assert "MB at most" in told
 
 
 @pytest.mark.parametrize("detector", ["topic", "motion"])

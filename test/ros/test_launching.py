@@ -32,7 +32,7 @@ from vehicle_pf_tracker.ros.launching import (
     read_cameras,
     write_profile,
 )
-from vehicle_pf_tracker.ros.replay.playable import recorded_images
+from vehicle_pf_tracker.ros.replay.publishing import recorded_images
 
 FILE = """
 cameras:

@@ -129,9 +129,9 @@ def track_through_ros(recording: Recording) -> dict[str, Sequence[EstimateRow]]:
     InputError
         If a node ends or does not answer every image.
     """
+    from vehicle_pf_tracker.ros.replay.discovery import tracker_process
     from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
     from vehicle_pf_tracker.ros.replay.replaying import replay
-    from vehicle_pf_tracker.ros.replay.tracker_process import tracker_process
 
     nodes = {f"/{name}_tracker": name for name in CONTESTANTS}
     options = ReplayOptions(lockstep=True, nodes=tuple(nodes), timeout=_PATIENCE)

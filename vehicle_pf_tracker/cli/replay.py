@@ -215,8 +215,7 @@ def run(request: Request) -> int:
 
 def options_of(request: Request) -> ReplayOptions:
     """Return the options of the player, most of which are fields of the request."""
-    from vehicle_pf_tracker.ros.replay.playable import read_qos_overrides
-    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, read_qos_overrides
 
     names = {one.name for one in fields(ReplayOptions)} & {one.name for one in fields(request)}
     shared = {name: getattr(request, name) for name in names}

@@ -19,6 +19,7 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError, check_address_space
@@ -50,13 +51,15 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
         from vehicle_pf_tracker.trackers.registry import TRAFFIC, find_node  # noqa: PLC0415
 
         found, words = find_node(name), sys.argv[1:] if args is None else args
-        if found is TRAFFIC:
-            from vehicle_pf_tracker.ros.traffic.traffic_node import run_traffic  # noqa: PLC0415
-
-            return run_traffic(words)
         from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
 
-        return run_node(found, words)
+        if found is TRAFFIC:
+            from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode  # noqa: PLC0415
+
+            return run_node(found.executable, TrafficNode, words)
+        from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode  # noqa: PLC0415
+
+        return run_node(found.executable, partial(TrackerNode, found), words)
 
     return _status(f"{name}_tracker", run)
 

@@ -14,25 +14,38 @@
 
 """Estimates as messages. Headers are the image's own, never "now".
 
-vision_msgs/Detection2D, where that package is installed: the target in, the estimate out.
+Those of vision_msgs exist only where that package is installed.
 """
 
 from __future__ import annotations
 
 import array
+import math
 from collections.abc import Mapping
 from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from geometry_msgs.msg import Point32, PointStamped, PolygonStamped, Vector3Stamped
+from geometry_msgs.msg import (
+    Point32,
+    PointStamped,
+    PolygonStamped,
+    PoseWithCovarianceStamped,
+    Vector3Stamped,
+)
 from sensor_msgs.msg import Image, PointCloud2, PointField
 from std_msgs.msg import Header
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+
+try:
+    from vision_msgs.msg import Detection2D, Detection2DArray, ObjectHypothesisWithPose
+except ImportError:  # an optional package: the nodes work without its topics
+    Detection2D = Detection2DArray = ObjectHypothesisWithPose = None
 
 WAITING = "WAITING"
 """Message of `~/mode` while there is no target."""
@@ -54,6 +67,9 @@ LEVELS: Mapping[str, bytes] = {
     WAITING: DiagnosticStatus.OK,
     REJECTED: DiagnosticStatus.ERROR,
 }
+
+UNKNOWN_ANGLE = math.pi**2 / 3
+"""Variance of an angle that nothing is known of, rad²."""
 
 _PARTICLE_FIELDS = [
     PointField(name=name, offset=4 * index, datatype=PointField.FLOAT32, count=1)
@@ -85,9 +101,14 @@ def stamp_ns(header: Header) -> int:
     return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
 
 
-def key_values(values: Mapping[str, object]) -> list[KeyValue]:
-    """Format values as text; every number can be read back to its last digit."""
-    return [KeyValue(key=key, value=_text(value)) for key, value in values.items()]
+def status(
+    level: bytes, name: str, words: str, hardware_id: str, values: Mapping[str, object]
+) -> DiagnosticStatus:
+    """Make a status; every number in it can be read back to its last digit."""
+    pairs = [KeyValue(key=key, value=_text(value)) for key, value in values.items()]
+    return DiagnosticStatus(
+        level=level, name=name, message=words, hardware_id=hardware_id, values=pairs
+    )
 
 
 def _text(value: object) -> str:
@@ -111,14 +132,8 @@ def mode_message(
     values : mapping
         Scalars of the estimate, or the reason of a rejection.
     """
-    status = DiagnosticStatus(
-        level=LEVELS[mode],
-        name=name,
-        message=mode,
-        hardware_id=hardware_id,
-        values=key_values({"mode": mode, **values}),
-    )
-    return DiagnosticArray(header=header, status=[status])
+    one = status(LEVELS[mode], name, mode, hardware_id, {"mode": mode, **values})
+    return DiagnosticArray(header=header, status=[one])
 
 
 def position_message(
@@ -165,6 +180,33 @@ def particles_message(header: Header, estimate: Estimate) -> PointCloud2:
     )
 
 
+def place_message(header: Header, position: Array) -> PointStamped:
+    """Make a place on the road, m; z = 0."""
+    message = PointStamped(header=header)
+    message.point.x, message.point.y = map(float, position)
+    return message
+
+
+def road_velocity_message(header: Header, velocity: Array) -> Vector3Stamped:
+    """Make a velocity on the road, m/s."""
+    message = Vector3Stamped(header=header)
+    message.vector.x, message.vector.y = map(float, velocity)
+    return message
+
+
+def pose_message(header: Header, position: Array, covariance: Array) -> PoseWithCovarianceStamped:
+    """Make a position with its covariance (2, 2), in px or m; nothing is known of its heading."""
+    message = PoseWithCovarianceStamped(header=header)
+    pose = message.pose
+    pose.pose.position.x, pose.pose.position.y = map(float, position)
+    pose.pose.orientation.w = 1.0
+    rows, numbers = covariance.tolist(), [0.0] * 36
+    numbers[0:2], numbers[6:8] = rows[0], rows[1]
+    numbers[21] = numbers[28] = numbers[35] = UNKNOWN_ANGLE
+    pose.covariance = numbers
+    return message
+
+
 def image_message(header: Header, frame: Frame) -> Image:
     """Make an rgb8 image of a contiguous frame."""
     width, height = frame_size(frame)
@@ -186,11 +228,6 @@ def packed(values: npt.NDArray[Any]) -> array.array[int]:
     data.frombytes(values.data.cast("B"))
     return data
 
-
-try:
-    from vision_msgs.msg import Detection2D, Detection2DArray, ObjectHypothesisWithPose
-except ImportError:  # an optional package: the nodes work without its topics
-    Detection2D = Detection2DArray = ObjectHypothesisWithPose = None
 
 CLASS = "vehicle"
 """Class of a detection that goes out."""

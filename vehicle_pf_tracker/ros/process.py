@@ -104,6 +104,15 @@ def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]]
         rclpy.try_shutdown()
 
 
+def answer_usage(name: str, words: Sequence[str], usage: str) -> int:
+    """Print how a program is called, and which of `words` it does not know; return its status."""
+    is_asked = set(words) <= {"-h", "--help"}
+    if not is_asked:
+        print(f"{name}: unknown arguments: {' '.join(words)}", file=sys.stderr)
+    print(usage, file=sys.stdout if is_asked else sys.stderr)
+    return 0 if is_asked else 2
+
+
 def end_at_once(status: int) -> None:
     """End the process where a thread that cannot be ended would outlive Python."""
     sys.stdout.flush()

@@ -118,12 +118,12 @@ def image_transport(
     middleware : str
         As ``rclpy.get_rmw_implementation_identifier()`` names it.
     environment : mutable mapping
-        Where the profile is named, that of this process unless said otherwise.
+        Environment that names the profile; that of this process by default.
 
     Yields
     ------
     list of str
-        What the user should know, a sentence each.
+        Notices for the user, a sentence each.
     """
     if not is_free_to_choose(environment, middleware):
         yield []

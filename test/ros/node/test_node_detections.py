@@ -32,10 +32,11 @@ from tracker_rig import Rig, on_target
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.ros import messages
-from vehicle_pf_tracker.ros.node.outputs import LocatedOutputs
-from vehicle_pf_tracker.ros.node.target_messages import box_of_detection
+from vehicle_pf_tracker.ros.node.input_messages import box_of_detection
+from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.localisation import Localisation
 
@@ -111,8 +112,7 @@ def test_an_estimate_becomes_a_detection(stand_in):
 
 
 def test_a_detection_names_a_target():
-    assert box_of_detection(detection(), None) == Box(28.0, 51.0, 24.0, 18.0)
-    assert box_of_detection(detection(frame_id="cam_px"), "cam", "_px").width == 24.0
+    assert box_of_detection(detection()) == Box(28.0, 51.0, 24.0, 18.0)
 
 
 @pytest.mark.parametrize(
@@ -120,12 +120,11 @@ def test_a_detection_names_a_target():
     [
         (detection(x=float("nan")), "not finite"),
         (detection(theta=0.3), "upright"),
-        (detection(frame_id="map"), "in the frame 'map'"),
     ],
 )
 def test_detections_that_name_none(message, words):
     with pytest.raises(InputError, match=words):
-        box_of_detection(message, "camera")
+        box_of_detection(message)
 
 
 class FakeNode:
@@ -133,6 +132,9 @@ class FakeNode:
 
     def __init__(self):
         self.sent = {}
+
+    def get_name(self):
+        return "fake"
 
     def create_lifecycle_publisher(self, kind, topic, qos):
         kept = self.sent.setdefault(topic, [])
@@ -150,10 +152,10 @@ class FakeNode:
 
 def test_every_start_has_an_id_of_its_own(stand_in):
     node = FakeNode()
-    outputs = LocatedOutputs(node, 10)
-    local = Localisation("pf", RoadParameters())
+    outputs = TrackerOutputs(node, "camera")
+    local, own = Localisation("pf", RoadParameters()), NodeParameters()
     for regime in ("start", "clear", "start"):
-        outputs.publish(Header(), estimate(regime=regime), local)
+        outputs.publish_estimate(Header(), estimate(regime=regime), own, local, 1.0)
     assert [message.id for message in node.sent["~/detection"]] == ["1", "1", "2"]
     assert node.sent["~/pose_with_covariance"] == []
 

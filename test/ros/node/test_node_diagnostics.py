@@ -21,7 +21,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CompressedImage, Image
 from tracker_rig import Rig, header, on_target, road
 
@@ -111,9 +111,30 @@ def warning(bench, words: str) -> str:
     return Reports(bench).next(lambda status: words in status.message).message
 
 
-def test_nobody_publishes(bench, monkeypatch):
+@pytest.mark.parametrize(
+    ("kind", "topic", "mark", "words"),
+    [
+        (None, "", "nobody", "no image for 0.5 s on /image: nobody publishes on it"),
+        (
+            CompressedImage, "image", "CompressedImage",
+            "publishes sensor_msgs/msg/CompressedImage, not sensor_msgs/msg/Image",
+        ),
+        (CompressedImage, "image/compressed", "compressed", "set image_transport to compressed"),
+        (
+            Image, "/camera/image_raw", "remap",
+            "images are on /camera/image_raw: remap image to one of them",
+        ),
+    ],
+)  # fmt: skip
+def test_where_images_are_instead_is_named(
+    bench, other_bench, monkeypatch, kind, topic, mark, words
+):
     silent_node(bench, monkeypatch)
-    assert warning(bench, "nobody") == "no image for 0.5 s on /image: nobody publishes on it"
+    if kind is not None:
+        other_bench.node.create_publisher(kind, topic, 1)
+    found = warning(bench, mark)
+    assert words in found
+    assert "overlay" not in found
 
 
 def test_overlays_of_tracker_nodes_are_not_proposed(bench, other_bench, monkeypatch):
@@ -138,28 +159,6 @@ def test_qos_that_does_not_fit_is_named(bench, monkeypatch):
     assert "reliable" in words.lower()
 
 
-def test_another_type_is_named(bench, other_bench, monkeypatch):
-    silent_node(bench, monkeypatch)
-    other_bench.node.create_publisher(CompressedImage, "image", 1)
-    words = warning(bench, "CompressedImage")
-    assert "publishes sensor_msgs/msg/CompressedImage, not sensor_msgs/msg/Image" in words
-
-
-def test_the_other_transport_is_named(bench, monkeypatch):
-    silent_node(bench, monkeypatch)
-    bench.node.create_publisher(CompressedImage, "image/compressed", 1)
-    assert "set image_transport to compressed" in warning(bench, "compressed")
-
-
-def test_images_elsewhere_are_named(bench, monkeypatch):
-    silent_node(bench, monkeypatch)
-    transient = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    bench.node.create_publisher(Image, "/camera/image_raw", transient)
-    words = warning(bench, "remap")
-    assert "images are on /camera/image_raw: remap image to one of them" in words
-    assert "overlay" not in words
-
-
 def test_an_inactive_node_is_not_blamed(bench):
     rig = Rig(bench)
     rig.node.trigger_deactivate()
@@ -181,32 +180,21 @@ def numbered(number) -> dict[str, object]:
     return {"publication_sequence_number": number}
 
 
-def test_gaps_in_the_numbers_are_dropped_images():
+@pytest.mark.parametrize(
+    ("numbers", "publishers", "dropped"),
+    [
+        ([7, 8, 11, 12], 1, 2),  # what came before the first is not known
+        ([900, 1, 2], 1, 0),
+        ([1, 500, 2, 501], 2, 0),
+        ([None, 5, None], 1, 0),
+    ],
+    ids=["gaps", "a restarted publisher", "two publishers", "missing numbers"],
+)
+def test_gaps_in_the_numbers_of_one_publisher_are_dropped_images(numbers, publishers, dropped):
     health = Health(Clock())
-    for number in (7, 8, 11, 12):  # what came before the first is not known
-        health.arrived(numbered(number), 0.0, 1)
-    assert health.dropped == 2
-
-
-def test_a_restarted_publisher_counts_anew():
-    health = Health(Clock())
-    for number in (900, 1, 2):
-        health.arrived(numbered(number), 0.0, 1)
-    assert health.dropped == 0
-
-
-def test_numbers_of_two_publishers_say_nothing():
-    health = Health(Clock())
-    for number in (1, 500, 2, 501):
-        health.arrived(numbered(number), 0.0, 2)
-    assert health.dropped == 0
-
-
-def test_numbers_may_be_missing():
-    health = Health(Clock())
-    health.arrived(numbered(None), 0.0, 1)
-    health.arrived({}, 0.0, 1)
-    assert (health.images, health.dropped) == (2, 0)
+    for number in numbers:
+        health.arrived(numbered(number), 0.0, publishers)
+    assert (health.images, health.dropped) == (len(numbers), dropped)
 
 
 def test_images_missed_while_not_listening_are_not_dropped():

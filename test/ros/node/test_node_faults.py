@@ -27,7 +27,6 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped
-from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
@@ -115,31 +114,6 @@ def test_a_subscriber_that_stalls_holds_nobody_up(bench, start_node, start_proce
         bench.wait_for(lambda: modes[-1].header == image.header)
     sleeper.send(signal.SIGKILL)
     assert resident(node) < before * 1.05 + 4 * 2**20
-
-
-def test_parameters_are_set_a_thousand_times_under_load(bench):
-    rig = Rig(bench, on_target())
-    client = bench.node.create_client(SetParameters, f"{rig.name}/set_parameters")
-    bench.wait_for(client.service_is_ready)
-    frames = road(25)
-    rig.play(frames[:1])
-    refused = 0
-    for index in range(1, 1001):
-        value = Parameter("num_particles", value=index % 300)  # 0 is refused
-        request = SetParameters.Request(parameters=[value.to_parameter_msg()])
-        future = client.call_async(request)
-        if index % 10 == 0:
-            # There and back again, so that the vehicle stays in the picture.
-            place = (index // 10) % 48
-            frame = frames[place if place < 25 else 48 - place]
-            answer = rig.show_frame(frame, index)
-            assert answer.status[0].message == "TRACKING"
-        bench.wait_for(future.done)
-        refused += not future.result().results[0].successful
-    assert refused == 3
-    assert rig.node.get_parameter("num_particles").value == 100
-    answer = rig.show_frame(frames[4], 1001)
-    assert values_of(answer)["num_particles"] == "100"
 
 
 def test_a_killed_node_neither_harms_others_nor_its_successor(bench, start_node):

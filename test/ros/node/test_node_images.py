@@ -27,12 +27,10 @@ from sensor_msgs.msg import CompressedImage, Image
 from tracker_rig import (
     FIRST_NS,
     PERIOD_NS,
-    SPEED,
     TARGET,
     Rig,
     header,
     on_target,
-    overrides,
     road,
     values_of,
 )
@@ -90,15 +88,6 @@ def test_position_has_the_images_header_and_every_digit(bench):
         assert repr(position.point.x) == values_of(answer)["x"]
         assert repr(position.point.y) == values_of(answer)["y"]
         assert position.point.z == 0.0
-
-
-def test_the_vehicle_is_followed(bench):
-    rig = Rig(bench, on_target())
-    modes = rig.play(road(25))
-    assert modes == ["TRACKING"] * 25
-    assert float(values_of(rig.modes[-1])["x"]) == pytest.approx(
-        TARGET[0] + TARGET[2] / 2 + 24 * SPEED, abs=4
-    )
 
 
 def test_status_names_node_and_topic(bench):
@@ -178,14 +167,6 @@ def test_an_unusable_image_is_answered_and_the_track_kept(bench, changes, words)
     # As if the bad one had never been there: the clock does not see its stamp either.
     last = rig.show_frame(frames[3], 3)
     assert without_times(last) == offline("apf", frames[:4])[3]
-
-
-def test_a_configured_target_outside_the_image_is_said_once(bench):
-    rig = Rig(bench, overrides(target__x=900.0, target__width=20.0, target__height=20.0))
-    frames = road(2)
-    answer = rig.show_frame(frames[0], 0)
-    assert "outside the image of 160x120" in values_of(answer)["reason"]
-    assert rig.show_frame(frames[1], 1).status[0].message == "WAITING"
 
 
 def test_an_unexpected_error_is_an_answer_too(bench, monkeypatch):

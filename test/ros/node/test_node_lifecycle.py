@@ -55,11 +55,6 @@ def manager(bench):
     return Manager(bench)
 
 
-def test_the_node_starts_by_itself(bench, manager):
-    Rig(bench)
-    assert manager.state == "active"
-
-
 def test_without_autostart_it_waits_for_a_manager(bench, manager):
     node = TrackerNode(
         find_variant("apf"), context=bench.context, parameter_overrides=overrides(autostart=False)

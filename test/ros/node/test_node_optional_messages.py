@@ -24,6 +24,7 @@ from geometry_msgs.msg import TransformStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from tracker_rig import HEIGHT, TARGET, WIDTH, Rig, overrides, road, values_of
 
+from vehicle_pf_tracker.ros import messages as ros_messages
 from vehicle_pf_tracker.ros.node import camera_inputs
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -34,7 +35,7 @@ NODE = "/apf_tracker"
 def test_a_detection_starts_a_node_and_comes_back(bench, messages, monkeypatch):
     vision = messages("vision_msgs")
     for name in ("Detection2D", "ObjectHypothesisWithPose"):
-        monkeypatch.setattr(messages, name, getattr(vision, name))
+        monkeypatch.setattr(ros_messages, name, getattr(vision, name))
     rig = Rig(bench, overrides())
     found = bench.collect(vision.Detection2D, f"{NODE}/detection")
     target = bench.publisher(vision.Detection2D, f"{NODE}/set_detection")

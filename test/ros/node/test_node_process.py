@@ -214,7 +214,7 @@ def test_two_nodes_live_under_their_namespaces(bench, start_node):
 
 def test_the_node_loads_neither_recordings_nor_evaluation():
     code = (
-        "import sys; import vehicle_pf_tracker.ros.node.process; "
+        "import sys; from vehicle_pf_tracker.ros.node import process, tracker_node; "
         "print(*sorted(name for name in sys.modules if name.startswith('vehicle_pf_tracker.')))"
     )
     loaded = subprocess.run(

@@ -53,8 +53,8 @@ from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.camera import Lens
 from vehicle_pf_tracker.ros.node import camera_inputs, outputs
+from vehicle_pf_tracker.ros.node.input_messages import lens_of_info
 from vehicle_pf_tracker.ros.replay.tracker_link import Answers
-from vehicle_pf_tracker.ros.road_messages import lens_of_info
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 pytestmark = pytest.mark.ros
@@ -322,11 +322,3 @@ def test_numbers_are_those_of_an_offline_run_and_of_a_replay(bench, rig):
     assert columns == replayed.road_columns()
     for name, numbers in columns.items():
         assert [float(values_of(answer)[name]) for answer in answers] == numbers
-
-
-def test_a_replay_without_a_road_has_no_columns_of_it(bench):
-    rig, replayed = Rig(bench, on_target()), Answers()
-    replayed.expect(0, FIRST_NS)
-    replayed.receive(rig.show_frame(road(1)[0], 0))
-    assert replayed.count == 1
-    assert replayed.road_columns() == {}

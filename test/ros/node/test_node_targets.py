@@ -100,12 +100,6 @@ def test_a_waiting_node_starts_on_the_next_image(waiting):
     assert box_of(answer) == TARGET
 
 
-def test_a_target_may_come_before_the_first_image(waiting):
-    rig, targets = waiting
-    targets.give(region(*TARGET))
-    assert box_of(rig.show_frame(road(1)[0], 0)) == TARGET
-
-
 def test_a_box_has_sub_pixel_corners(waiting):
     rig, targets = waiting
     targets.give(polygon((20.25, 50.5), (44.5, 50.5), (44.5, 68.75), (20.25, 68.75)))

@@ -23,16 +23,13 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from rcl_interfaces.msg import Parameter as ParameterMessage
-from rcl_interfaces.msg import ParameterType
 from rcl_interfaces.srv import (
-    DescribeParameters,
-    GetParameters,
     SetParameters,
     SetParametersAtomically,
 )
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.parameter import Parameter
-from tracker_rig import SOME_FAST, TARGET, Rig, on_target, overrides, road, values_of
+from tracker_rig import SOME_FAST, Rig, on_target, overrides, road, values_of
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import (
@@ -126,11 +123,6 @@ def test_whole_numbers_in_a_file_do_for_real_ones(bench, make, tmp_path):
     assert (value(node, "motion.sigma_w"), value(node, "lost_after")) == (4.0, 3.0)
     assert type(value(node, "motion.sigma_w")) is float
     assert node.table.configuration.tracker.motion.sigma_w == 4.0
-
-
-def test_whole_numbers_on_the_command_line_do_for_real_ones(make):
-    node = make("-p", "motion.sigma_w:=4", "-p", "motion.sigma_n:=1.5")
-    assert (value(node, "motion.sigma_w"), value(node, "motion.sigma_n")) == (4.0, 1.5)
 
 
 def test_a_misspelt_key_is_warned_about_by_name(make, tmp_path, log):
@@ -265,11 +257,6 @@ def test_a_change_reaches_the_tracker_and_keeps_the_track(rig, setter):
     assert rig.play(frames[5:], first=5) == ["TRACKING"] * 3
 
 
-def test_a_whole_number_does_for_a_real_one(rig, setter):
-    assert setter.one("motion.sigma_w", 5).successful
-    assert value(rig.node, "motion.sigma_w") == 5.0
-
-
 @pytest.mark.parametrize(
     ("values", "words"),
     [
@@ -298,15 +285,6 @@ def test_values_that_fit_only_together_can_be_set_together(rig, setter):
     assert setter.together(evidence__occluded_below=0.85, evidence__clear_above=0.9).successful
 
 
-def test_the_target_can_be_set_by_parameters(rig, setter):
-    rig.play(road(2))
-    assert setter.together(target__x=100, target__y=20.5).successful
-    answer = rig.show_frame(road(3)[2], 2)
-    assert values_of(answer)["regime"] == "start"
-    assert float(values_of(answer)["x"]) == 100 + TARGET[2] / 2
-    assert float(values_of(answer)["y"]) == 20.5 + TARGET[3] / 2
-
-
 def test_a_drawn_seed_is_told(bench):
     rig = Rig(bench, overrides(seed=-1))
     first = rig.node.stream.facts["seed"]
@@ -314,19 +292,3 @@ def test_a_drawn_seed_is_told(bench):
     assert rig.node.diagnostics.facts["seed"] == first
     assert Setter(bench).together(seed=12).successful
     assert rig.node.diagnostics.facts["seed"] == 12
-
-
-def test_the_services_describe_and_get(rig, bench):
-    names = ["motion.sigma_w", "image_transport"]
-    asked = DescribeParameters.Request(names=names)
-    told = bench.call(DescribeParameters, "/apf_tracker/describe_parameters", asked).descriptors
-    assert told[0].type == ParameterType.PARAMETER_DOUBLE
-    assert "px/frame" in told[0].description
-    assert "P1 eq. 7" in told[0].description
-    assert "keeps track and reference" in told[0].description
-    assert told[1].read_only
-    assert told[1].additional_constraints == "one of: raw, compressed"
-    got = bench.call(
-        GetParameters, "/apf_tracker/get_parameters", GetParameters.Request(names=names)
-    )
-    assert [got.values[0].double_value, got.values[1].string_value] == [6.0, "raw"]

@@ -17,8 +17,7 @@ import pytest
 pytest.importorskip("rclpy")
 
 from vehicle_pf_tracker.ros.replay.controls import Pace
-from vehicle_pf_tracker.ros.replay.starting_target import nearest_frame
-from vehicle_pf_tracker.ros.replay.tracker_link import Answers
+from vehicle_pf_tracker.ros.replay.tracker_link import Answers, nearest_frame
 
 
 class Watch:

@@ -24,9 +24,12 @@ from replay_rig import IMAGE_TOPIC, record
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.replay.playable import read_qos_overrides, recorded_qos
 from vehicle_pf_tracker.ros.replay.publishing import make_publishers
-from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+from vehicle_pf_tracker.ros.replay.replay_options import (
+    ReplayOptions,
+    read_qos_overrides,
+    recorded_qos,
+)
 
 pytestmark = pytest.mark.ros
 

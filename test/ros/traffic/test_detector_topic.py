@@ -34,10 +34,11 @@ from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, hear_notices, lanes
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.ros import messages as ros_messages
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.ros.traffic import stream
+from vehicle_pf_tracker.ros.traffic.stream import WaitingImages
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
-from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -56,7 +57,7 @@ MOST = 40
 def vision(messages, monkeypatch):
     module = messages("vision_msgs")
     for name in ("Detection2D", "Detection2DArray", "ObjectHypothesisWithPose"):
-        monkeypatch.setattr(messages, name, getattr(module, name))
+        monkeypatch.setattr(ros_messages, name, getattr(module, name))
     return module
 
 

@@ -47,7 +47,6 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.traffic.messages import CODES
-from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
@@ -524,9 +523,3 @@ def test_without_scipy_the_extra_is_named(bench, monkeypatch):
 def test_a_detector_on_a_topic_needs_vision_msgs(bench):
     with pytest.raises(InputError, match="vision_msgs, which detections come in, is not installed"):
         TrafficRig(bench, overrides(detector__kind="topic"))
-
-
-def test_vehicles_of_a_bad_state_are_in_the_report():
-    vehicles = Vehicles(Configuration.of(TRAFFIC))
-    vehicles.session.tracker.bad_states = 3
-    assert vehicles.summary()["dropped for a bad state"] == 3

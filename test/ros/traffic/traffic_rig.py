@@ -23,8 +23,8 @@ from sensor_msgs.msg import Image, PointCloud2
 from tracker_rig import QUEUE, header
 
 from vehicle_pf_tracker.ros.messages import image_message
-from vehicle_pf_tracker.ros.traffic import stream
-from vehicle_pf_tracker.ros.traffic.stream import Notices
+from vehicle_pf_tracker.ros.node import node_stream
+from vehicle_pf_tracker.ros.node.node_stream import Notices
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
 
 WIDTH, HEIGHT = 160, 120
@@ -59,7 +59,7 @@ def lanes(count: int) -> list[np.ndarray]:
 def hear_notices(monkeypatch) -> list[str]:
     """Sentences that nodes made from now on log: each kind once, however long the test takes."""
     said: list[str] = []
-    monkeypatch.setattr(stream, "Notices", lambda _: Notices(said.append, lambda: 0.0))
+    monkeypatch.setattr(node_stream, "Notices", lambda _: Notices(said.append, lambda: 0.0))
     return said
 
 

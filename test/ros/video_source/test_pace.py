@@ -21,7 +21,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.ros.video_source.source_node import BackOff, Pace
+from vehicle_pf_tracker.ros.video_source.outputs import BackOff, Pace
 
 MS = 1_000_000
 

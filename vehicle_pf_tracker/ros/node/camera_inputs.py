@@ -12,13 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Subscriptions that tell where the camera is and how it sees: camera_info and TF.
-
-Localisation of a stream's estimates: lens and pose as they come, and what is said of it.
-"""
+"""Lens and pose of the camera from camera_info and TF, and the localisation that uses them."""
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from typing import Any
 
@@ -32,10 +30,10 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.road.camera import Pose, PoseTree
+from vehicle_pf_tracker.road.camera import PoseTree
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.image_input import image_topic
-from vehicle_pf_tracker.ros.road_messages import ImageLens, lens_of_info, pose_of_transform
+from vehicle_pf_tracker.ros.node.input_messages import ImageLens, lens_of_info, pose_of_transform
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.localisation import Localisation
 
@@ -136,14 +134,6 @@ class CameraInputs:
         self._node.get_logger().warning(words, throttle_duration_sec=_THROTTLE)
 
 
-def camera_pose(tree: PoseTree, camera: str, road: str) -> Pose | None:
-    """Return the pose of the camera's frame in the road's; None while TF does not have it."""
-    try:
-        return tree.find(camera, road)
-    except InputError:
-        return None
-
-
 class StreamLocalisation(Localisation):
     """Localisation with lens and pose from topics.
 
@@ -173,9 +163,8 @@ class StreamLocalisation(Localisation):
         """Take the estimate of the image `frame`, with the nominal frame period in s."""
         parameters = self.parameters
         if parameters.from_tf and self._tree is not None:
-            pose = camera_pose(self._tree, header.frame_id, parameters.frame_id)
-            if pose is not None:
-                self.set_pose(pose)
+            with contextlib.suppress(InputError):  # TF does not have it yet
+                self.set_pose(self._tree.find(header.frame_id, parameters.frame_id))
         self.follow(estimate, stamp_ns(header), period)
         (width, height), expected = frame_size(frame), self._size
         is_other = expected is not None and expected != (width, height)

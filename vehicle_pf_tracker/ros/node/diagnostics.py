@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`/diagnostics` at 1 Hz: the node's health, and why no images arrive.
-
-Counts of a node's input and work, for `/diagnostics`.
-"""
+"""`/diagnostics` at 1 Hz: counts of a node's input and work, and why no images arrive."""
 
 from __future__ import annotations
 
@@ -27,7 +24,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from vehicle_pf_tracker.ros.messages import LEVELS, WAITING, key_values
+from vehicle_pf_tracker.ros.messages import LEVELS, WAITING, status
 from vehicle_pf_tracker.ros.node.image_input import ImageInput
 
 
@@ -52,7 +49,7 @@ class Health:
     road : mapping
         Place and speed on the road with the last estimate, by name; empty without a road.
     mode : str
-        What the last `~/mode` said.
+        Mode of the last `~/mode`.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -88,7 +85,7 @@ class Health:
         age : float
             Time from the image's stamp to now, in s.
         publishers : int
-            How many publish on the topic; the numbers of several cannot be told apart.
+            Number of publishers on the topic; the numbers of several cannot be told apart.
         """
         self.images += 1
         self._heard = self._clock()
@@ -152,7 +149,7 @@ class Diagnostics:
     Parameters
     ----------
     node : Node
-        Whose health it is.
+        Node to report on.
 
     Attributes
     ----------
@@ -161,7 +158,7 @@ class Diagnostics:
     source : ImageInput or None
         The open subscription; None while the node is not active.
     facts : dict
-        What else to publish, by name.
+        Other values to publish, by name.
     """
 
     def __init__(self, node: Node) -> None:
@@ -200,14 +197,8 @@ class Diagnostics:
         level, words = self._judge()
         publishers = self.source.publisher_count if self.source else 0
         values = {**self.health.report(), "matched publishers": publishers, **self.facts}
-        status = DiagnosticStatus(
-            level=level,
-            name=f"{self._node.get_name()}: tracker",
-            message=words,
-            hardware_id=self.source.topic if self.source else "",
-            values=key_values(values),
-        )
-        message = DiagnosticArray(status=[status])
+        name, topic = self._node.get_name(), self.source.topic if self.source else ""
+        message = DiagnosticArray(status=[status(level, f"{name}: tracker", words, topic, values)])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
 

@@ -12,9 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Subscription to images, and the publishers on its topic.
-
-Image messages as frames, read in place.
+"""Subscription to images, the publishers on its topic, and images as frames.
 
 Serialized `sensor_msgs/Image` messages are used where they lie: rclpy would copy the pixels of
 every image again on their way into a message of Python.
@@ -45,6 +43,24 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage, read_compressed
 from vehicle_pf_tracker.image.encodings import to_rgb
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError
+
+_BODY = 4
+"""Bytes before the message, the second of which tells the byte order."""
+
+
+class _Layout(NamedTuple):
+    """Numbers before the frame_id, before the encoding, and before the pixels."""
+
+    stamp: struct.Struct
+    size: struct.Struct
+    step: struct.Struct
+
+
+_LAYOUTS = [
+    _Layout(*(struct.Struct(order + kinds) for kinds in ("iII", "III", "II"))) for order in "><"
+]
+"""For a big-endian and for a little-endian message."""
+
 
 ImageCallback = Callable[[Any, Mapping[str, Any]], None]
 
@@ -189,24 +205,6 @@ def _is_overlay(topic: str, topics: Container[str]) -> bool:
     return name == "overlay" and f"{node}/mode" in topics
 
 
-_BODY = 4
-"""Bytes before the message, the second of which tells the byte order."""
-
-
-class _Layout(NamedTuple):
-    """Numbers before the frame_id, before the encoding, and before the pixels."""
-
-    stamp: struct.Struct
-    size: struct.Struct
-    step: struct.Struct
-
-
-_LAYOUTS = [
-    _Layout(*(struct.Struct(order + kinds) for kinds in ("iII", "III", "II"))) for order in "><"
-]
-"""For a big-endian and for a little-endian message."""
-
-
 class SerializedImage(NamedTuple):
     """The fields of a `sensor_msgs/Image`; `data` is a view of the serialized message."""
 
@@ -265,11 +263,6 @@ def read_image(message: Image | SerializedImage | CompressedImage) -> Frame | Co
         bool(message.is_bigendian),
         message.data,
     )
-
-
-def frame_of(image: Frame | CodedImage) -> Frame:
-    """Return the pixels of an image that was used, and so is decoded already."""
-    return image.decode() if isinstance(image, CodedImage) else image
 
 
 def _text(message: bytes, at: int, length: int) -> tuple[str, int]:

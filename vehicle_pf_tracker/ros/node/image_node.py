@@ -12,12 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Base of the nodes that take images: parameters, diagnostics, warnings.
+"""Base of the nodes that take images: lifecycle, parameters, diagnostics, warnings.
 
-A managed node that says why a transition failed, and that no request can end.
-
-rclpy swallows the exceptions of transition callbacks, and lets a transition that does not exist in
-the present state end the process.
+It says why a transition failed, and no request can end it: rclpy swallows the exceptions of
+transition callbacks, and lets a transition that does not exist in the present state end the
+process.
 """
 
 from __future__ import annotations
@@ -26,18 +25,26 @@ import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 from lifecycle_msgs.srv import ChangeState
+from rclpy.clock import Clock as RosClock
+from rclpy.clock import ClockType
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from rclpy.timer import Timer
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import CompressedImage
+from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
-from vehicle_pf_tracker.ros.node.image_input import ImageInput, SerializedImage, read_serialized
+from vehicle_pf_tracker.ros.node.image_input import ImageInput, read_serialized
+from vehicle_pf_tracker.ros.node.node_stream import NodeStream
+from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, unknown_overrides
 from vehicle_pf_tracker.ros.rclpy_internals import (
     RCLError,
@@ -171,14 +178,6 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
         return response
 
 
-class _Stream(Protocol):
-    """Processing of images in a configured node."""
-
-    def take(self, message: SerializedImage | CompressedImage) -> None:
-        """Answer an image."""
-        ...
-
-
 class ImageNode(ManagedNode):
     """Managed node that takes images; active at once unless `autostart` is false.
 
@@ -189,11 +188,21 @@ class ImageNode(ManagedNode):
     table : ParameterTable
         The parameters.
     diagnostics : Diagnostics
-        What is published on /diagnostics.
+        Reports on /diagnostics.
+    inputs : list of Subscription
+        Subscriptions that a deactivation ends, beside that to images.
     """
 
-    stream: _Stream | None
+    stream: NodeStream | None
     """Where images go; None while the node is not configured."""
+
+    def __init__(self, name: str, **options: Any) -> None:
+        super().__init__(name, **options)
+        self.stream = None
+        self._outputs: Outputs | None = None
+        self.inputs: list[Subscription] = []
+        self._requests: list[Service] = []
+        self._polls: list[Timer] = []
 
     def begin(self, defaults: Configuration) -> None:
         """Declare the parameters, warn of what is not understood, and start.
@@ -230,6 +239,56 @@ class ImageNode(ManagedNode):
         source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
         self.diagnostics.listen_to(source)
         return source
+
+    def listen(self, kind: Any, topic: str, callback: Callable[[Any], None]) -> None:
+        """Subscribe until the node is deactivated."""
+        self.inputs.append(self.create_subscription(kind, topic, callback, 10))
+
+    def serve(self, name: str, act: Callable[[], str]) -> None:
+        """Offer a service until clean-up; `act` returns words for people, or raises InputError."""
+
+        def respond(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+            try:
+                response.success, response.message = True, act()
+            except InputError as error:
+                response.success, response.message = False, str(error)
+            return response
+
+        self._requests.append(self.create_service(Trigger, name, respond))
+
+    def poll(self, interval: float, callback: Callable[[], None]) -> Timer:
+        """Call back every `interval` s until clean-up; of real time: simulated may stand still."""
+        clock = RosClock(clock_type=ClockType.STEADY_TIME)
+        self._polls.append(self.create_timer(interval, callback, clock=clock))
+        return self._polls[-1]
+
+    @abstractmethod
+    def prepare(self) -> None:
+        """Make stream, outputs and services; `cleanup` releases them, also where this fails."""
+
+    def configure(self) -> None:
+        """Prepare for images."""
+        try:
+            self.prepare()
+        except Exception:  # of whatever a network or numba raises
+            self.cleanup()
+            raise
+
+    def deactivate(self) -> None:
+        """Close the inputs: an inactive node pays nothing for images."""
+        self.diagnostics.cease()
+        while self.inputs:
+            self.destroy_subscription(self.inputs.pop())
+
+    def cleanup(self) -> None:
+        """Release session, outputs and services."""
+        if self._outputs is not None:
+            self._outputs.close()
+        while self._requests:
+            self.destroy_service(self._requests.pop())
+        while self._polls:
+            self.destroy_timer(self._polls.pop())
+        self._outputs = self.stream = None
 
     def _on_image(self, message: bytes | CompressedImage, info: Mapping[str, Any]) -> None:
         """Note an image, and pass it to the stream; not one that a deactivation has overtaken."""

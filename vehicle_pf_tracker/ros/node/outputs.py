@@ -12,20 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The publishers of a node and what goes out for one image.
-
-Outputs that say more than pixels: uncertainty, places on the road, detections.
-
-The image with what the tracker makes of it: box, path, particles, mode.
-"""
+"""The publishers of a node, and everything that goes out for one image."""
 
 from __future__ import annotations
 
 import copy
-from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any
 
-import cv2
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import (
@@ -34,37 +29,105 @@ from geometry_msgs.msg import (
     PoseWithCovarianceStamped,
     Vector3Stamped,
 )
-from rclpy.lifecycle import LifecycleNode, LifecyclePublisher
+from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image, PointCloud2
 from std_msgs.msg import Header
 
-from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.offline.drawing import line_width, write_words
+from vehicle_pf_tracker.offline.drawing import COLOURS, NEUTRAL, Annotator, line_width, write_words
 from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros.messages import (
+    Located,
     box_message,
     detection_message,
     detection_type,
     image_message,
     mode_message,
     particles_message,
-    position_message,
-    velocity_message,
-)
-from vehicle_pf_tracker.ros.road_messages import (
     place_message,
     pose_message,
+    position_message,
     road_velocity_message,
+    velocity_message,
 )
-from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
+from vehicle_pf_tracker.trackers.estimate import START, Estimate
 from vehicle_pf_tracker.trackers.localisation import Localisation
 
+RELIABLE = QoSProfile(depth=10)
+BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
-def is_heard(publisher: LifecyclePublisher) -> bool:
-    """Return whether anybody subscribes."""
-    return bool(publisher.get_subscription_count())
+Topics = Mapping[str, tuple[Any, QoSProfile]]
+"""Message type and QoS by the name below the node's; the type is None where it is not installed."""
+
+_COMMON: Topics = MappingProxyType(
+    {
+        "position": (PointStamped, RELIABLE),
+        "box": (PolygonStamped, RELIABLE),
+        "velocity": (Vector3Stamped, RELIABLE),
+        "overlay": (Image, BEST_EFFORT),
+        # Last, here and for every image: it tells a lock-step replay that the image is done with.
+        "mode": (DiagnosticArray, RELIABLE),
+    }
+)
+
+
+class Outputs:
+    """Publishers of a node; outputs without subscribers are not computed.
+
+    Parameters
+    ----------
+    node : LifecycleNode
+        Its publishers are silent unless it is active.
+    hardware_id : str
+        Topic of the images, for the statuses.
+    more : Topics
+        Topics of this kind of node.
+
+    Attributes
+    ----------
+    node_name, hardware_id : str
+        Name of the node, and topic of its images.
+    """
+
+    def __init__(self, node: LifecycleNode, hardware_id: str, more: Topics) -> None:
+        self._node = node
+        self.node_name, self.hardware_id = str(node.get_name()), hardware_id
+        self._kept_position = PointStamped()
+        self._publishers = {
+            name: node.create_lifecycle_publisher(kind, f"~/{name}", qos)
+            for name, (kind, qos) in {**more, **_COMMON}.items()
+            if kind is not None
+        }
+
+    def close(self) -> None:
+        """Destroy the publishers."""
+        for publisher in self._publishers.values():
+            self._node.destroy_lifecycle_publisher(publisher)
+
+    def is_heard(self, name: str) -> bool:
+        """Return whether the topic exists and anybody subscribes to it."""
+        return name in self._publishers and bool(self._publishers[name].get_subscription_count())
+
+    def send(self, name: str, make: Callable[..., Any], *arguments: object) -> None:
+        """Publish on a topic what `make` makes of `arguments`, if anybody listens."""
+        if self.is_heard(name):
+            self._publishers[name].publish(make(*arguments))
+
+    def publish_vehicle(
+        self, header: Header, estimate: Located, own: NodeParameters, frame_period: float
+    ) -> None:
+        """Publish where a vehicle is; `frame_period` in s makes px/frame to px/s."""
+        self.send("position", position_message, header, estimate, self._kept_position)
+        if own.publish.box:
+            self.send("box", box_message, header, estimate)
+        if own.publish.velocity:
+            self.send("velocity", velocity_message, header, estimate, frame_period)
+
+    def publish_mode(self, header: Header, mode: str, values: Mapping[str, object]) -> None:
+        """Publish the one `~/mode` of an image."""
+        name = f"{self.node_name}: target"
+        self.send("mode", mode_message, header, name, self.hardware_id, mode, values)
 
 
 def in_frame(header: Header, frame_id: str) -> Header:
@@ -74,147 +137,34 @@ def in_frame(header: Header, frame_id: str) -> Header:
     return other
 
 
-class LocatedOutputs:
-    """Publishers of what `Localisation` adds to an estimate, and of detections.
-
-    Parameters
-    ----------
-    node : LifecycleNode
-        Its publishers are silent unless it is active.
-    qos : QoSProfile
-        Of all of them.
-    """
-
-    def __init__(self, node: LifecycleNode, qos: QoSProfile) -> None:
-        self._node = node
-        self._track = 0
-        create = node.create_lifecycle_publisher
-        self._pose = create(PoseWithCovarianceStamped, "~/pose_with_covariance", qos)
-        self._place = create(PointStamped, "~/road_position", qos)
-        self._velocity = create(Vector3Stamped, "~/road_velocity", qos)
-        kind = detection_type()
-        self._detection = None if kind is None else create(kind, "~/detection", qos)
-
-    def close(self) -> None:
-        """Destroy the publishers."""
-        for publisher in (self._pose, self._place, self._velocity, self._detection):
-            if publisher is not None:
-                self._node.destroy_lifecycle_publisher(publisher)
-
-    def publish(self, header: Header, estimate: Estimate, localisation: Localisation) -> None:
-        """Publish what is subscribed to; `header` is that of pixel outputs."""
-        self._track += estimate.regime == START
-        if self._detection is not None and is_heard(self._detection):
-            self._detection.publish(detection_message(header, estimate, str(self._track)))
-        if localisation.has_road:
-            self._publish_road(header, localisation)
-        elif is_heard(self._pose):
-            position = np.asarray(estimate.position)
-            self._pose.publish(pose_message(header, position, localisation.covariance))
-
-    def _publish_road(self, header: Header, localisation: Localisation) -> None:
-        road = localisation.road
-        if road is None:
-            return
-        there = in_frame(header, localisation.parameters.frame_id)
-        if is_heard(self._pose):
-            self._pose.publish(pose_message(there, road.position, road.covariance))
-        if is_heard(self._place):
-            self._place.publish(place_message(there, road.position))
-        if is_heard(self._velocity):
-            self._velocity.publish(road_velocity_message(there, road.velocity))
+def in_pixels(header: Header, own: NodeParameters) -> Header:
+    """Return the header of pixel outputs, whose frame has the suffix that the parameters give."""
+    suffix = own.output_frame_suffix
+    return in_frame(header, header.frame_id + suffix) if suffix else header
 
 
-PATH_LENGTH = 300
-"""Positions shown of the path."""
-
-_COLOURS = {
-    Mode.TRACKING.value: (64, 220, 64),
-    Mode.OCCLUDED.value: (255, 176, 0),
-    Mode.LOST.value: (255, 48, 48),
-}
-_NEUTRAL = (200, 200, 200)
-_PARTICLE = (96, 160, 255)
-
-
-class Overlay:
-    """Remembers the path and draws; the frame itself is not written to."""
-
-    def __init__(self) -> None:
-        self._path: deque[tuple[float, float]] = deque(maxlen=PATH_LENGTH)
-
-    def discard_path(self) -> None:
-        """Begin a new path."""
-        self._path.clear()
-
-    def follow(self, estimate: Estimate) -> None:
-        """Add a position to the path."""
-        self._path.append(estimate.position)
-
-    def draw(self, frame: Frame, mode: str, estimate: Estimate | None, more: str = "") -> Frame:
-        """Return a drawn-on copy of `frame`, contiguous; `more` is written after the mode."""
-        picture = np.array(frame, order="C")
-        thickness = line_width(frame)
-        colour = _COLOURS.get(mode, _NEUTRAL)
-        if estimate is not None:
-            for centre in _pixels(estimate.particles):
-                cv2.circle(picture, centre, thickness, _PARTICLE, -1)
-            path = np.array(_pixels(np.asarray(self._path).reshape(-1, 2)), np.int32)
-            cv2.polylines(picture, [path.reshape(-1, 1, 2)], False, colour, thickness, cv2.LINE_AA)
-            corners = _pixels(np.asarray(estimate.box.corners))
-            cv2.rectangle(picture, corners[0], corners[2], colour, thickness)
-        words = mode if estimate is None else f"{mode} {estimate.confidence:.2f}"
-        words = f"{words}  {more}" if more else words
-        write_words(picture, words, (5 * thickness, 14 * thickness), colour, thickness)
-        return picture
-
-
-def _pixels(points: Array) -> list[tuple[int, int]]:
-    """Give the pixel that each continuous position (N, 2) lies in."""
-    return [(int(x), int(y)) for x, y in np.floor(points)]
-
-
-_RELIABLE = QoSProfile(depth=10)
-_BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-
-
-class Outputs:
-    """Everything that a configured node publishes; what nobody listens to is not even made.
+class TrackerOutputs(Outputs):
+    """Everything that a configured node of one target publishes.
 
     Parameters
     ----------
     node : LifecycleNode
         Its publishers are silent unless it is active.
     hardware_id : str
-        Where the images come from, for `~/mode`.
+        Topic of the images, for `~/mode`.
     """
 
     def __init__(self, node: LifecycleNode, hardware_id: str) -> None:
-        self._node = node
-        self._hardware_id = hardware_id
-        self._overlay = Overlay()
-        self._kept_position = PointStamped()
-        create = node.create_lifecycle_publisher
-        # ~/mode last, here and below: it tells a lock-step replay that the image is done with.
-        self._position = create(PointStamped, "~/position", _RELIABLE)
-        self._box = create(PolygonStamped, "~/box", _RELIABLE)
-        self._velocity = create(Vector3Stamped, "~/velocity", _RELIABLE)
-        self._particles = create(PointCloud2, "~/particles", _BEST_EFFORT)
-        self._located = LocatedOutputs(node, _RELIABLE)
-        self._picture = create(Image, "~/overlay", _BEST_EFFORT)
-        self._mode = create(DiagnosticArray, "~/mode", _RELIABLE)
-
-    def close(self) -> None:
-        """Destroy the publishers."""
-        for publisher in (
-            self._position, self._box, self._velocity, self._particles, self._picture, self._mode,
-        ):  # fmt: skip
-            self._node.destroy_lifecycle_publisher(publisher)
-        self._located.close()
-
-    def discard_path(self) -> None:
-        """Begin a new path in the overlay."""
-        self._overlay.discard_path()
+        more = {
+            "particles": (PointCloud2, BEST_EFFORT),
+            "pose_with_covariance": (PoseWithCovarianceStamped, RELIABLE),
+            "road_position": (PointStamped, RELIABLE),
+            "road_velocity": (Vector3Stamped, RELIABLE),
+            "detection": (detection_type(), RELIABLE),
+        }
+        super().__init__(node, hardware_id, more)
+        self._annotator = Annotator(particles=True)
+        self._track = 0
 
     def publish_estimate(
         self,
@@ -225,39 +175,34 @@ class Outputs:
         frame_period: float,
     ) -> None:
         """Publish where the vehicle is; `frame_period` in s makes px/frame to px/s."""
-        self._overlay.follow(estimate)
-        switches = own.publish
-        if own.output_frame_suffix:
-            header = in_frame(header, header.frame_id + own.output_frame_suffix)
-        if is_heard(self._position):
-            self._position.publish(position_message(header, estimate, self._kept_position))
-        if switches.box and is_heard(self._box):
-            self._box.publish(box_message(header, estimate))
-        if switches.velocity and is_heard(self._velocity):
-            self._velocity.publish(velocity_message(header, estimate, frame_period))
-        if switches.particles and is_heard(self._particles):
-            self._particles.publish(particles_message(header, estimate))
-        self._located.publish(header, estimate, localisation)
+        if estimate.regime == START:
+            self._track += 1
+            self._annotator.follow(None)  # a new path
+        self._annotator.follow(estimate)
+        header = in_pixels(header, own)
+        self.publish_vehicle(header, estimate, own, frame_period)
+        if own.publish.particles:
+            self.send("particles", particles_message, header, estimate)
+        self.send("detection", detection_message, header, estimate, str(self._track))
+        road = localisation.road
+        if road is not None:
+            there = in_frame(header, localisation.parameters.frame_id)
+            self.send("pose_with_covariance", pose_message, there, road.position, road.covariance)
+            self.send("road_position", place_message, there, road.position)
+            self.send("road_velocity", road_velocity_message, there, road.velocity)
+        elif not localisation.has_road and self.is_heard("pose_with_covariance"):
+            position, covariance = np.asarray(estimate.position), localisation.covariance
+            self.send("pose_with_covariance", pose_message, header, position, covariance)
 
     def publish_overlay(
-        self, header: Header, frame: Frame, mode: str, estimate: Estimate | None, words: str = ""
+        self, header: Header, frame: Frame, mode: str, estimate: Estimate | None, more: str = ""
     ) -> None:
-        """Publish the drawn-on image with `words`, if anybody looks."""
-        if is_heard(self._picture):
-            picture = self._overlay.draw(frame, mode, estimate, words)
-            self._picture.publish(image_message(header, picture))
-
-    def publish_mode(
-        self,
-        header: Header,
-        mode: str,
-        values: Mapping[str, object],
-        estimate: Estimate | None = None,
-    ) -> None:
-        """Publish the one `~/mode` of an image: the scalars of its estimate, and `values`."""
-        if not is_heard(self._mode):
+        """Publish the drawn-on image, if anybody looks; `more` is written after the mode."""
+        if not self.is_heard("overlay"):
             return
-        name = f"{self._node.get_name()}: target"
-        scalars = estimate.scalars() if estimate is not None else {}
-        all_values = {**scalars, **values}
-        self._mode.publish(mode_message(header, name, self._hardware_id, mode, all_values))
+        picture: Frame = np.array(frame, order="C")
+        self._annotator.draw(picture, estimate)
+        words = mode if estimate is None else f"{mode} {estimate.confidence:.2f}"
+        words, width = f"{words}  {more}".rstrip(), line_width(picture)
+        write_words(picture, words, (5 * width, 16 * width), COLOURS.get(mode, NEUTRAL), width)
+        self.send("overlay", image_message, header, picture)

@@ -72,7 +72,7 @@ class ParameterTable:
     node : Node
         Its overrides (files, command line) are taken over the defaults.
     defaults : Configuration
-        Of the node's variant.
+        Defaults of the node's variant.
     check : callable
         Called with each new configuration before it is taken; raises InputError to refuse it.
     changed : callable
@@ -137,7 +137,7 @@ def unknown_overrides(node: Node, *, qos: bool) -> list[str]:
     node : Node
         rclpy keeps such overrides silently.
     qos : bool
-        Whether to look at the names of QoS overrides, which are declared with their subscription,
+        True to look at the names of QoS overrides, which are declared with their subscription,
         or at all others.
     """
     known = list(node.get_parameters_by_prefix(""))

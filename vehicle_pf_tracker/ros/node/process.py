@@ -12,31 +12,27 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A node as a process of its own: arguments, signals, exit status.
+"""A node as a process of its own: memory, executor, exit status.
 
-Memory for images is kept, instead of returned to the system after every one.
+Memory for images is kept, instead of returned to the system after every one. By default glibc maps
+fresh pages for each block as large as an image, and the kernel has to clear them. Keeping them
+takes a third of the CPU time off a node that receives 640x480 at 30 Hz.
 
-By default glibc maps fresh pages for each block as large as an image, and the kernel has to clear
-them. Keeping them takes a third of the CPU time off a node that receives 640x480 at 30 Hz.
-
-The executor of the tracker nodes: while messages flow, it waits for little else.
-
-For each callback, rclpy puts every entity of the node into a new wait set, and then into another,
-since a callback wakes its executor: a managed node has over a dozen services and two dozen event
-handlers. That takes longer than all that a tracker node does with an image besides tracking. Event
-handlers cost most, and can wait; requests cannot.
+While messages flow, the executor waits for little else. For each callback, rclpy puts every entity
+of the node into a new wait set, and then into another, since a callback wakes its executor: a
+managed node has over a dozen services and two dozen event handlers. That takes longer than all that
+a tracker node does with an image besides tracking. Event handlers cost most, and can wait; requests
+cannot.
 """
 
 from __future__ import annotations
 
 import ctypes
 import os
-import sys
 import time
 import traceback
 from collections import deque
 from collections.abc import Callable, Sequence
-from functools import partial
 
 import rclpy
 from rclpy.context import Context
@@ -44,16 +40,14 @@ from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedE
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
-from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
-from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
-from vehicle_pf_tracker.ros.process import end_at_once, run_process
+from vehicle_pf_tracker.ros.node.stream import is_loading
+from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process
 from vehicle_pf_tracker.ros.rclpy_internals import (
     DirectExecutor,
     MessageSources,
     can_run_directly,
 )
 from vehicle_pf_tracker.ros.transport import image_transport
-from vehicle_pf_tracker.trackers.registry import Variant
 
 _LARGEST_BLOCK = 32 * 2**20
 """Bytes; the highest threshold that glibc takes, more than a 4K image."""
@@ -72,7 +66,7 @@ def keep_image_memory() -> bool:
     Returns
     -------
     bool
-        Whether it was done: not where the C library has no such options, or where the environment
+        True if it was done: not where the C library has no such options, or where the environment
         already says what to do.
     """
     if any(name in os.environ for name in _OPTIONS):
@@ -148,13 +142,15 @@ it ends, so that ``respawn`` in a launch file can restart it."""
 _BROKEN = "a request could not be answered:"
 
 
-def run_node(variant: Variant, arguments: Sequence[str]) -> int:
-    """Run the node of `variant` until it is told to end.
+def run_node(name: str, make_node: Callable[[], Node], arguments: Sequence[str]) -> int:
+    """Run a node that takes images until a signal ends it.
 
     Parameters
     ----------
-    variant : Variant
-        From the registry.
+    name : str
+        Name of the executable, for its errors.
+    make_node : callable
+        Makes the node.
     arguments : sequence of str
         Command line without the program's name.
 
@@ -163,15 +159,10 @@ def run_node(variant: Variant, arguments: Sequence[str]) -> int:
     int
         Exit status: 0 ended by a signal, 1 a user's mistake (printed on stderr), 2 usage.
     """
-    return run_node_of(variant.executable, partial(TrackerNode, variant), arguments)
-
-
-def run_node_of(name: str, make_node: Callable[[], Node], arguments: Sequence[str]) -> int:
-    """Run the node that `make_node` makes; see `run_node`."""
     keep_image_memory()
 
-    def serve(others: list[str]) -> int:
-        return _usage(name, others) if others else _serve(make_node)
+    def serve(words: list[str]) -> int:
+        return answer_usage(name, words, _usage(name)) if words else _serve(make_node)
 
     status = run_process(name, arguments, serve)
     if is_loading():  # a thread in LLVM would be left behind
@@ -224,13 +215,8 @@ def _spin_once(executor: Executor, node: Node) -> bool:
     return True
 
 
-def _usage(name: str, words: Sequence[str]) -> int:
-    asked = set(words) <= {"-h", "--help"}
-    if not asked:
-        print(f"{name}: unknown arguments: {' '.join(words)}", file=sys.stderr)
-    print(
+def _usage(name: str) -> str:
+    return (
         f"usage: {name} [--ros-args -p NAME:=VALUE --params-file FILE -r image:=TOPIC ...]\n"
-        f"`vehicle-pf-tracker params {name.removesuffix('_tracker')}` prints every parameter.",
-        file=sys.stdout if asked else sys.stderr,
+        f"`vehicle-pf-tracker params {name.removesuffix('_tracker')}` prints every parameter."
     )
-    return 0 if asked else 2

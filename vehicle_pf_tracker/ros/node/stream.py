@@ -12,37 +12,98 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""One stream of images through a session, and what is published of it."""
+"""One stream of images through the session of one target, and what is published of it.
+
+Kernels may be loaded meanwhile: until then every image is answered with the reason.
+"""
 
 from __future__ import annotations
 
-import traceback
+import threading
 from collections.abc import Mapping
+from typing import Any
 
 from rclpy.node import Node
-from sensor_msgs.msg import CompressedImage, Image
+from sensor_msgs.msg import CompressedImage
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
+from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import REJECTED, WAITING, stamp_ns
+from vehicle_pf_tracker.ros.messages import NOT_READY, WAITING
 from vehicle_pf_tracker.ros.node.camera_inputs import StreamLocalisation
 from vehicle_pf_tracker.ros.node.diagnostics import Health
-from vehicle_pf_tracker.ros.node.image_input import SerializedImage, frame_of, read_image
-from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
-from vehicle_pf_tracker.ros.node.outputs import Outputs
+from vehicle_pf_tracker.ros.node.image_input import SerializedImage
+from vehicle_pf_tracker.ros.node.node_stream import NodeStream
+from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
-from vehicle_pf_tracker.trackers.session import Session, TargetError, TrackerError, unexpected
+from vehicle_pf_tracker.trackers.session import Session, TargetError
 
-_THROTTLE = 5.0
-"""Interval between two lines of the same kind in the log, s."""
+_THREAD = "loading kernels"
+_REASON = f"{NOT_READY}; the first start compiles them, for up to a minute"
 
 
-class Stream:
+class KernelLoading:
+    """Loads kernels in a thread of its own where that takes long, else at once.
+
+    Numba leaves the interpreter to others while LLVM works, and most of the time goes there: the
+    node answers its services and obeys signals meanwhile.
+
+    Parameters
+    ----------
+    choice : str
+        As for `load_kernels`.
+
+    Raises
+    ------
+    InputError
+        If numba's kernels are asked for where numba is not installed.
+    """
+
+    def __init__(self, choice: str) -> None:
+        self.choice = choice
+        self._problem = ""
+        self._thread: threading.Thread | None = None
+        if takes_long(choice):
+            self._thread = threading.Thread(target=self._load, name=_THREAD, daemon=True)
+            self._thread.start()
+        else:
+            load_kernels(choice)
+
+    @property
+    def is_done(self) -> bool:
+        """True once the kernels are loaded."""
+        return not self._problem and not self._is_running
+
+    @property
+    def reason(self) -> str:
+        """Reason why there are no kernels (yet), in one sentence."""
+        return self._problem or _REASON
+
+    @property
+    def _is_running(self) -> bool:
+        return self._thread is not None and self._thread.is_alive()
+
+    def _load(self) -> None:
+        try:
+            load_kernels(self.choice)
+        except InputError as error:
+            self._problem = str(error)
+        except Exception as error:  # as numba raises it; the node lives and says so
+            self._problem = f"the kernels cannot be loaded: {type(error).__name__}: {error}"
+
+
+def is_loading() -> bool:
+    """Return whether a thread of this process still loads kernels; it cannot be ended."""
+    return any(thread.name == _THREAD for thread in threading.enumerate())
+
+
+class Stream(NodeStream):
     """Processing of images and targets in a configured node.
 
     Parameters
@@ -50,11 +111,11 @@ class Stream:
     node : Node
         For its log.
     variant : Variant
-        From the registry.
+        Variant from the registry.
     configuration : Configuration
-        Of this variant.
-    outputs : Outputs
-        Where estimates go.
+        Parameters of this variant.
+    outputs : TrackerOutputs
+        Publishers of the estimates.
     health : Health
         Counts what happens.
 
@@ -62,8 +123,6 @@ class Stream:
     ----------
     asked : Box or None
         Target that the next image starts on; None where none was given.
-    frame_id : str or None
-        Of the last image that was used; None before the first.
     estimate : Estimate or None
         The last one; None while there is no target.
     localisation : StreamLocalisation
@@ -75,24 +134,21 @@ class Stream:
         node: Node,
         variant: Variant,
         configuration: Configuration,
-        outputs: Outputs,
+        outputs: TrackerOutputs,
         health: Health,
     ) -> None:
-        self._log = node.get_logger()
+        super().__init__(node, configuration, outputs, health)
         self._outputs = outputs
-        self._health = health
         self._variant = variant
-        self._configuration = configuration
         self._applied = configuration
         self._session: Session | None = None
         self._loading = KernelLoading(configuration.tracker.kernels)
         self.asked: Box | None = None
         self._target_problem = ""
         self.localisation = StreamLocalisation(variant.name, configuration.session.road)
-        self.frame_id: str | None = None
         self.estimate: Estimate | None = None
         if not self.get_ready():
-            self._log.info(self._loading.reason)
+            self.log.info(self._loading.reason)
 
     def get_ready(self) -> bool:
         """Make the session, and take new parameters, as soon as their kernels are loaded.
@@ -100,7 +156,7 @@ class Stream:
         Returns
         -------
         bool
-            Whether images can be tracked in.
+            True once images can be tracked in.
         """
         if self._loading.is_done:
             if self._session is None:
@@ -128,27 +184,27 @@ class Stream:
         """The present box: that of the estimate, else the configured one."""
         return self.estimate.box if self.estimate else self._configuration.session.target.box
 
-    def take(self, message: Image | SerializedImage | CompressedImage) -> None:
+    def take(self, message: SerializedImage | CompressedImage) -> None:
         """Answer an image with exactly one `~/mode`, and with an estimate where there is one."""
-        if not self.get_ready() or self._session is None:
+        if self.get_ready():
+            self.process(message)
+        else:
             self._wait(message.header, self._loading.reason)
-            return
+
+    def feed(self, image: Frame | CodedImage, stamp_ns: int, _: Any) -> None:
+        """Feed an image, after the target that was asked for."""
+        assert self._session is not None
         if self.asked is not None:
             self._session.set_target(self.asked)
             self.asked = None
-        try:
-            image = read_image(message)
-            self.estimate = self._session.feed(image, stamp_ns(message.header))
-            frame = frame_of(image)
-        except TargetError as error:
-            self._wait(message.header, str(error))
-        except InputError as error:
-            self._reject(message.header, str(error))
-        except Exception as error:  # whatever a tracker raises
-            self._fail(message.header, error)
+        self.estimate = self._session.feed(image, stamp_ns)
+
+    def decline(self, header: Header, error: InputError) -> None:
+        """Answer an image that cannot be used, or that does not fit the target to start on."""
+        if isinstance(error, TargetError):
+            self._wait(header, str(error))
         else:
-            self.frame_id = message.header.frame_id
-            self._answer(self._session, message.header, frame, self.estimate)
+            super().decline(header, error)
 
     def set_target(self, box: Box) -> None:
         """Start on `box` with the next image, if it fits into that.
@@ -159,11 +215,6 @@ class Stream:
             If it is no box in any image.
         """
         self.asked = check_target(box, MAX_SIDE, MAX_SIDE)
-
-    def refuse_target(self, reason: str) -> None:
-        """Report that a target cannot be used; the track continues."""
-        self._health.refuse_target(reason)
-        self._log.error(f"target refused: {reason}", throttle_duration_sec=_THROTTLE)
 
     def reset(self) -> None:
         """Go back to the configured target, or to waiting for one.
@@ -199,16 +250,16 @@ class Stream:
         self._session = Session(
             self._variant, self._configuration.tracker, self._configuration.session
         )
-        self._tell_drawn_seed(self._session)
+        self.tell_drawn_seed(self._session.tracker.seed)
         for notice in self._session.tracker.kernels.notices:
-            self._log.warning(notice)
+            self.log.warning(notice)
 
     def _apply(self, session: Session) -> None:
         before = session.tracker.seed
         self._applied = self._configuration
         session.reconfigure(self._configuration.tracker, self._configuration.session)
         if session.tracker.seed != before:
-            self._tell_drawn_seed(session)
+            self.tell_drawn_seed(session.tracker.seed)
 
     def check(self, configuration: Configuration) -> None:
         """Refuse a configuration with a new target that is outside the stream's images.
@@ -225,7 +276,7 @@ class Stream:
 
     @staticmethod
     def _misfit(configuration: Configuration, size: tuple[int, int] | None) -> str:
-        """Say why images of this size cannot be started in on the configured target, if so."""
+        """Return why the configured target does not fit images of this size; empty if it does."""
         box = configuration.session.target.box
         if box is None or size is None:
             return ""
@@ -238,16 +289,16 @@ class Stream:
     def _wait(self, header: Header, reason: str) -> None:
         """Answer an image in which nothing can be tracked, for this reason."""
         if reason not in (self._loading.reason, self._target_problem):
-            self.refuse_target(reason)
+            self.refuse("target", reason)
             self._target_problem = reason
-        self._health.answered(WAITING)
-        self._outputs.publish_mode(header, WAITING, {"reason": reason})
+        self.answer_without_estimate(header, WAITING, reason)
 
-    def _answer(
-        self, session: Session, header: Header, frame: Frame, estimate: Estimate | None
-    ) -> None:
+    def answer(self, header: Header, frame: Frame) -> None:
+        """Publish the estimate of the last image, and its mode."""
+        session, estimate = self._session, self.estimate
+        assert session is not None
         if session.refusal:
-            self._health.refuse_target(session.refusal)
+            self.health.refuse_target(session.refusal)
         events = self._events(session)
         if estimate is None and self._target_problem:
             events["reason"] = self._target_problem
@@ -259,40 +310,18 @@ class Stream:
             self.localisation.locate(estimate, header, frame, period)
             self._outputs.publish_estimate(header, estimate, own, self.localisation, period)
             words = self.localisation.words
-            self._health.road = self.localisation.values
-            events |= self._health.road
+            self.health.road = self.localisation.values
+            events |= self.health.road
         if own.publish.overlay:
             self._outputs.publish_overlay(header, frame, mode, estimate, words)
-        self._health.answered(mode, estimate.duration * 1e3 if estimate else None)
-        self._outputs.publish_mode(header, mode, events, estimate)
-
-    def _reject(self, header: Header, reason: str) -> None:
-        self._health.reject(reason)
-        self._log.error(f"image rejected: {reason}", throttle_duration_sec=_THROTTLE)
-        self._health.answered(REJECTED)
-        self._outputs.publish_mode(header, REJECTED, {"reason": reason})
-
-    def _fail(self, header: Header, error: Exception) -> None:
-        """Reject an image for an unexpected error, and raise it unless it concerns this image only.
-
-        One image must not end a node that others rely on; a broken tracker must.
-        """
-        self._log.error(traceback.format_exc(), throttle_duration_sec=_THROTTLE)
-        self._reject(header, unexpected(error))
-        if not isinstance(error, TrackerError) or error.persists:
-            raise error
+        self.health.answered(mode, estimate.duration * 1e3 if estimate else None)
+        scalars = estimate.scalars() if estimate else {}
+        self.publish_mode(header, mode, {**scalars, **events})
 
     def _events(self, session: Session) -> dict[str, object]:
         words = "; ".join(session.events)
         if not words:
             return {}
-        if session.recovered:
-            self._health.restarts += 1
-            self._log.error(words, throttle_duration_sec=_THROTTLE)
-        else:
-            self._log.warning(words, throttle_duration_sec=_THROTTLE)
+        self.health.restarts += session.recovered
+        (self.errors if session.recovered else self.warnings).say("event", words)
         return {"event": words}
-
-    def _tell_drawn_seed(self, session: Session) -> None:
-        if self._configuration.tracker.seed < 0:
-            self._log.info(f"drew the seed {session.tracker.seed}; set it to repeat this run")

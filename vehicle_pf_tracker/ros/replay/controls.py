@@ -12,14 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Control of a replay while it runs: services and parameters on the player's own node.
+"""Control of a replay while it runs, its pace, and `/clock`.
 
-They are named as those of the rosbag2 player, with the types of std_srvs: rosbag2's own are not
-installed where rosbag2 is not. Speed and position are parameters.
-
-Pace of a replay: log times mapped to the monotonic clock.
-
-`/clock`: the time of the recording while it plays.
+Services and parameters are on the player's own node. They are named as those of the rosbag2 player,
+with the types of std_srvs: rosbag2's own are not installed where rosbag2 is not. Speed and position
+are parameters.
 """
 
 from __future__ import annotations
@@ -65,7 +62,7 @@ class Controls:
     target : float or None
         Position to continue from, in s; None to go on.
     changes : int
-        How often any of these was changed.
+        Number of changes of any of these.
     """
 
     def __init__(self, node: Node, rate: float, length: float, *, is_paused: bool) -> None:

@@ -18,17 +18,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 
 from rclpy.node import Node
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.controls import Controls, Pace, PlaybackClock
 from vehicle_pf_tracker.ros.replay.discovery import Spinner
-from vehicle_pf_tracker.ros.replay.playable import Playable, PlayableMessage
 from vehicle_pf_tracker.ros.replay.publishing import TopicPublisher
 from vehicle_pf_tracker.ros.replay.replay_options import Progress, ReplayOptions
-from vehicle_pf_tracker.ros.replay.starting_target import Targets
-from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink
+from vehicle_pf_tracker.ros.replay.tracker_link import Targets, TrackerLink
 
 _ACKNOWLEDGEMENT_SLICE = 0.05
 
@@ -42,10 +42,10 @@ class Player:
         The player's own node.
     spinner : Spinner
         Runs the callbacks while waiting.
-    recording : Playable
-        What to play.
+    recording : Recording
+        Recording to play.
     options : ReplayOptions
-        How to play it.
+        Options of the replay.
     publishers : mapping of str to TopicPublisher
         By recorded topic.
     links : sequence of TrackerLink
@@ -61,7 +61,7 @@ class Player:
         self,
         node: Node,
         spinner: Spinner,
-        recording: Playable,
+        recording: Recording,
         options: ReplayOptions,
         publishers: Mapping[str, TopicPublisher],
         links: Sequence[TrackerLink],
@@ -135,7 +135,7 @@ class Player:
                 on_progress(Progress(self.frames, now, length_ns * 1e-9))
         return None
 
-    def _await_turn(self, message: PlayableMessage) -> None:
+    def _await_turn(self, message: RecordedMessage) -> None:
         """Wait until a message is due, or the user asks for another position."""
         controls = self._controls
         while controls.target is None:
@@ -151,7 +151,7 @@ class Player:
                 return
             self._pace.set_rate(controls.rate or None)
 
-    def _selected(self, position: float) -> Iterator[PlayableMessage]:
+    def _selected(self, position: float) -> Iterator[RecordedMessage]:
         options, duration = self._options, self._options.playback_duration
         return self._recording.messages(
             set(self._publishers),
@@ -167,10 +167,10 @@ class Player:
             length_ns = min(length_ns, round(self._options.playback_duration * 1e9))
         return begin_ns, length_ns
 
-    def _is_image(self, message: PlayableMessage) -> bool:
+    def _is_image(self, message: RecordedMessage) -> bool:
         return message.topic == self._recording.image_topic
 
-    def _publish(self, message: PlayableMessage) -> bool:
+    def _publish(self, message: RecordedMessage) -> bool:
         """Publish a message; False if it cannot be converted."""
         if self._clock is not None and self._options.lockstep:
             self._clock.publish()
@@ -184,7 +184,7 @@ class Player:
         self.messages += 1
         return True
 
-    def _follow(self, message: PlayableMessage) -> None:
+    def _follow(self, message: RecordedMessage) -> None:
         """Count an image that was published, and in lock-step wait for its answers."""
         assert message.stamp_ns is not None
         self.frames += 1
@@ -192,15 +192,12 @@ class Player:
         for link in self._links:
             link.answers.expect(self._frame, message.stamp_ns)
         for link in self._links if self._options.lockstep else ():
-            if not self._spinner.until(self._has_answered(link), self._options.timeout):
+            has_answered = partial(link.answers.has, self._frame)
+            if not self._spinner.until(has_answered, self._options.timeout):
                 raise InputError(
                     f"the node {link.name} did not answer frame {self._frame} "
                     f"(stamp {message.stamp_ns} ns) within {self._options.timeout:g} s"
                 )
-
-    def _has_answered(self, link: TrackerLink) -> Callable[[], bool]:
-        frame = self._frame
-        return lambda: link.answers.has(frame)
 
     def _await_acknowledgement(self) -> None:
         """Wait until reliable subscribers have everything, no longer than the timeout."""
@@ -218,11 +215,11 @@ class Player:
         may be dropped itself, so no longer than the timeout without any answer.
         """
         for link in self._links if self._frame else ():
-            news = True
-            while news and not link.answers.has(self._frame):
-                news = self._spinner.until(_news(link), self._options.timeout)
+            count = -1
+            while not link.answers.has(self._frame) and link.answers.count != count:
+                count = link.answers.count
+                self._spinner.until(partial(_is_beyond, link, count), self._options.timeout)
 
 
-def _news(link: TrackerLink) -> Callable[[], bool]:
-    count = link.answers.count
-    return lambda: link.answers.count > count
+def _is_beyond(link: TrackerLink, count: int) -> bool:
+    return link.answers.count > count

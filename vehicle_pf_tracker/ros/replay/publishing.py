@@ -12,14 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Publishers for the topics of a recording."""
+"""Publishers for the topics of a recording, and what nodes hear its images as."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
 from rclpy.duration import Duration
 from rclpy.exceptions import NameValidationException
@@ -30,14 +30,45 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.topic_table import TopicInfo
 from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 from vehicle_pf_tracker.ros.messages import image_message
-from vehicle_pf_tracker.ros.replay.playable import Playable, PlayableTopic, recorded_qos
-from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, recorded_qos
 
 _SUFFIX = "/compressed"
 _IMAGE_DEPTH = 10
 _DEPTH = 100
+
+
+class RecordedImages(NamedTuple):
+    """Where the images of a recording are, and how a node hears them.
+
+    Attributes
+    ----------
+    topic : str
+        As recorded.
+    base : str
+        Topic that the node's ``image`` is remapped to.
+    transport : str
+        The node's parameter ``image_transport``.
+    published : str
+        Topic that the replay publishes them on.
+    """
+
+    topic: str
+    base: str
+    transport: str
+    published: str
+
+
+def recorded_images(recording: Recording) -> RecordedImages:
+    """Find how nodes hear the images of a recording."""
+    name = recording.image_topic
+    if recording.image_type != COMPRESSED_IMAGE:
+        return RecordedImages(name, name, "raw", name)
+    base = name.removesuffix(_SUFFIX)
+    return RecordedImages(name, base, "compressed", base + _SUFFIX)
 
 
 class TopicPublisher:
@@ -48,7 +79,7 @@ class TopicPublisher:
     node : Node
         The player's own node.
     name : str
-        What to publish under.
+        Topic to publish on.
     kind : type
         Class of the messages.
     qos : QoSProfile
@@ -102,7 +133,7 @@ class TopicPublisher:
 
 
 def make_publishers(
-    node: Node, recording: Playable, options: ReplayOptions
+    node: Node, recording: Recording, options: ReplayOptions
 ) -> tuple[dict[str, TopicPublisher], list[str]]:
     """Make a publisher for each topic that is to be played.
 
@@ -145,7 +176,7 @@ def decompressed(data: bytes) -> Image:
 
 
 def _make_publisher(
-    node: Node, topic: PlayableTopic, kind: type[Any], options: ReplayOptions
+    node: Node, topic: TopicInfo, kind: type[Any], options: ReplayOptions
 ) -> TopicPublisher:
     name = _final_name(topic, options)
     is_image = kind is Image or _is_decompressed(topic, options)
@@ -156,7 +187,7 @@ def _make_publisher(
     return TopicPublisher(node, name, kind, qos)
 
 
-def _check_names(recording: Playable, options: ReplayOptions) -> None:
+def _check_names(recording: Recording, options: ReplayOptions) -> None:
     known = {topic.name for topic in recording.topics}
     played = {_played_name(topic, options) for topic in recording.topics}
     chosen = {*options.topics, *options.exclude, *options.qos}
@@ -176,7 +207,7 @@ def _check_names(recording: Playable, options: ReplayOptions) -> None:
         )
 
 
-def _is_chosen(topic: PlayableTopic, options: ReplayOptions) -> bool:
+def _is_chosen(topic: TopicInfo, options: ReplayOptions) -> bool:
     name = topic.name
     if options.topics and name not in options.topics:
         return False
@@ -186,16 +217,16 @@ def _is_chosen(topic: PlayableTopic, options: ReplayOptions) -> bool:
     return name not in options.exclude and not is_matched
 
 
-def _is_decompressed(topic: PlayableTopic, options: ReplayOptions) -> bool:
+def _is_decompressed(topic: TopicInfo, options: ReplayOptions) -> bool:
     return options.decompress and topic.type_name == COMPRESSED_IMAGE
 
 
-def _played_name(topic: PlayableTopic, options: ReplayOptions) -> str:
+def _played_name(topic: TopicInfo, options: ReplayOptions) -> str:
     """Name of a topic before it is remapped."""
     return topic.name.removesuffix(_SUFFIX) if _is_decompressed(topic, options) else topic.name
 
 
-def _final_name(topic: PlayableTopic, options: ReplayOptions) -> str:
+def _final_name(topic: TopicInfo, options: ReplayOptions) -> str:
     name = _played_name(topic, options)
     return options.remap.get(topic.name, options.remap.get(name, name))
 

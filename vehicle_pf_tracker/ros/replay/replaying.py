@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Replaying a recording from start to end: transport, nodes, target, player, report.
-
-Ctrl-C as an event, not as an exception raised anywhere.
-"""
+"""Replaying a recording from start to end: transport, nodes, target, player, report."""
 
 from __future__ import annotations
 
@@ -32,9 +29,9 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
-from vehicle_pf_tracker.ros.replay.playable import Playable
 from vehicle_pf_tracker.ros.replay.player import Player
 from vehicle_pf_tracker.ros.replay.publishing import TopicPublisher, decompressed, make_publishers
 from vehicle_pf_tracker.ros.replay.replay_options import (
@@ -43,8 +40,12 @@ from vehicle_pf_tracker.ros.replay.replay_options import (
     ReplayOptions,
     ReplayReport,
 )
-from vehicle_pf_tracker.ros.replay.starting_target import Targets, first_image, starting_target
-from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink
+from vehicle_pf_tracker.ros.replay.tracker_link import (
+    Targets,
+    TrackerLink,
+    first_image,
+    starting_target,
+)
 from vehicle_pf_tracker.ros.transport import image_transport
 
 
@@ -83,7 +84,7 @@ class NoTargetError(InputError):
 
 
 def replay(
-    recording: Playable,
+    recording: Recording,
     options: ReplayOptions,
     on_progress: Callable[[Progress], None] = lambda progress: None,
     tell: Callable[[str], None] = lambda sentence: None,
@@ -96,10 +97,10 @@ def replay(
 
     Parameters
     ----------
-    recording : Playable
-        What to play, a `recordings.reader.Recording` for instance.
+    recording : Recording
+        Recording to play.
     options : ReplayOptions
-        How to play it.
+        Options of the replay.
     on_progress : callable
         Called after each image.
     tell : callable
@@ -129,7 +130,7 @@ class _Replay:
         self,
         node: Node,
         spinner: Spinner,
-        recording: Playable,
+        recording: Recording,
         options: ReplayOptions,
         tell: Callable[[str], None],
     ) -> None:
@@ -225,7 +226,7 @@ class _Replay:
 
 @contextmanager
 def _ros_node(
-    recording: Playable, options: ReplayOptions, tell: Callable[[str], None]
+    recording: Recording, options: ReplayOptions, tell: Callable[[str], None]
 ) -> Iterator[Node]:
     """Make the player's node in a context of its own, with room for the images on the way."""
     context = Context()
@@ -255,7 +256,7 @@ def _initialise(context: Context, options: ReplayOptions) -> None:
         raise InputError(f"the words after --ros-args are not understood: {reason}") from error
 
 
-def _image_bytes(recording: Playable, options: ReplayOptions) -> int:
+def _image_bytes(recording: Recording, options: ReplayOptions) -> int:
     """Size of the published images in bytes, judged by the first."""
     first = first_image(recording, options)
     if options.decompress and recording.image_type == COMPRESSED_IMAGE:

@@ -12,30 +12,31 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The player's side of one tracker node: its answers, its target and its reset.
-
-Images that a node has answered, and its answers.
-"""
+"""The player's side of the tracker nodes: their answers, their target and their reset."""
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
-from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.estimates import EstimateRow
-from vehicle_pf_tracker.ros.messages import NOT_READY
+from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
+from vehicle_pf_tracker.ros.messages import NOT_READY, stamp_ns
 from vehicle_pf_tracker.ros.replay.discovery import DISCOVERY, Spinner
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS
 
 DROPPED = "DROPPED"
@@ -55,49 +56,47 @@ class Answers:
 
     def __init__(self) -> None:
         self.count = 0
-        self._stamps: dict[int, int] = {}
         self._waiting: dict[int, deque[int]] = {}
         self._rows: dict[int, EstimateRow] = {}
+        self._answered: set[int] = set()
         self._on_road: dict[int, Mapping[str, str]] = {}
 
     def begin_pass(self) -> None:
         """Discard earlier frames; a loop begins again with their stamps."""
-        self._stamps.clear()
-        self._waiting.clear()
-        self._rows.clear()
-        self._on_road.clear()
+        for kept in (self._waiting, self._rows, self._answered, self._on_road):
+            kept.clear()
 
     def expect(self, frame: int, stamp_ns: int) -> None:
         """Note that the image number `frame` was published."""
-        self._stamps[frame] = stamp_ns
+        self._rows[frame] = EstimateRow.without(frame, stamp_ns, DROPPED)
         self._waiting.setdefault(stamp_ns, deque()).append(frame)
 
     def receive(self, message: Any) -> None:
         """Take a `DiagnosticArray` of `~/mode`; answers to other images are passed over."""
-        stamp = message.header.stamp
-        stamp_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
-        frames = self._waiting.get(stamp_ns)
+        stamp = stamp_ns(message.header)
+        frames = self._waiting.get(stamp)
         if not frames or not message.status:
             return
         frame = frames.popleft()
         if not frames:
-            del self._waiting[stamp_ns]
+            del self._waiting[stamp]
         status = message.status[0]
         scalars = {"mode": status.message, **{pair.key: pair.value for pair in status.values}}
-        self._rows[frame] = EstimateRow.from_scalars(frame, stamp_ns, scalars)
+        self._rows[frame] = EstimateRow.from_scalars(frame, stamp, scalars)
+        self._answered.add(frame)
         if "road" in scalars:
             self._on_road[frame] = scalars
         self.count += 1
 
     def has(self, frame: int) -> bool:
         """Return whether image number `frame` of this pass was answered."""
-        return frame in self._rows
+        return frame in self._answered
 
     def road_columns(self) -> dict[str, list[float | None]]:
         """Return places and speeds on the road, a value for each of `rows`; none without a road."""
         if not self._on_road:
             return {}
-        answers = [self._on_road.get(frame, {}) for frame in self._stamps]
+        answers = [self._on_road.get(frame, {}) for frame in self._rows]
         return {
             name: [float(one[name]) if name in one else None for one in answers]
             for name in ROAD_COLUMNS
@@ -105,10 +104,7 @@ class Answers:
 
     def rows(self) -> tuple[EstimateRow, ...]:
         """One row for each image of this pass, in order."""
-        return tuple(
-            self._rows.get(frame) or EstimateRow.without(frame, stamp_ns, DROPPED)
-            for frame, stamp_ns in self._stamps.items()
-        )
+        return tuple(self._rows.values())
 
 
 _DEEP = QoSProfile(depth=1000)
@@ -171,7 +167,7 @@ class TrackerLink:
         box : Box or None
             The target.
         may_reset : bool
-            Whether to reset the node and try again if it refuses.
+            True to reset the node and try again if it refuses.
 
         Raises
         ------
@@ -181,7 +177,10 @@ class TrackerLink:
         values = (box.x, box.y, box.width, box.height) if box else (0.0, 0.0, 0.0, 0.0)
         names = ("target.x", "target.y", "target.width", "target.height")
         request = SetParametersAtomically.Request(
-            parameters=_doubles(dict(zip(names, values, strict=True)))
+            parameters=[
+                Parameter(name, Parameter.Type.DOUBLE, float(value)).to_parameter_msg()
+                for name, value in zip(names, values, strict=True)
+            ]
         )
         result = self._call(self._set, request).result
         if not result.successful and may_reset:
@@ -222,11 +221,115 @@ class TrackerLink:
         return future.result()
 
 
-def _doubles(values: Mapping[str, float]) -> list[Parameter]:
-    return [
-        Parameter(
-            name=name,
-            value=ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value)),
+def starting_target(recording: Recording, options: ReplayOptions) -> tuple[Box, int] | None:
+    """Choose the target: the one given, else the first true box of the part that is played.
+
+    A true box is started on in the image nearest to it in time, as offline.
+
+    Returns
+    -------
+    (Box, int) or None
+        The box, and the image to start in, counted from 1 in the part played; None without a
+        target and truth.
+
+    Raises
+    ------
+    InputError
+        If no image is near the truth.
+    """
+    if options.target is not None:
+        return options.target, 1
+    earliest_ns = (first_image(recording, options).stamp_ns or 0) - max_diff_ns(MAX_DIFF)
+    truth = recording.first_truth()
+    if truth is not None and truth.stamp_ns < earliest_ns:
+        truth = next((item for item in recording.truth() if item.stamp_ns >= earliest_ns), None)
+    if truth is None:
+        return None
+    images = recording.messages(
+        {recording.image_topic}, options.start_offset, options.playback_duration
+    )
+    stamps = (image.stamp_ns for image in images if image.stamp_ns is not None)
+    frame = nearest_frame(stamps, truth.stamp_ns, max_diff_ns(MAX_DIFF))
+    if frame is None:
+        raise InputError(
+            f"no image that is played is within {MAX_DIFF:g} s of the first truth, "
+            f"at {truth.stamp_ns / 1e9:.3f} s; give a target with --target x,y,w,h"
         )
-        for name, value in values.items()
-    ]
+    return truth.box, frame
+
+
+def nearest_frame(stamps: Iterable[int], stamp_ns: int, limit_ns: int) -> int | None:
+    """Count the frames from 1 up to the first that is nearer to `stamp_ns` than the next.
+
+    Reads no further than one stamp beyond it; None if it is more than `limit_ns` away.
+    """
+    followed = itertools.pairwise(itertools.chain(stamps, [None]))
+    for number, (current, following) in enumerate(followed, start=1):
+        assert current is not None
+        distance = abs(current - stamp_ns)
+        is_nearest = following is None or abs(following - stamp_ns) >= distance
+        if is_nearest and distance <= limit_ns:
+            return number
+    return None
+
+
+def first_image(recording: Recording, options: ReplayOptions) -> RecordedMessage:
+    """Read the first image of the part that is played.
+
+    Raises
+    ------
+    InputError
+        If there is none in it.
+    """
+    images = recording.messages(
+        {recording.image_topic}, options.start_offset, options.playback_duration
+    )
+    first = next(images, None)
+    if first is None:
+        length = (recording.end_ns - recording.start_ns) * 1e-9
+        raise InputError(
+            f"no image is in the part of {recording.path} that --start-offset and "
+            f"--playback-duration choose; it lasts {length:.1f} s"
+        )
+    return first
+
+
+class Targets:
+    """Sets the nodes on `target` through their parameters.
+
+    A service call ends when the node has accepted the target, so that it cannot overtake an image,
+    or be overtaken by one, as a message could.
+
+    Parameters
+    ----------
+    links : sequence of TrackerLink
+        The nodes.
+    target : (Box, int) or None
+        As `starting_target` returns it; None leaves the nodes alone.
+    """
+
+    def __init__(self, links: Sequence[TrackerLink], target: tuple[Box, int] | None) -> None:
+        self._links = links
+        self._target = target
+        self._is_first_pass = True
+
+    def begin_pass(self) -> None:
+        """Reset the nodes onto the target, or to waiting if it is known only later.
+
+        In later passes of a loop the stamps go back, which the nodes notice by themselves.
+        """
+        if self._target is None:
+            return
+        box, frame = self._target
+        if frame > 1 or self._is_first_pass:
+            for link in self._links:
+                link.set_target(box if frame == 1 else None, may_reset=True)
+            for link in self._links:
+                link.reset()
+        self._is_first_pass = False
+
+    def before(self, frame: int) -> None:
+        """Set the target right before the image number `frame` if it is the one to start in."""
+        if self._target is not None and frame == self._target[1] > 1:
+            for link in self._links:
+                link.set_target(self._target[0])

@@ -12,11 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Messages about all vehicles of an image.
+"""Messages about all vehicles of an image, and about lines and zones.
 
-Messages about lines and zones.
-
-Detections of all vehicles as messages, in and out, where vision_msgs is installed.
+Detections come in and go out only where vision_msgs is installed.
 """
 
 from __future__ import annotations
@@ -42,8 +40,8 @@ from vehicle_pf_tracker.ros.messages import (
     LEVELS,
     detection_message,
     detections_type,
-    key_values,
     packed,
+    status,
 )
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
@@ -128,17 +126,17 @@ def modes_message(
     header: Header, node: str, hardware_id: str, estimates: Iterable[TrackEstimate]
 ) -> DiagnosticArray:
     """Make the status of each vehicle, with every scalar of its estimate."""
-    status = [
-        DiagnosticStatus(
-            level=LEVELS[one.mode.value],
-            name=f"{node}: vehicle {one.identity}",
-            message=one.mode.value,
-            hardware_id=hardware_id,
-            values=key_values(scalars(one)),
+    statuses = [
+        status(
+            LEVELS[one.mode.value],
+            f"{node}: vehicle {one.identity}",
+            one.mode.value,
+            hardware_id,
+            scalars(one),
         )
         for one in estimates
     ]
-    return DiagnosticArray(header=header, status=status)
+    return DiagnosticArray(header=header, status=statuses)
 
 
 def markers_message(header: Header, estimates: Iterable[TrackEstimate]) -> MarkerArray:
@@ -195,7 +193,7 @@ def counts_message(
     node, hardware_id : str
         Node, and topic of its images.
     counter : Counter
-        What was counted.
+        Counter of the lines and zones.
     latest : mapping of str to Crossing
         The last crossing of each place, by the place's name.
     """
@@ -203,17 +201,17 @@ def counts_message(
         **{line.name: line.directions for line in counter.plan.lines},
         **{zone.name: (ENTRY, EXIT) for zone in counter.plan.zones},
     }
-    status = [
-        DiagnosticStatus(
-            level=DiagnosticStatus.OK,
-            name=f"{node}: {place}",
-            message=_words(counter, place, names),
-            hardware_id=hardware_id,
-            values=key_values(_values(counter, place, names, latest.get(place))),
+    statuses = [
+        status(
+            DiagnosticStatus.OK,
+            f"{node}: {place}",
+            _words(counter, place, names),
+            hardware_id,
+            _values(counter, place, names, latest.get(place)),
         )
         for place, names in directions.items()
     ]
-    return DiagnosticArray(header=header, status=status)
+    return DiagnosticArray(header=header, status=statuses)
 
 
 def _words(counter: Counter, place: str, directions: tuple[str, str]) -> str:

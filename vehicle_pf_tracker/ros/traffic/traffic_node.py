@@ -12,24 +12,17 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node that follows many vehicles: images and detections in, tracks out.
-
-The process of the node that follows many vehicles.
-"""
+"""The node that follows many vehicles: images and detections in, tracks out."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from geometry_msgs.msg import PointStamped
-from rclpy.clock import Clock, ClockType
 from rclpy.qos import QoSProfile
-from rclpy.subscription import Subscription
 from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Int64
-from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.box import check_target
 from vehicle_pf_tracker.core.errors import InputError
@@ -37,12 +30,10 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import detections_type
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
-from vehicle_pf_tracker.ros.node.process import run_node_of
-from vehicle_pf_tracker.ros.node.target_messages import box_of_region, check_frame_id
+from vehicle_pf_tracker.ros.node.input_messages import box_of_region, check_frame_id, finite
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
-from vehicle_pf_tracker.ros.traffic.stream import TrafficStream
+from vehicle_pf_tracker.ros.traffic.stream import MOST_WAITING, TrafficStream
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles, plane_of
-from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
@@ -69,15 +60,14 @@ class TrafficNode(ImageNode):
         If a parameter or a QoS override does not fit.
     """
 
+    stream: TrafficStream | None
+
     def __init__(self, **options: Any) -> None:
         super().__init__(TRAFFIC.executable, **options)
-        self.stream: TrafficStream | None = None
-        self._outputs: TrafficOutputs | None = None
-        self._inputs: list[Subscription] = []
         self.begin(Configuration.of(TRAFFIC))
 
-    def configure(self) -> None:
-        """Make session, detector and outputs."""
+    def prepare(self) -> None:
+        """Make session, detector, outputs and services."""
         configuration = self.table.configuration
         plane_of(configuration.session.road)
         if configuration.tracker.detector.kind == TOPIC and detections_type() is None:
@@ -85,60 +75,36 @@ class TrafficNode(ImageNode):
                 "detector.kind is topic, and vision_msgs, which detections come in, is not "
                 "installed (apt: ros-<release>-vision-msgs)"
             )
-        topic = image_topic(self, configuration.node.image_transport)
-        self._outputs = TrafficOutputs(self, topic)
-        health = self.diagnostics.begin()
-        try:
-            self.stream = TrafficStream(self, configuration, self._outputs, health)
-        except Exception:  # of whatever a network raises: `cleanup` relies on what follows
-            self._outputs.close()
-            self._outputs = None
-            raise
-        self._tell_drawn_seed()
+        outputs = TrafficOutputs(self, image_topic(self, configuration.node.image_transport))
+        self._outputs = outputs
+        self.stream = TrafficStream(self, configuration, outputs, self.diagnostics.begin())
         self.diagnostics.facts = {"variant": TRAFFIC.name, **self.stream.facts}
-        # Steady, because simulated time may stand still while an image waits.
-        clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._look_timer = self.create_timer(_LOOK_EVERY, self._look, clock=clock)
+        self._look_timer = self.poll(_LOOK_EVERY, self._look)
         self._look_timer.cancel()
-        self._requests = [
-            self.create_service(Trigger, "~/reset", self._on_reset),
-            self.create_service(Trigger, "~/remove_selected", self._on_remove),
-        ]
+        self.serve("~/reset", self._reset)
+        self.serve("~/remove_selected", self._remove)
 
     def activate(self) -> None:
         """Open the inputs."""
         source = self.open_images()
-        self._inputs += [
-            self.create_subscription(RegionOfInterest, "~/add_target", self._on_region, 10),
-            self.create_subscription(PointStamped, "~/clicked_point", self._on_point, 10),
-            self.create_subscription(Int64, "~/select", self._on_select, 10),
-        ]
+        self.listen(RegionOfInterest, "~/add_target", self._on_region)
+        self.listen(PointStamped, "~/clicked_point", self._on_point)
+        self.listen(Int64, "~/select", self._on_select)
         detector = self.table.configuration.tracker.detector.kind
         if detector == TOPIC:
             # As many as images may wait: a detector may answer several at once.
             qos = QoSProfile(depth=MOST_WAITING)
             topic = self.resolve_topic_name("detections")
             take = self._on_detections
-            self._inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
+            self.inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
         self.warn_of_overrides()
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
 
     def deactivate(self) -> None:
-        """Close the inputs: an inactive node pays nothing for images."""
-        self.diagnostics.cease()
-        while self._inputs:
-            self.destroy_subscription(self._inputs.pop())
+        """Close the inputs."""
+        super().deactivate()
         if self.stream is not None:
             self.stream.drop_waiting()
-
-    def cleanup(self) -> None:
-        """Release session and outputs."""
-        if self._outputs is not None:
-            self._outputs.close()
-            self.destroy_timer(self._look_timer)
-            for service in self._requests:
-                self.destroy_service(service)
-        self._outputs = self.stream = None
 
     def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
         super()._on_image(message, info)
@@ -175,10 +141,8 @@ class TrafficNode(ImageNode):
             assert self.stream is not None
             suffix = self.table.configuration.node.output_frame_suffix
             check_frame_id("~/clicked_point", message.header, self.stream.frame_id, suffix)
-            point = message.point.x, message.point.y
-            if not all(map(math.isfinite, point)):
-                raise InputError("~/clicked_point got a number that is not finite; give pixels")
-            vehicles.selection.choose_at(point, vehicles.estimates)
+            x, y = finite("~/clicked_point", message.point.x, message.point.y)
+            vehicles.selection.choose_at((x, y), vehicles.estimates)
 
         self._ask("selection", choose)
 
@@ -193,58 +157,24 @@ class TrafficNode(ImageNode):
         except InputError as error:
             self.stream.refuse(what, str(error))
 
-    def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+    def _reset(self) -> str:
         assert self.stream is not None
         self.stream.vehicles.reset()
-        response.success, response.message = True, "all vehicles are forgotten"
-        return response
+        return "all vehicles are forgotten"
 
-    def _on_remove(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+    def _remove(self) -> str:
         assert self.stream is not None
-        try:
-            identity = self.stream.vehicles.remove_selected()
-        except InputError as error:
-            response.success, response.message = False, str(error)
-        else:
-            response.success, response.message = True, f"vehicle {identity} is forgotten"
-        return response
+        return f"vehicle {self.stream.vehicles.remove_selected()} is forgotten"
 
     def _check(self, configuration: Configuration) -> None:
         plane_of(configuration.session.road)
         box = configuration.session.target.box
         size = self.stream.vehicles.session.size if self.stream is not None else None
-        if box is not None and size is not None and box != self._target:
+        before = self.table.configuration.session.target.box
+        if box is not None and size is not None and box != before:
             check_target(box, *size)
-
-    @property
-    def _target(self) -> object:
-        return self.table.configuration.session.target.box
 
     def _reconfigure(self, configuration: Configuration) -> None:
         if self.stream is not None:
-            before = self.stream.vehicles.session.tracker.seed
             self.stream.reconfigure(configuration)
-            if self.stream.vehicles.session.tracker.seed != before:
-                self._tell_drawn_seed()
             self.diagnostics.facts.update(self.stream.facts)
-
-    def _tell_drawn_seed(self) -> None:
-        if self.stream is not None and self.table.configuration.tracker.seed < 0:
-            seed = self.stream.vehicles.session.tracker.seed
-            self.get_logger().info(f"drew the seed {seed}; set it to repeat this run")
-
-
-def run_traffic(arguments: Sequence[str]) -> int:
-    """Run the node until it is told to end.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        Command line without the program's name.
-
-    Returns
-    -------
-    int
-        Exit status; see `vehicle_pf_tracker.ros.node.process.run_node`.
-    """
-    return run_node_of(TRAFFIC.executable, TrafficNode, arguments)

@@ -14,7 +14,7 @@
 
 """Everything that a node knows of the vehicles: session, counts, selection, targets.
 
-The vehicle that is reported as that of a single tracker is.
+The selected vehicle is reported as that of a single tracker is.
 """
 
 from __future__ import annotations
@@ -120,7 +120,7 @@ class Vehicles:
     Parameters
     ----------
     configuration : Configuration
-        Of `TRAFFIC`.
+        Parameters of `TRAFFIC`.
 
     Attributes
     ----------
@@ -173,7 +173,7 @@ class Vehicles:
     def feed(
         self, image: Frame | CodedFrame, stamp_ns: int, detections: Detections | None
     ) -> list[str]:
-        """Take the next image; returns what is to be told of it, a sentence each.
+        """Take the next image; returns its events, a sentence each.
 
         Raises
         ------

@@ -12,108 +12,95 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node that publishes the images of a source.
-
-Stamps of published images, and the moment at which each is due.
-
-The executable `video_source`.
-"""
+"""The executable `video_source`: a node that publishes the images of a source."""
 
 from __future__ import annotations
 
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import rclpy
+from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
-from vehicle_pf_tracker.recordings.footage import Footage, Picture
+from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, LOWEST_FPS, Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
-from vehicle_pf_tracker.ros.process import end_at_once, run_process
+from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process
 from vehicle_pf_tracker.ros.transport import image_transport
-from vehicle_pf_tracker.ros.video_source.outputs import ImageOutputs, read_calibration
-from vehicle_pf_tracker.ros.video_source.parameters import declare
-
-
-class Pace:
-    """Stamps for the images of one pass through a source.
-
-    Images of a file keep the intervals that it states: the first is stamped by the clock, and the
-    others follow, so that stamps do not carry the jitter of this process. Live images are stamped
-    by the clock as they come.
-
-    Parameters
-    ----------
-    clock : callable
-        Returns the present time in ns.
-    stop : threading.Event
-        Ends every wait.
-    """
-
-    def __init__(self, clock: Callable[[], int], stop: threading.Event) -> None:
-        self._clock, self._stop, self._is_live = clock, stop, False
-        self._began: tuple[int, int, float] | None = None
-        self.last = 0
-
-    def begin(self, *, is_live: bool) -> None:
-        """Begin a pass, of images that come by themselves where `is_live`."""
-        self._began, self._is_live = None, is_live
-
-    def stamp(self, recorded_ns: int) -> int:
-        """Return the stamp of an image with the source's own time, once it is due.
-
-        It is later than any before. Returns early when the process ends.
-        """
-        if self._is_live:
-            self.last = max(self._clock(), self.last + 1)
-            return self.last
-        if self._began is None:
-            self._began = recorded_ns, max(self._clock(), self.last + 1), time.monotonic()
-        first, stamped, when = self._began
-        passed = recorded_ns - first
-        self._stop.wait(max(when + passed / 1e9 - time.monotonic(), 0.0))
-        self.last = stamped + passed
-        return self.last
-
-
-class BackOff:
-    """Waits before one more try, twice as long as before the last.
-
-    Parameters
-    ----------
-    stop : threading.Event
-        Ends every wait.
-    shortest, longest : float
-        First wait, and the one that is kept to in the end, s.
-    """
-
-    def __init__(self, stop: threading.Event, shortest: float = 1.0, longest: float = 30.0) -> None:
-        self._stop, self._shortest, self._longest = stop, shortest, longest
-        self.seconds = shortest
-
-    def reset(self) -> None:
-        """Begin with the shortest wait again: an image came."""
-        self.seconds = self._shortest
-
-    def wait(self) -> None:
-        """Wait, unless the process ends meanwhile."""
-        self._stop.wait(self.seconds)
-        self.seconds = min(2 * self.seconds, self._longest)
-
+from vehicle_pf_tracker.ros.video_source.outputs import (
+    BackOff,
+    ImageOutputs,
+    Pace,
+    read_calibration,
+)
 
 _NAME = "video_source"
 _LATE = 1.0
 """Seconds behind the source's rate that are worth a warning: more than a hiccup of the disk."""
 _SAY_AGAIN = 10.0
 """Seconds between two warnings of a kind."""
+_IMAGE_BYTES = 1920 * 1080 * 3
+"""Size of an image of which the segment holds four; one of 4K still fits once."""
+_LAST_WAIT = 2.0
+"""Seconds that the thread gets to end; one that waits for a silent camera is left behind."""
+_LOOK_EVERY = 0.1
+"""Seconds between two looks whether the source has ended."""
+_USAGE = """\
+usage: video_source SOURCE [--ros-args -p NAME:=VALUE -r image:=TOPIC ...]
+SOURCE is a video file, a folder of images, a camera's index or a stream's URL. Parameters: source,
+fps, loop, frame_id, compressed, jpeg_quality, camera_info_url."""
+_SPECS: dict[str, tuple[object, str]] = {
+    "source": ("", "A video file, a folder of images, a camera's index, a stream's URL"),
+    "fps": (0.0, "Frame rate of a folder or a video, 1/s; 0 takes what it states"),
+    "loop": (False, "Begin a video or a folder again at its end"),
+    "frame_id": ("camera", "Frame of the images' headers"),
+    "compressed": (False, "Publish JPEG images too, on image/compressed"),
+    "jpeg_quality": (95, "Of these, 1 to 100"),
+    "camera_info_url": ("", "Calibration YAML, a path or file:///URL; published as camera_info"),
+}
+_RANGES = {"jpeg_quality": {"integer_range": [IntegerRange(from_value=1, to_value=100, step=1)]}}
+
+
+def declare(node: Node) -> dict[str, Any]:
+    """Declare the parameters of `node` and return their values, by name.
+
+    Raises
+    ------
+    InputError
+        Naming the parameter that has a wrong value.
+    """
+    values = {name: _declared(node, name) for name in _SPECS}
+    fps = values["fps"]
+    if not isinstance(fps, int | float) or (fps and not LOWEST_FPS <= fps <= HIGHEST_FPS):
+        raise InputError(
+            f"the parameter fps is neither 0 nor from {LOWEST_FPS:g} to {HIGHEST_FPS:g} images per "
+            f"second: {fps!r}"
+        )
+    return values
+
+
+def _declared(node: Node, name: str) -> Any:
+    default, description = _SPECS[name]
+    descriptor = ParameterDescriptor(
+        description=description,
+        read_only=True,
+        # A camera's index and a whole frame rate are integers on a command line.
+        dynamic_typing=name in {"source", "fps"},
+        **_RANGES.get(name, {}),
+    )
+    try:
+        return node.declare_parameter(name, default, descriptor).value
+    except (InvalidParameterTypeException, InvalidParameterValueException) as error:
+        raise InputError(f"the parameter {name} cannot have this value: {error}") from None
 
 
 class VideoSourceNode(Node):  # type: ignore[misc]
@@ -140,14 +127,15 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     def __init__(self, source: str = "", **keywords: Any) -> None:
         super().__init__(_NAME, **keywords)
         settings = declare(self)
-        self._source_name = source or settings.source
+        self._source_name = source or str(settings["source"])
         if not self._source_name:
             raise InputError("give a source: `video_source SOURCE`, or -p source:=SOURCE")
-        self._settings = settings
-        url = settings.camera_info_url
+        self._fps = float(settings["fps"]) or None  # 0 leaves the source's own
+        self._loops, self._frame_id = bool(settings["loop"]), str(settings["frame_id"])
+        url = settings["camera_info_url"]
         self._outputs = ImageOutputs(
             self,
-            jpeg_quality=settings.jpeg_quality,
+            jpeg_quality=settings["jpeg_quality"] if settings["compressed"] else None,
             calibration=read_calibration(url) if url else None,
         )
         self._is_live = False
@@ -177,7 +165,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         name = self._source_name
         if is_recording(Path(name)):
             raise InputError(f"{name} is a recording; `bag_replay {name}` plays it")
-        return open_footage(name, fps=self._settings.fps)
+        return open_footage(name, fps=self._fps)
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
@@ -212,9 +200,9 @@ class VideoSourceNode(Node):  # type: ignore[misc]
             if notice not in self._told:
                 self._told.add(notice)
                 self.get_logger().warning(notice)
-        if not self._settings.loop:
+        if not self._loops:
             self.get_logger().info(f"the source has ended after {self._shown} images")
-        return self._settings.loop
+        return self._loops
 
     def _show_images(self, source: Footage) -> None:
         self._is_live = is_live(source)
@@ -228,7 +216,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         stamp = self._pace.stamp(picture.stamp_ns)
         if self._stop.is_set():
             return
-        header = Header(frame_id=self._settings.frame_id)
+        header = Header(frame_id=self._frame_id)
         header.stamp.sec, header.stamp.nanosec = divmod(stamp, 1_000_000_000)
         self._outputs.publish(header, picture.frame)
         if not self._shown:
@@ -252,7 +240,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
 
     def _note_break(self, why: str) -> None:
         """Wait before the next try, or raise where there is none."""
-        if not self._is_live and not self._settings.loop:
+        if not self._is_live and not self._loops:
             raise InputError(why)
         if self._stop.is_set() or not self.context.ok():
             return
@@ -271,19 +259,6 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         except InputError as error:
             self._note_break(str(error))
             return None
-
-
-_NODE_NAME = "video_source"
-_IMAGE_BYTES = 1920 * 1080 * 3
-"""Size of an image of which the segment holds four; one of 4K still fits once."""
-_LAST_WAIT = 2.0
-"""Seconds that the thread gets to end; one that waits for a silent camera is left behind."""
-_LOOK_EVERY = 0.1
-"""Seconds between two looks whether the source has ended."""
-_USAGE = """\
-usage: video_source SOURCE [--ros-args -p NAME:=VALUE -r image:=TOPIC ...]
-SOURCE is a video file, a folder of images, a camera's index or a stream's URL. Parameters: source,
-fps, loop, frame_id, compressed, jpeg_quality, camera_info_url."""
 
 
 def run_video_source(arguments: Sequence[str]) -> int:
@@ -305,11 +280,11 @@ def run_video_source(arguments: Sequence[str]) -> int:
     def serve(words: list[str]) -> int:
         nonlocal is_left_behind
         if len(words) > 1 or any(word.startswith("-") for word in words):
-            return _usage(words)
+            return answer_usage(_NAME, words, _USAGE)
         status, is_left_behind = _serve(*words)
         return status
 
-    status = run_process(_NODE_NAME, arguments, serve)
+    status = run_process(_NAME, arguments, serve)
     if is_left_behind:
         end_at_once(status)
     return status
@@ -342,13 +317,5 @@ def _end(node: VideoSourceNode) -> tuple[int, bool]:
     has_ended = node.stop(_LAST_WAIT)
     node.destroy_node()
     if node.problem:
-        print(f"{_NODE_NAME}: {node.problem}", file=sys.stderr)
+        print(f"{_NAME}: {node.problem}", file=sys.stderr)
     return (1 if node.problem else 0), not has_ended
-
-
-def _usage(words: Sequence[str]) -> int:
-    is_asked = set(words) <= {"-h", "--help"}
-    if not is_asked:
-        print(f"{_NODE_NAME}: unknown arguments: {' '.join(words)}", file=sys.stderr)
-    print(_USAGE, file=sys.stdout if is_asked else sys.stderr)
-    return 0 if is_asked else 2

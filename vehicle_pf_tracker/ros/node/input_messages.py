@@ -12,25 +12,122 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""CameraInfo, TF and places on the road, to and from messages."""
+"""Messages that a node takes: targets as boxes, px, and the camera's lens and pose."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
-from geometry_msgs.msg import PointStamped, PoseWithCovarianceStamped, Transform, Vector3Stamped
-from sensor_msgs.msg import CameraInfo
+from geometry_msgs.msg import PointStamped, PolygonStamped, Transform
+from sensor_msgs.msg import CameraInfo, RegionOfInterest
 from std_msgs.msg import Header
 
-from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.road.camera import FIRST_PIXEL, Lens, Pose
 
-UNKNOWN_ANGLE = math.pi**2 / 3
-"""Variance of an angle that nothing is known of, rad²."""
 _COEFFICIENTS = {"rational_polynomial": 8, "equidistant": 4}
 """Numbers of coefficients of a model; what a driver writes after them must be zero."""
+_UPRIGHT = 1e-3
+"""Angle of a box that counts as upright, rad: over 1000 px it moves a corner by a pixel."""
+
+
+def check_frame_id(topic: str, header: Header, image_frame: str | None, suffix: str) -> None:
+    """Refuse a position in another frame than that of the images, or of the node's own outputs.
+
+    Parameters
+    ----------
+    topic : str
+        Topic that it came on.
+    header : Header
+        Its header.
+    image_frame : str or None
+        The images' `frame_id`; None if none has come yet.
+    suffix : str
+        Suffix of the `frame_id` in the node's own outputs, accepted too.
+
+    Raises
+    ------
+    InputError
+        If it is.
+    """
+    if image_frame is not None and header.frame_id not in ("", image_frame, image_frame + suffix):
+        raise InputError(
+            f"{topic} got a target in the frame {header.frame_id!r}; give it in pixels of the "
+            f"image, with the image's frame_id {image_frame!r} or none"
+        )
+
+
+def finite(topic: str, *numbers: float) -> tuple[float, ...]:
+    """Return numbers that came on a topic.
+
+    Raises
+    ------
+    InputError
+        If one is not finite.
+    """
+    if not all(map(math.isfinite, numbers)):
+        raise InputError(f"{topic} got a number that is not finite; give pixels of the image")
+    return numbers
+
+
+def box_of_region(region: RegionOfInterest) -> Box:
+    """Return the region as a box."""
+    return Box(*map(float, (region.x_offset, region.y_offset, region.width, region.height)))
+
+
+def box_of_polygon(message: PolygonStamped) -> Box:
+    """Return the upright box around the polygon's corners.
+
+    Raises
+    ------
+    InputError
+        If there are too few corners, or one is not finite.
+    """
+    points = message.polygon.points
+    if len(points) < 2:
+        raise InputError(
+            f"~/set_box got a polygon of {len(points)} corners; give the four corners of the box"
+        )
+    across = finite("~/set_box", *(point.x for point in points))
+    down = finite("~/set_box", *(point.y for point in points))
+    left, top = min(across), min(down)
+    return Box(left, top, max(across) - left, max(down) - top)
+
+
+def box_of_point(message: PointStamped, like: Box | None) -> Box:
+    """Return the box of the size of `like` around the point; None where there is no box yet.
+
+    Raises
+    ------
+    InputError
+        If the point is not finite, or there is no box whose size to take.
+    """
+    x, y = finite("~/clicked_point", message.point.x, message.point.y)
+    if like is None:
+        raise InputError(
+            "~/clicked_point has no box size to take yet; give a box on ~/set_target first, "
+            "or set the parameters target.width and target.height"
+        )
+    return Box.around((x, y), like.width, like.height)
+
+
+def box_of_detection(message: Any) -> Box:
+    """Return the box of a vision_msgs/Detection2D.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite, or the box is turned.
+    """
+    topic, box = "~/set_detection", message.bbox
+    at, theta = box.center.position, box.center.theta
+    x, y, _, width, height = finite(topic, at.x, at.y, theta, box.size_x, box.size_y)
+    if abs(theta) > _UPRIGHT:
+        raise InputError(f"{topic} got a box turned by {theta:g} rad; boxes must be upright")
+    return Box.around((x, y), float(width), float(height))
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,30 +200,3 @@ def pose_of_transform(transform: Transform) -> Pose:
     """
     at, turn = transform.translation, transform.rotation
     return Pose.of((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))
-
-
-def place_message(header: Header, position: Array) -> PointStamped:
-    """Make a place on the road, m; z = 0."""
-    message = PointStamped(header=header)
-    message.point.x, message.point.y = map(float, position)
-    return message
-
-
-def road_velocity_message(header: Header, velocity: Array) -> Vector3Stamped:
-    """Make a velocity on the road, m/s."""
-    message = Vector3Stamped(header=header)
-    message.vector.x, message.vector.y = map(float, velocity)
-    return message
-
-
-def pose_message(header: Header, position: Array, covariance: Array) -> PoseWithCovarianceStamped:
-    """Make a position with its covariance (2, 2), in px or m; nothing is known of its heading."""
-    message = PoseWithCovarianceStamped(header=header)
-    pose = message.pose
-    pose.pose.position.x, pose.pose.position.y = map(float, position)
-    pose.pose.orientation.w = 1.0
-    rows, numbers = covariance.tolist(), [0.0] * 36
-    numbers[0:2], numbers[6:8] = rows[0], rows[1]
-    numbers[21] = numbers[28] = numbers[35] = UNKNOWN_ANGLE
-    pose.covariance = numbers
-    return message

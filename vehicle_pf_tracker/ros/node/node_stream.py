@@ -1,0 +1,181 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The way of every image through a node: read, fed to the session, answered once."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from rclpy.node import Node
+from sensor_msgs.msg import CompressedImage
+from std_msgs.msg import Header
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
+from vehicle_pf_tracker.ros.node.diagnostics import Health
+from vehicle_pf_tracker.ros.node.image_input import SerializedImage, read_image
+from vehicle_pf_tracker.ros.node.outputs import Outputs
+from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
+
+_PERIOD = 5.0
+"""Interval between two lines of the same kind in the log, s."""
+
+
+class Notices:
+    """Writes a sentence unless one of its kind was written a moment ago.
+
+    rclpy throttles by the line of code that logs, and so cannot tell kinds apart.
+
+    Parameters
+    ----------
+    write : callable
+        Writes a line.
+    clock : callable
+        Steady time in s.
+    """
+
+    def __init__(
+        self, write: Callable[[str], object], clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._write = write
+        self._clock = clock
+        self._last: dict[str, float] = {}
+
+    def say(self, kind: str, sentence: str) -> None:
+        """Write `sentence`, one of few kinds."""
+        now = self._clock()
+        if now - self._last.get(kind, -_PERIOD) >= _PERIOD:
+            self._last[kind] = now
+            self._write(sentence)
+
+
+class NodeStream(ABC):
+    """Processing of images in a configured node.
+
+    Parameters
+    ----------
+    node : Node
+        For its log.
+    configuration : Configuration
+        The node's parameters.
+    outputs : Outputs
+        Publishers of the answers.
+    health : Health
+        Counts what happens.
+
+    Attributes
+    ----------
+    log : RcutilsLogger
+        The node's log.
+    warnings, errors : Notices
+        Lines in it that would come with every image.
+    health : Health
+        As given.
+    publish_mode : callable
+        Publishes the one `~/mode` of an image; see `Outputs.publish_mode`.
+    frame_id : str or None
+        Frame of the last image that was used; None before the first.
+    """
+
+    def __init__(
+        self, node: Node, configuration: Configuration, outputs: Outputs, health: Health
+    ) -> None:
+        self.log = node.get_logger()
+        # A line of code each: rclpy refuses to log with two severities from one.
+        self.warnings = Notices(lambda words: self.log.warning(words))  # noqa: PLW0108
+        self.errors = Notices(lambda words: self.log.error(words))  # noqa: PLW0108
+        self._configuration = configuration
+        self.publish_mode = outputs.publish_mode
+        self.health = health
+        self.frame_id: str | None = None
+
+    @property
+    @abstractmethod
+    def facts(self) -> Mapping[str, object]:
+        """Values for the node's report, by name: choices that the parameters leave open."""
+
+    @abstractmethod
+    def take(self, message: SerializedImage | CompressedImage) -> None:
+        """Take an image, which is answered with exactly one `~/mode`."""
+
+    @abstractmethod
+    def feed(self, image: Frame | CodedImage, stamp_ns: int, extra: Any) -> None:
+        """Feed an image to the session.
+
+        Raises
+        ------
+        InputError
+            If the image cannot be used.
+        """
+
+    @abstractmethod
+    def answer(self, header: Header, frame: Frame) -> None:
+        """Publish all that the session says of the image that it was fed last."""
+
+    def process(self, message: SerializedImage | CompressedImage, extra: Any = None) -> None:
+        """Read an image, feed it and publish the answer; `extra` is passed on to `feed`."""
+        header = message.header
+        try:
+            image = read_image(message)
+            self.feed(image, stamp_ns(header), extra)
+            frame = image.decode() if isinstance(image, CodedImage) else image
+        except InputError as error:
+            self.decline(header, error)
+        except Exception as error:  # whatever a tracker raises
+            self._fail(header, error)
+        else:
+            self.frame_id = header.frame_id
+            self.answer(header, frame)
+
+    def refuse(self, what: str, reason: str) -> None:
+        """Report that a target or a selection cannot be used; all vehicles are kept."""
+        self.health.refuse_target(reason)
+        self.errors.say(what, f"{what} refused: {reason}")
+
+    def decline(self, header: Header, error: InputError) -> None:
+        """Answer an image that cannot be used."""
+        self._reject(header, str(error))
+
+    def answer_without_estimate(self, header: Header, mode: str, reason: str) -> None:
+        """Publish a mode with its reason, and count it."""
+        self.health.answered(mode)
+        self.publish_mode(header, mode, {"reason": reason})
+
+    def tell_drawn_seed(self, seed: int) -> None:
+        """Log a seed that was drawn, so that a run can be repeated."""
+        if self._configuration.tracker.seed < 0:
+            self.log.info(f"drew the seed {seed}; set it to repeat this run")
+
+    def _reject(self, header: Header, reason: str) -> None:
+        self.health.reject(reason)
+        self.errors.say("rejected", f"image rejected: {reason}")
+        self.answer_without_estimate(header, REJECTED, reason)
+
+    def _fail(self, header: Header, error: Exception) -> None:
+        """Reject an image for an unexpected error, and raise it unless it concerns this image only.
+
+        One image must not end a node that others rely on; a broken tracker must.
+        """
+        self.errors.say("error", traceback.format_exc())
+        self._reject(header, unexpected(error))
+        if not isinstance(error, TrackerError) or error.persists:
+            raise error
