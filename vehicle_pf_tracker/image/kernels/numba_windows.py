@@ -57,6 +57,7 @@ PAIR = types.UniTuple(types.int64, 2)
 SCALE = types.UniTuple(types.Array(types.float64, 1, "C", readonly=True), 2)
 QUAD = types.UniTuple(types.int64, 4)
 _COUNTS = types.int32[:, ::1]
+_VALUES = types.Array(types.float32, 1, "C", readonly=True)
 
 # Costs, roughly in cycles; they decide about the route, and not about the result.
 _PIXEL = 4
@@ -337,14 +338,7 @@ def compare_joint(
     return result
 
 
-@compiled(
-    types.float32[:, ::1](
-        CELLS,
-        QUAD,
-        REACH,
-        types.Array(types.float32, 1, "C", readonly=True),
-    )
-)
+@compiled(types.float32[:, ::1](CELLS, QUAD, REACH, _VALUES))
 def map_windows(cells: Cells, extent: tuple[int, int, int, int], reach: Reach, values: Map) -> Map:
     """Compare the windows around all pixels from x0, y0 to before x1, y1 of a region."""
     planes, height, width = cells.shape
