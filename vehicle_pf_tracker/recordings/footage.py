@@ -18,35 +18,33 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.recordings.messages import LARGEST_PX
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 
 START_NS = 1_000_000_000
 """Stamp of the first image. Not 0, which many ROS programs take for "no time"."""
 LOWEST_FPS, HIGHEST_FPS = 1e-4, 1e6
 """Frame rates that are believed, 1/s: from an image every three hours up to one per microsecond,
 which the fastest cameras reach."""
-LARGEST_PX = 2.0**24
-"""Largest coordinate of a true box, px: beyond it a polygon's single precision loses whole px."""
 LAST_STAMP_NS = (2**31 - 1) * 10**9
 """Last stamp: `builtin_interfaces/Time` has a signed 32-bit number of seconds."""
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class Picture(StampedFrame):
     """One image of the footage.
 
     Attributes
     ----------
-    stamp_ns : int
-        Stamp in ns.
     frame : Frame
         Pixels of the image.
     name : str
@@ -59,7 +57,6 @@ class Picture:
         True state of the vehicle; None where it is unknown.
     """
 
-    stamp_ns: int
     frame: Frame
     name: str
     coded_format: str | None = None
@@ -67,23 +64,39 @@ class Picture:
     truth: Truth | None = None
 
 
-class Footage(Protocol):
-    """A source of pictures: `total` of them if known, `fps` per second."""
+class Footage(ABC):
+    """Images of a video file, a folder, a camera or a stream; a source without topics.
 
+    Attributes
+    ----------
+    fps : float
+        Frames per second.
+    frame_count : int or None
+        Number of images; None where it is unknown.
+    """
+
+    image_topic = ""
     fps: float
-    total: int | None
+    frame_count: int | None
 
-    def pictures(self) -> Iterator[Picture]:
-        """Yield the pictures in the order of time; raise `InputError` for one that is broken."""
-        ...
+    @abstractmethod
+    def frames(self) -> Iterator[Picture]:
+        """Yield the images in the order of time.
 
-    def truths(self) -> list[Truth]:
-        """Return the truth that is known before the pictures are read, in the order of time."""
-        ...
+        Raises
+        ------
+        InputError
+            If one is broken.
+        """
 
+    def truth(self) -> Sequence[Truth]:
+        """Return the truth that is known before the images are read, in the order of time."""
+        return ()
+
+    @property
     def notices(self) -> list[str]:
-        """Return irregularities found while reading, a sentence each."""
-        ...
+        """Irregularities, a sentence each; complete when all images are read."""
+        return []
 
 
 def check_fps(fps: float, source: Path | str) -> float:

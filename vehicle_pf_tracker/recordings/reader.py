@@ -95,6 +95,8 @@ class Recording:
         Path as given.
     image_topic, image_type : str
         The image topic chosen and its ROS type, Image or CompressedImage.
+    frame_count : int
+        Number of messages on the image topic.
     topics : tuple of TopicInfo
         All topics, in the order of their first messages.
     start_ns, end_ns : int
@@ -115,17 +117,12 @@ class Recording:
         self.topics: tuple[TopicInfo, ...] = list_topics(self.files)
         chosen = choose_image_topic(self.path, self.topics, topic)
         self.image_topic, self.image_type = chosen.name, chosen.type_name
-        self._frame_count = chosen.message_count
+        self.frame_count = chosen.message_count
         blocks = [block for index in self.files for block in index.blocks]
         self.start_ns = min(block.start_ns for block in blocks)
         self.end_ns = max(block.end_ns for block in blocks)
         self._notices = ReadNotices(self.path, self.image_topic, found)
         self._notices.add_files(self.files)
-
-    @property
-    def frame_count(self) -> int:
-        """Number of messages on the image topic."""
-        return self._frame_count
 
     @property
     def duration_ns(self) -> int:
@@ -172,9 +169,9 @@ class Recording:
             yield from unread
             unread = []
             yield image
-        is_short = count < self._frame_count and not start_offset and duration is None
+        is_short = count < self.frame_count and not start_offset and duration is None
         if is_short and len(unread) < _UNREADABLE_IN_A_ROW:
-            self._notices.add_missing(self._frame_count - count)
+            self._notices.add_missing(self.frame_count - count)
         if not readable and (unread or is_short):
             raise InputError(
                 f"no image of {self.image_topic} in {self.path} can be read; "
