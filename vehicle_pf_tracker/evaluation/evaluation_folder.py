@@ -40,7 +40,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN, damage
-from vehicle_pf_tracker.recordings.messages import LARGEST_PX
+from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
 
 @dataclass(frozen=True, slots=True)

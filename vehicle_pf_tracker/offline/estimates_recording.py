@@ -37,6 +37,7 @@ from vehicle_pf_tracker.offline.drawing import COLOURS, NEUTRAL, line_width_of
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
+from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.messages import (
     DIAGNOSTIC_ARRAY,
@@ -45,7 +46,7 @@ from vehicle_pf_tracker.recordings.messages import (
     TRUTH_TOPICS,
     as_token,
 )
-from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
+from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.estimate import Mode
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The input of an importer: pictures with their times, and the truth where it is known."""
+"""Images with their times, as any source yields them, and footage with its truth."""
 
 from __future__ import annotations
 
@@ -27,16 +27,24 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings.messages import LARGEST_PX
-from vehicle_pf_tracker.recordings.reader import StampedFrame
 
 START_NS = 1_000_000_000
 """Stamp of the first image. Not 0, which many ROS programs take for "no time"."""
 LOWEST_FPS, HIGHEST_FPS = 1e-4, 1e6
 """Frame rates that are believed, 1/s: from an image every three hours up to one per microsecond,
 which the fastest cameras reach."""
+LARGEST_PX = 2.0**24
+"""Largest coordinate of a true box, px: beyond it a polygon's single precision loses whole px."""
 LAST_STAMP_NS = (2**31 - 1) * 10**9
 """Last stamp: `builtin_interfaces/Time` has a signed 32-bit number of seconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class StampedFrame:
+    """An image and the stamp of its header in ns; no frame where it cannot be read."""
+
+    stamp_ns: int
+    frame: Frame | None
 
 
 @dataclass(frozen=True, slots=True)

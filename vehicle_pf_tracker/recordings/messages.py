@@ -29,6 +29,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings.cdr import message_class
+from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
 IMAGE_TOPIC = "/camera/image_raw"
 COMPRESSED_TOPIC = "/camera/image_raw/compressed"
@@ -55,8 +56,6 @@ def as_token(name: str) -> str:
     return f"_{token}" if token[:1].isdigit() else token
 
 
-LARGEST_PX = 2.0**24
-"""Largest coordinate of a true box, px: beyond it a polygon's single precision loses whole px."""
 OK, WARN, ERROR = 0, 1, 2
 """Levels of a diagnostic status."""
 

@@ -23,13 +23,13 @@ from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.image.encodings import to_rgb
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.cdr import deserialize, header_stamp_ns
+from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.mcap_blocks import Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
 from vehicle_pf_tracker.recordings.topic_table import (
@@ -42,14 +42,6 @@ from vehicle_pf_tracker.recordings.topic_table import (
 _UNREADABLE_IN_A_ROW = 10
 """Unreadable images at the beginning after which reading stops: a recording of another encoding
 fails after a third of a second of video, and one damaged image does not end it."""
-
-
-@dataclass(frozen=True, slots=True)
-class StampedFrame:
-    """An image and the stamp of its header in ns; no frame where it cannot be read."""
-
-    stamp_ns: int
-    frame: Frame | None
 
 
 @dataclass(frozen=True, slots=True)

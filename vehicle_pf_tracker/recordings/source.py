@@ -25,8 +25,8 @@ from typing import Protocol
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.recordings.footage import Footage
-from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
+from vehicle_pf_tracker.recordings.footage import Footage, StampedFrame
+from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.video import is_recording, open_footage
 
 

@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
@@ -152,23 +153,8 @@ def residuals(plane: RoadPlane, pairs: Sequence[Pair]) -> tuple[Array, Array]:
 
 def convex_hull(points: Array) -> Array:
     """Return the corners (M, 2) of the convex hull of points (N, 2), in order around it."""
-    ordered = sorted(map(tuple, points.tolist()))
-    lower, upper = _half(ordered), _half(ordered[::-1])
-    return np.array(lower[:-1] + upper[:-1])
-
-
-def _half(ordered: Sequence[tuple[float, ...]]) -> list[tuple[float, ...]]:
-    """Return one side of the hull of points in rising or falling order (Andrew's chain)."""
-    chain: list[tuple[float, ...]] = []
-    for point in ordered:
-        while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 0:
-            chain.pop()
-        chain.append(point)
-    return chain
-
-
-def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    corners = cv2.convexHull(points.astype(np.float32), clockwise=False, returnPoints=False)
+    return np.asarray(points[corners.ravel()])
 
 
 def is_inside(hull: Array, point: Array) -> bool:
