@@ -21,7 +21,7 @@ from mcap.writer import CompressionType, Writer
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings import messages
+from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.cdr import definition, serialize
 
 PERIOD_NS = 40_000_000
@@ -59,9 +59,7 @@ class BareMcap:
 
     def image(self, channel, index, log_time=None):
         message = messages.image(stamp_of(index), frame_of(index))
-        self.add(
-            channel, stamp_of(index) if log_time is None else log_time, message, messages.IMAGE
-        )
+        self.add(channel, stamp_of(index) if log_time is None else log_time, message, topics.IMAGE)
 
     def add(self, channel, log_time, message, type_name):
         self.raw(channel, log_time, bytes(serialize(message, type_name)))

@@ -39,14 +39,14 @@ from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
 from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.importing import jpeg
-from vehicle_pf_tracker.recordings.messages import (
+from vehicle_pf_tracker.recordings.messages import as_token
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.topics import (
     DIAGNOSTIC_ARRAY,
     POINT_STAMPED,
     POLYGON_STAMPED,
     TRUTH_TOPICS,
-    as_token,
 )
-from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.estimate import Mode
 

@@ -38,7 +38,7 @@ from rclpy.qos import (
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.parameters.files import read_yaml_file
-from vehicle_pf_tracker.recordings.messages import COMPRESSED_IMAGE
+from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 
 
 class PlayableTopic(Protocol):

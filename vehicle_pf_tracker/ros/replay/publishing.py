@@ -30,7 +30,7 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
-from vehicle_pf_tracker.recordings.messages import COMPRESSED_IMAGE
+from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.replay.playable import Playable, PlayableTopic, recorded_qos
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions

@@ -32,7 +32,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.messages import COMPRESSED_IMAGE
+from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
 from vehicle_pf_tracker.ros.replay.playable import Playable
 from vehicle_pf_tracker.ros.replay.player import Player
