@@ -144,7 +144,9 @@ class NumbaKernels(Kernels):
         table = table_of(reference)
         cells = joint_cells(region, feature.bits, table.cells)
         values = table.values.astype(np.float32)
-        return map_windows(cells, centres, reach_of(feature, window), values)
+        left, top, right, bottom = centres
+        extent = left, top, right, bottom  # numba tells named tuples from plain ones
+        return map_windows(cells, extent, reach_of(feature, window), values)
 
     def kernel_similarity(
         self,
