@@ -17,13 +17,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, TypeAlias
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image import (
     correlation_filter,
     gradient_cells,
@@ -31,7 +29,7 @@ from vehicle_pf_tracker.image import (
     shared_motion,
     spectra,
 )
-from vehicle_pf_tracker.image.colour import JointColour, bin_indices
+from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import (
     Coefficients,
@@ -42,17 +40,6 @@ from vehicle_pf_tracker.image.window import (
     Window,
     WindowFeature,
 )
-
-SimilarityMap: TypeAlias = npt.NDArray[np.float32]
-
-
-class PixelRange(NamedTuple):
-    """Pixels from `left`, `top` to before `right`, `bottom`; all inside the frame."""
-
-    left: int
-    top: int
-    right: int
-    bottom: int
 
 
 class Kernels:
@@ -151,50 +138,6 @@ class Kernels:
         """
         return feature.similarity(frame, positions, window, reference)
 
-    def similarity_map(
-        self,
-        feature: JointColour,
-        frame: Frame,
-        window: Window,
-        reference: Reference,
-        pixels: PixelRange | None = None,
-    ) -> SimilarityMap:
-        """Compare the windows around all pixels of a range with a reference.
-
-        Parameters
-        ----------
-        feature, frame, window, reference
-            As for `similarity`.
-        pixels : PixelRange, optional
-            Where the windows' centres lie; the whole frame if left out.
-
-        Returns
-        -------
-        (bottom - top, right - left) array of float32
-            Bhattacharyya coefficients, 0 to 1.
-        """
-        width, height = frame_size(frame)
-        left, top, right, bottom = pixels or PixelRange(0, 0, width, height)
-        x, y = max(left - window.half_width, 0), max(top - window.half_height, 0)
-        region = frame[y : bottom + window.half_height, x : right + window.half_width]
-        centres = PixelRange(left - x, top - y, right - x, bottom - y)
-        return self.region_map(feature, region, window, reference, centres)
-
-    def region_map(
-        self,
-        feature: JointColour,
-        region: Frame,
-        window: Window,
-        reference: Reference,
-        centres: PixelRange,
-    ) -> SimilarityMap:
-        """Compare windows as `similarity_map`, in a region that no more pixels belong to."""
-        overlap = _overlaps(bin_indices(region, feature.bits), window, reference)
-        areas = _box_sums(np.ones(overlap.shape, np.uint8), window)
-        left, top, right, bottom = centres
-        rho = np.minimum(overlap / np.sqrt(areas), 1.0)
-        return np.asarray(rho[top:bottom, left:right], np.float32)
-
     def kernel_similarity(
         self,
         feature: JointColour,
@@ -217,21 +160,3 @@ class Kernels:
     ) -> Positions:
         """Move every position one mean-shift step; see `image.mean_shift`."""
         return mean_shift.mean_shift(frame, positions, window, reference.histogram, feature.bits)
-
-
-def _overlaps(
-    indices: npt.NDArray[np.uint16], window: Window, reference: Reference
-) -> npt.NDArray[np.float64]:
-    """Sum of ``sqrt(count * value)`` over the active bins around every pixel."""
-    sums = np.zeros(indices.shape)
-    for number, value in zip(reference.active, reference.values, strict=True):
-        counts = _box_sums((indices == number).view(np.uint8), window)
-        sums += cv2.sqrt(counts * np.float32(value))
-    return sums
-
-
-def _box_sums(plane: npt.NDArray[np.uint8], window: Window) -> npt.NDArray[np.float32]:
-    """Sum of the pixels that exist in the window around every pixel."""
-    size = window.width, window.height
-    sums = cv2.boxFilter(plane, cv2.CV_32F, size, normalize=False, borderType=cv2.BORDER_CONSTANT)
-    return np.asarray(sums, np.float32)

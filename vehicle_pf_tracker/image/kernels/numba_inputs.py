@@ -25,7 +25,6 @@ import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.kernels.interface import PixelRange
 from vehicle_pf_tracker.image.kernels.numba_jit import Table, compiled
 from vehicle_pf_tracker.image.kernels.numba_windows import (
     Pixels,
@@ -67,11 +66,11 @@ class Placement(NamedTuple):
         pixels, extent = window_pixels(positions, *size)
         return cls(pixels, extent, reach_of(feature, window), size)
 
-    def covered(self, margin: int = 0) -> PixelRange:
-        """Smallest part of the frame that has all windows in it, and a margin as far as it goes."""
+    def covered(self, margin: int = 0) -> tuple[int, int, int, int]:
+        """Left, top, right, bottom of all windows, and of a margin as far as the frame goes."""
         (x0, y0, x1, y1), (left, _, up) = self.extent, self.reach
         width, height = self.size
-        return PixelRange(
+        return (
             max(x0 - left - margin, 0),
             max(y0 - up - margin, 0),
             min(x1 + left + 1 + margin, width),

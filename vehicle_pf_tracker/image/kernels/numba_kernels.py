@@ -25,13 +25,12 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.kernels import numba_jit, numba_shared_motion, numba_spectra
-from vehicle_pf_tracker.image.kernels.interface import Kernels, PixelRange, SimilarityMap
+from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.kernels.numba_edges import count_directions
 from vehicle_pf_tracker.image.kernels.numba_gradient_cells import gradient_cells
 from vehicle_pf_tracker.image.kernels.numba_inputs import (
     CellTable,
     Placement,
-    reach_of,
     roots_up_to,
     table_for_counting,
     table_of,
@@ -56,7 +55,6 @@ from vehicle_pf_tracker.image.kernels.numba_windows import (
     compare_joint,
     compare_windows,
     joint_cells,
-    map_windows,
 )
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
@@ -131,22 +129,6 @@ class NumbaKernels(Kernels):
             roots = roots_up_to(window.width * window.height)
             return compare_counts(cells, totals, (table.values, roots))
         return super().similarity(feature, frame, positions, window, reference)
-
-    def region_map(
-        self,
-        feature: JointColour,
-        region: Frame,
-        window: Window,
-        reference: Reference,
-        centres: PixelRange,
-    ) -> SimilarityMap:
-        """Compare all windows; see `Kernels.region_map`."""
-        table = table_of(reference)
-        cells = joint_cells(region, feature.bits, table.cells)
-        values = table.values.astype(np.float32)
-        left, top, right, bottom = centres
-        extent = left, top, right, bottom  # numba tells named tuples from plain ones
-        return map_windows(cells, extent, reach_of(feature, window), values)
 
     def kernel_similarity(
         self,

@@ -49,7 +49,6 @@ Counts: TypeAlias = npt.NDArray[np.int32]
 Scale: TypeAlias = tuple[Reals, Reals]
 Reach: TypeAlias = tuple[int, int, int]
 Columns: TypeAlias = npt.NDArray[np.uint16]
-Map: TypeAlias = npt.NDArray[np.float32]
 
 _POSITIONS = types.Array(types.float64, 2, "A", readonly=True)
 REACH = types.UniTuple(types.int64, 3)
@@ -57,7 +56,6 @@ PAIR = types.UniTuple(types.int64, 2)
 SCALE = types.UniTuple(types.Array(types.float64, 1, "C", readonly=True), 2)
 QUAD = types.UniTuple(types.int64, 4)
 _COUNTS = types.int32[:, ::1]
-_VALUES = types.Array(types.float32, 1, "C", readonly=True)
 
 # Costs, roughly in cycles; they decide about the route, and not about the result.
 _PIXEL = 4
@@ -108,15 +106,6 @@ def _overlap(counts: Counts, values: Reals, total: int, roots: Reals) -> float:
         for k in range(len(values)):
             overlap += values[k] * math.sqrt(np.float64(counts[k]))
     return min(overlap / math.sqrt(max(total, 1)), 1.0)
-
-
-@inlined
-def _overlap_single(counts: Counts, values: Map, total: int) -> np.float32:
-    """Bhattacharyya coefficient as by `_overlap`, in single precision for the pixels of a map."""
-    overlap = np.float32(0.0)
-    for k in range(len(values)):
-        overlap += values[k] * math.sqrt(np.float32(counts[k]))
-    return min(overlap / np.float32(math.sqrt(max(total, 1))), np.float32(1.0))
 
 
 @inlined
@@ -335,25 +324,4 @@ def compare_joint(
         cells = joint_cells(frame[top : y + above + 1, left : x + beside + 1], bits, table)
         rectangle = np.array([[0, 0, cells.shape[2], cells.shape[1]]])
         result[i] = compare_rectangles(cells, rectangle, scale, counts[i : i + 1])[0]
-    return result
-
-
-@compiled(types.float32[:, ::1](CELLS, QUAD, REACH, _VALUES))
-def map_windows(cells: Cells, extent: tuple[int, int, int, int], reach: Reach, values: Map) -> Map:
-    """Compare the windows around all pixels from x0, y0 to before x1, y1 of a region."""
-    planes, height, width = cells.shape
-    x0, y0, x1, y1 = extent
-    left, right, up = reach
-    columns, sums, rows = _cleared(width, len(values))
-    result = np.empty((y1 - y0, x1 - x0), np.float32)
-    for y in range(y0, y1):
-        top, bottom = max(y - up, 0), min(y + up + 1, height)
-        _follow_rows(columns, cells, rows, top, bottom)
-        _gather(sums, columns, max(x0 - left, 0), min(x0 + right, width))
-        for x in range(x0, x1):
-            if x > x0:
-                _shift(sums, columns, x - left - 1, x + right - 1)
-            across = min(x + right, width) - max(x - left, 0)
-            total = planes * across * (bottom - top)
-            result[y - y0, x - x0] = _overlap_single(sums, values, total)
     return result
