@@ -28,9 +28,9 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.flow import PointFlow
-from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE, MotionKernels
+from vehicle_pf_tracker.image.kernels.interface import OPENCV, Kernels
+from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE
 
 _LARGEST_SIDE = 320
 """Side in px that a frame is reduced to: the motion of its background is measured to a fraction of
@@ -128,16 +128,14 @@ class CameraMotion:
         return scale == same == 1 and across == down == 0 and not self.shift.any()
 
 
-def fit_camera_motion(
-    before: Array, after: Array, kernels: MotionKernels = shared_motion
-) -> CameraMotion:
+def fit_camera_motion(before: Array, after: Array, kernels: Kernels = OPENCV) -> CameraMotion:
     """Fit a similarity to the motion that most corners share; none for a camera that stands.
 
     Parameters
     ----------
     before, after : (N, 2) arrays
         Corners in both frames, px.
-    kernels : MotionKernels
+    kernels : Kernels
         What fits.
     """
     found = kernels.shared_similarity(before, after)
@@ -149,11 +147,11 @@ class CameraFlow:
 
     Attributes
     ----------
-    kernels : MotionKernels
+    kernels : Kernels
         What fits their motion.
     """
 
-    def __init__(self, kernels: MotionKernels = shared_motion) -> None:
+    def __init__(self, kernels: Kernels = OPENCV) -> None:
         self.kernels = kernels
         self._last: npt.NDArray[np.uint8] | None = None
         self._corners = np.empty((0, 2), np.float32)
