@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motion of the camera, from the flow of corners outside the target.
-
-Reduced grey frames, for measurements that need neither colours nor details.
-"""
+"""Motion of the camera, from the flow of corners outside the target in reduced grey frames."""
 
 from __future__ import annotations
 
@@ -136,7 +133,7 @@ def fit_camera_motion(before: Array, after: Array, kernels: Kernels = OPENCV) ->
     before, after : (N, 2) arrays
         Corners in both frames, px.
     kernels : Kernels
-        What fits.
+        Kernels that fit.
     """
     found = kernels.shared_similarity(before, after)
     return CameraMotion(found[:, :2], found[:, 2])
@@ -148,7 +145,7 @@ class CameraFlow:
     Attributes
     ----------
     kernels : Kernels
-        What fits their motion.
+        Kernels that fit the motion of the corners.
     """
 
     def __init__(self, kernels: Kernels = OPENCV) -> None:

@@ -87,7 +87,7 @@ class PointFlow:
         moved, found
             As from `follow`; found both ways.
         error : (N, 2) array
-            Where the way back ends, relative to where it should.
+            Offset of the end of the way back from where it should be.
         """
         moved, found = self.follow(before, after, points, guess)
         back = None if guess is None else points

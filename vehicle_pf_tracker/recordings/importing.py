@@ -93,8 +93,9 @@ def expected_size(
     first = next(footage.frames(), None)
     if first is None:
         return None
-    stored = _stored(first, format)
-    return ExpectedSize(stored.size, footage.frame_count, not stored.kind)
+    coded = _coded(first, format)
+    size = len(coded[1]) if coded else first.frame.nbytes
+    return ExpectedSize(size, footage.frame_count, is_raw=coded is None)
 
 
 def _check_format(name: str | None) -> None:
@@ -143,7 +144,10 @@ def import_recording(
     with RecordingWriter(out, overwrite=overwrite) as writer:
         for picture in footage.frames():
             size = _check_size(picture, size if frames else frame_size(picture.frame))
-            _write_picture(writer, picture, _stored(picture, format))
+            if coded := _coded(picture, format):
+                writer.write_compressed(picture.stamp_ns, *coded)
+            else:
+                writer.write_image(picture.stamp_ns, picture.frame)
             if picture.truth is not None:
                 writer.write_truth(picture.truth)
                 truths += 1
@@ -172,28 +176,13 @@ def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:
     return size
 
 
-@dataclass(frozen=True, slots=True)
-class _Stored:
-    """A picture as it is stored: the kind and bytes of its file, or neither for its pixels."""
-
-    kind: str
-    coded: bytes
-    size: int
-
-
-def _stored(picture: Picture, wanted: str | None) -> _Stored:
+def _coded(picture: Picture, wanted: str | None) -> tuple[str, bytes] | None:
+    """Kind and bytes of the file that a picture is stored as; None where its pixels are."""
     if wanted == "raw" or (wanted is None and picture.coded_format == "png"):
-        return _Stored("", b"", picture.frame.nbytes)
-    kind = picture.coded_format or "jpeg"
-    coded = picture.coded if picture.coded_format else jpeg(picture.frame)
-    return _Stored(kind, coded, len(coded))
-
-
-def _write_picture(writer: RecordingWriter, picture: Picture, stored: _Stored) -> None:
-    if stored.kind:
-        writer.write_compressed(picture.stamp_ns, stored.kind, stored.coded)
-    else:
-        writer.write_image(picture.stamp_ns, picture.frame)
+        return None
+    if picture.coded_format:
+        return picture.coded_format, picture.coded
+    return "jpeg", jpeg(picture.frame)
 
 
 def folder_size(folder: Path) -> int:

@@ -265,7 +265,7 @@ def compare_windows(
     Parameters
     ----------
     cells, pixels : (P, H, W) array, (N, 2) array
-        Of the region that all windows cover; centre x, y of each window in the frame.
+        Cells of the region that all windows cover; centre x, y of each window in the frame.
     extent, origin : tuples of int
         Least x and y, largest x and y of `pixels`; x, y of the region's first pixel in the frame.
     reach : (int, int, int)
