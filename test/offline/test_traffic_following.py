@@ -25,7 +25,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.traffic_files import TrackFiles
 from vehicle_pf_tracker.offline.traffic_following import Target, TrafficRun
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
-from vehicle_pf_tracker.recordings.footage import StampedFrame
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.failures import TrackerError
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections

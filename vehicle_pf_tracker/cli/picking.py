@@ -40,8 +40,8 @@ from vehicle_pf_tracker.cli.targets import TargetOption, has_display
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.output_files import write_text
-from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.importing import jpeg
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.road.calibration import parse_pairs
 from vehicle_pf_tracker.road.plane import Pair

@@ -62,7 +62,7 @@ from vehicle_pf_tracker.offline.run_folder import (
     describe_run,
 )
 from vehicle_pf_tracker.offline.video_writer import NO_ENCODER, has_encoder
-from vehicle_pf_tracker.recordings.footage import StampedFrame
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source, open_source
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 

@@ -36,7 +36,7 @@ from vehicle_pf_tracker.cli.parameter_options import ParameterOptions
 from vehicle_pf_tracker.cli.requests import option, switch
 from vehicle_pf_tracker.cli.shared_options import OverwriteOption, SourceOptions
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.footage import StampedFrame
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Moment, Source, numbered_part
 
 T = TypeVar("T")

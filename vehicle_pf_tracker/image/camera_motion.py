@@ -25,9 +25,9 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.flow import PointFlow
-from vehicle_pf_tracker.image.kernels.interface import OPENCV, Kernels
-from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE
+from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE, MotionKernels
 
 _LARGEST_SIDE = 320
 """Side in px that a frame is reduced to: the motion of its background is measured to a fraction of
@@ -125,14 +125,16 @@ class CameraMotion:
         return scale == same == 1 and across == down == 0 and not self.shift.any()
 
 
-def fit_camera_motion(before: Array, after: Array, kernels: Kernels = OPENCV) -> CameraMotion:
+def fit_camera_motion(
+    before: Array, after: Array, kernels: MotionKernels = shared_motion
+) -> CameraMotion:
     """Fit a similarity to the motion that most corners share; none for a camera that stands.
 
     Parameters
     ----------
     before, after : (N, 2) arrays
         Corners in both frames, px.
-    kernels : Kernels
+    kernels : MotionKernels
         Kernels that fit.
     """
     found = kernels.shared_similarity(before, after)
@@ -144,11 +146,11 @@ class CameraFlow:
 
     Attributes
     ----------
-    kernels : Kernels
+    kernels : MotionKernels
         Kernels that fit the motion of the corners.
     """
 
-    def __init__(self, kernels: Kernels = OPENCV) -> None:
+    def __init__(self, kernels: MotionKernels = shared_motion) -> None:
         self.kernels = kernels
         self._last: npt.NDArray[np.uint8] | None = None
         self._corners = np.empty((0, 2), np.float32)

@@ -37,10 +37,9 @@ from vehicle_pf_tracker.offline.drawing import COLOURS, NEUTRAL, line_width_of
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
-from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.messages import as_token
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
 from vehicle_pf_tracker.recordings.topics import (
     DIAGNOSTIC_ARRAY,
     POINT_STAMPED,

@@ -30,7 +30,7 @@ from vehicle_pf_tracker.offline.driver import OfflineTracker
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame
 from vehicle_pf_tracker.offline.video_writer import VideoWriter, video_writer
-from vehicle_pf_tracker.recordings.footage import StampedFrame
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 
 Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
 Draw: TypeAlias = Callable[[], Frame]

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.offline.following import RATE_FRAMES, Pictures, frame_ra
 from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, annotated
 from vehicle_pf_tracker.offline.traffic_files import TrackFiles
 from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
-from vehicle_pf_tracker.recordings.footage import StampedFrame
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.failures import TrackerError
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections

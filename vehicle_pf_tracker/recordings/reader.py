@@ -40,6 +40,8 @@ from vehicle_pf_tracker.recordings.topic_table import (
     list_topics,
 )
 
+__all__ = ["RecordedMessage", "Recording", "StampedFrame"]
+
 _UNREADABLE_IN_A_ROW = 10
 """Unreadable images at the beginning after which reading stops: a recording of another encoding
 fails after a third of a second of video, and one damaged image does not end it."""

@@ -160,7 +160,3 @@ class Kernels:
     ) -> Positions:
         """Move every position one mean-shift step; see `image.mean_shift`."""
         return mean_shift.mean_shift(frame, positions, window, reference.histogram, feature.bits)
-
-
-OPENCV = Kernels()
-"""Kernels for whoever is given none."""

@@ -29,10 +29,10 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.kernels.interface import OPENCV, Kernels
-from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, Flow
+from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, Flow, MotionKernels
 
 _KEPT = 8
 """Patches kept; by less than half a canonical px per frame a vehicle is taken to stand."""
@@ -81,7 +81,7 @@ class SurfaceFlow:
 
     Attributes
     ----------
-    kernels : Kernels
+    kernels : MotionKernels
         What counts the points.
     share : float
         Share of the points in the box that move with the vehicle, of the usual share; 1 where flow
@@ -90,7 +90,7 @@ class SurfaceFlow:
         True where flow told something when it was last asked.
     """
 
-    def __init__(self, kernels: Kernels = OPENCV) -> None:
+    def __init__(self, kernels: MotionKernels = shared_motion) -> None:
         self.kernels = kernels
         self._usual = 0.0
         self._latest = 1.0

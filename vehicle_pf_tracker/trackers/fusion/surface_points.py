@@ -28,9 +28,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.flow import Found, PointFlow, Points
-from vehicle_pf_tracker.image.kernels.interface import OPENCV, Kernels
+from vehicle_pf_tracker.image.shared_motion import MotionKernels
 
 _GRID = 6
 """Points along each axis of a set: two thirds of 36 may be lost until they tell no more of the size
@@ -74,13 +75,13 @@ class SurfacePoints:
 
     Attributes
     ----------
-    kernels : Kernels
+    kernels : MotionKernels
         What fits the motion of points.
     stretch : (2,) array
         Change of the logarithm of width and height in the last frame by the points' spread.
     """
 
-    def __init__(self, kernels: Kernels = OPENCV) -> None:
+    def __init__(self, kernels: MotionKernels = shared_motion) -> None:
         self.kernels = kernels
         self._previous: tuple[Patch, Array] | None = None
         self.restart()
