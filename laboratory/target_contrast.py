@@ -44,7 +44,7 @@ def measured(folder: Path) -> tuple[list[float], list[float]]:
     """Return the contrasts of true boxes and of thrown ones in a sequence."""
     rng = np.random.default_rng(0)
     true, thrown = [], []
-    for index, picture in enumerate(FrameFolder(folder).pictures()):
+    for index, picture in enumerate(FrameFolder(folder).frames()):
         truth = picture.truth
         if index % EVERY or truth is None or truth.occlusion is Occlusion.TOTAL:
             continue

@@ -26,7 +26,6 @@ from benchmarks.bench.interleaving import Work, compare
 from benchmarks.bench.material import clouds, drive, enlarged
 from benchmarks.bench.routes import Route, routes, three_references
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Positions, Window
 
@@ -64,8 +63,6 @@ def contests(route: Route) -> dict[str, Callable[[], tuple[Work, Work]]]:
     }
     made[f"{route.name}/joint512/41x31/1080p-over-vga/n200"] = _sizes(route)
     made[f"{route.name}/three_features/41x31/vga/n200"] = _three(route)
-    if route.name == "kernel":
-        made["kernel/map512/41x31/vga/over-opencv"] = _map(route)
     return made
 
 
@@ -102,19 +99,6 @@ def _three(route: Route) -> Callable[[], tuple[Work, Work]]:
         return (
             lambda number: route.three(*inputs.at(number), references),
             lambda number: naive.three_similarities(*inputs.at(number), histograms),
-        )
-
-    return make
-
-
-def _map(route: Route) -> Callable[[], tuple[Work, Work]]:
-    def make() -> tuple[Work, Work]:
-        inputs = _inputs("vga", "41x31", 1)
-        reference = Reference(naive.joint_histogram(inputs.frames[0], *_target(), inputs.window))
-        opencv = Route("kernel-opencv", load_kernels("opencv"))
-        return (
-            lambda number: route.map(inputs.at(number)[0], inputs.window, reference),
-            lambda number: opencv.map(inputs.at(number)[0], inputs.window, reference),
         )
 
     return make

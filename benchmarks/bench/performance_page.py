@@ -56,8 +56,7 @@ _KERNELS = f"""## Windows measured at once
 
 The baseline measures each particle on its own: one crop, one `cv2.calcHist` of 8x8x8 bins (or the
 three features of `mfpf`) and one coefficient. `kernel` runs with numba, `kernel-opencv` without;
-`1080p-over-vga` compares image sizes, and `map512` measures a window at every pixel, with numba and
-without.
+`1080p-over-vga` compares image sizes.
 
 ![Times faster than the baseline, by particles]({IMAGES}/kernels.svg)
 """
@@ -97,7 +96,6 @@ def page(results: Results) -> str:
         _pivot(_costs(results), "change"),
         _KERNELS,
         _pivot(_kernels(results), "case"),
-        _pixel_maps(results),
         _NODES,
         _cases(results, "node/", "startup/"),
         _deliveries(results),
@@ -178,11 +176,6 @@ def _pivot(cells: _Cells, corner: str) -> str:
 
 def _ratio_and_time(case: Case) -> str:
     return f"{_ratio(case)}; {_digits(case.ours_ms)} ms"
-
-
-def _pixel_maps(results: Results) -> str:
-    found = [case for case in results.cases if case.name.startswith("kernel/map512/")]
-    return "".join(f"`{case.name}`: {_ratio_and_time(case)}.\n" for case in found)
 
 
 def _cases(results: Results, *prefixes: str) -> str:

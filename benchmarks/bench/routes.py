@@ -26,7 +26,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
-from vehicle_pf_tracker.image.kernels.interface import Kernels, SimilarityMap
+from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
 from vehicle_pf_tracker.image.window import Positions, Window
@@ -45,10 +45,6 @@ class Route(NamedTuple):
     ) -> Array:
         """Similarity of the 512-bin histograms, shape (N,)."""
         return self.kernels.similarity(JointColour(3), frame, positions, window, reference)
-
-    def map(self, frame: Frame, window: Window, reference: Reference) -> SimilarityMap:
-        """Similarity of the windows around all pixels, shape (H, W)."""
-        return self.kernels.similarity_map(JointColour(3), frame, window, reference)
 
     def three(
         self, frame: Frame, positions: Positions, window: Window, references: list[Reference]

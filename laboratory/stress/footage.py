@@ -143,7 +143,7 @@ def open_footage(source: Source) -> StressFootage:
 def _open_folder(source: Source, path: Path) -> StressFootage:
     folder = FrameFolder(path)
     files = list(folder.images.values())
-    rows = [folder.truth.get(number) for number in folder.images]
+    rows = [folder.rows.get(number) for number in folder.images]
     truth = tuple(
         None if row is None else Truth(stamp_of(i, folder.fps), row.box, row.occlusion)
         for i, row in enumerate(rows)
@@ -177,7 +177,7 @@ def _open_recording(source: Source, path: Path) -> StressFootage:
 def _describe(name: str, path: Path) -> Source:
     if _is_frame_folder(path):
         folder = FrameFolder(path)
-        if not folder.truth:
+        if not folder.rows:
             raise InputError(f"the frame folder {path} has no truth to compare with")
         files = [*folder.images.values(), path / "groundtruth.csv", path / "sequence.json"]
         unsized = Source(name, str(path.absolute()), "", len(folder.images), 0, 0, _digest(files))

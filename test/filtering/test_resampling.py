@@ -43,12 +43,6 @@ class LowestDraw:
 
 
 @every_scheme
-def test_all_weight_on_one_particle_draws_only_that(scheme):
-    ancestors = scheme(np.array([0.0, 0.0, 1.0, 0.0]), 7, np.random.default_rng(0))
-    assert ancestors.tolist() == [2] * 7
-
-
-@every_scheme
 def test_a_draw_of_zero_steps_over_leading_particles_without_weight(scheme):
     assert scheme(np.array([0.0, 0.5, 0.5]), 3, LowestDraw()).min() == 1
 

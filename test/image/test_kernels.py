@@ -24,7 +24,6 @@ from vehicle_pf_tracker.image import kernels
 from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections, direction_bins
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
-from vehicle_pf_tracker.image.kernels.interface import PixelRange
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence
@@ -105,32 +104,6 @@ def test_counts_are_equal_and_similarities_agree(numba, feature, data, frame, wi
     assert np.array_equal(similarities, again)
 
 
-def whole_or_part(draw, frame):
-    height, width = frame.shape[:2]
-    if draw(st.booleans()):
-        return None
-    left, top = draw(st.integers(0, width - 1)), draw(st.integers(0, height - 1))
-    right, bottom = draw(st.integers(left + 1, width)), draw(st.integers(top + 1, height))
-    return PixelRange(left, top, right, bottom)
-
-
-@pytest.mark.parametrize("name", ["opencv", "numba"])
-@settings(max_examples=60)
-@given(data=st.data(), frame=scenes, window=windows, bits=st.sampled_from([1, 3, 5]))
-def test_a_map_has_the_similarity_around_every_pixel(request, name, data, frame, window, bits):
-    chosen = OPENCV if name == "opencv" else request.getfixturevalue(name)
-    feature = JointColour(bits)
-    reference = Reference(feature.histograms(frame, data.draw(clouds(frame))[:1], window)[0])
-    part = whole_or_part(data.draw, frame)
-    found = chosen.similarity_map(feature, frame, window, reference, part)
-    left, top, right, bottom = part or (0, 0, frame.shape[1], frame.shape[0])
-    assert found.shape == (bottom - top, right - left)
-    y, x = np.mgrid[top:bottom, left:right]
-    pixels = np.column_stack([x.ravel(), y.ravel()]) + 0.5
-    expected = OPENCV.similarity(feature, frame, pixels, window, reference)
-    assert np.abs(found.ravel() - expected).max() < 1e-6
-
-
 @pytest.mark.parametrize("name", ["opencv", "numba"])
 def test_nothing_is_like_an_empty_reference(request, name):
     chosen = OPENCV if name == "opencv" else request.getfixturevalue(name)
@@ -140,8 +113,6 @@ def test_nothing_is_like_an_empty_reference(request, name):
         reference = Reference(np.zeros(feature.bins))
         similarity = chosen.similarity(feature, frame, positions, window, reference)
         assert np.array_equal(similarity, np.zeros(20))
-    reference = Reference(np.zeros(512))
-    assert not chosen.similarity_map(JointColour(3), frame, window, reference).any()
 
 
 @settings(max_examples=80)
@@ -186,11 +157,6 @@ def test_one_pixel_windows_ask_for_the_pixels_own_bin(numba):
     pixels = np.array([[2.5, 1.5], [1.5, 1.5], [2.9, 1.9], [40.0, 1.5]])
     similarity = numba.similarity(JointColour(3), frame, pixels, Window(0, 0), reference)
     assert similarity.tolist() == [1.0, 0.0, 1.0, 0.0]
-    expected = np.zeros((3, 4), np.float32)
-    expected[1, 2] = 1.0
-    assert np.array_equal(
-        numba.similarity_map(JointColour(3), frame, Window(0, 0), reference), expected
-    )
 
 
 def test_a_window_larger_than_the_table_of_roots_is_compared_alike(numba):

@@ -115,14 +115,6 @@ def test_a_short_line_is_left_out():
     assert len(LineDetector(150.0, 20).detect(frame, rectangle)) == 0
 
 
-def test_the_frame_is_read_from_a_strided_view():
-    wide = np.zeros((60, 100, 3), np.uint8)
-    wide[20:40, 10:50] = 200
-    rectangle = windows((0, 0, 80, 60))
-    view, copy = wide[:, :80], np.ascontiguousarray(wide[:, :80])
-    assert np.array_equal(DETECTOR.detect(view, rectangle), DETECTOR.detect(copy, rectangle))
-
-
 def test_segments_go_through_the_centres_of_pixels():
     frame = np.zeros((60, 80, 3), np.uint8)
     frame[:, 40:] = 255  # the gradient is largest in the columns 39 and 40

@@ -120,16 +120,6 @@ def test_many_windows_at_once_are_each_as_alone():
         )
 
 
-def test_similarity_agrees_with_the_histograms():
-    rng = np.random.default_rng(1)
-    frame = rng.integers(0, 256, (40, 60, 3), dtype=np.uint8)
-    window = Window(5, 7)
-    reference = kernel_histogram(frame, (20.0, 20.0), window, 1)
-    other = kernel_histogram(frame, (33.0, 3.0), window, 1)
-    rho = kernel_similarity(frame, np.array([[33.0, 3.0]]), window, reference, 1)
-    assert rho == pytest.approx([np.sqrt(reference * other).sum()])
-
-
 def test_steps_end_on_the_patch():
     frame = np.zeros((60, 80, 3), np.uint8)
     frame[20:31, 30:45] = RED

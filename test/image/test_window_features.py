@@ -65,15 +65,6 @@ def test_a_window_is_most_alike_to_itself(feature):
 
 
 @every_feature
-def test_a_reference_without_any_bin_is_similar_to_nothing(feature):
-    positions = np.array([[4.0, 4.0], [5.0, 4.0]])
-    similarity = feature.similarity(
-        noise(3, (9, 9)), positions, Window(2, 2), Reference(np.zeros(feature.bins))
-    )
-    assert similarity.tolist() == [0.0, 0.0]
-
-
-@every_feature
 @pytest.mark.parametrize("view", ["mirrored", "channels swapped", "cropped"])
 def test_strided_views_give_what_their_copies_give(feature, view):
     whole = noise(4, (40, 50))

@@ -57,9 +57,14 @@ class BareMcap:
             schema_id = self.writer.register_schema(type_name, "ros2msg", text.encode())
         return self.writer.register_channel(topic, encoding, schema_id)
 
-    def image(self, channel, index, log_time=None):
-        message = messages.image(stamp_of(index), frame_of(index))
+    def image(self, channel, index, log_time=None, **shape):
+        message = messages.image(stamp_of(index), frame_of(index, **shape))
         self.add(channel, stamp_of(index) if log_time is None else log_time, message, topics.IMAGE)
+
+    def images(self, indices, **shape):
+        camera = self.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+        for index in indices:
+            self.image(camera, index, **shape)
 
     def add(self, channel, log_time, message, type_name):
         self.raw(channel, log_time, bytes(serialize(message, type_name)))

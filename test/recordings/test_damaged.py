@@ -53,9 +53,7 @@ def wholes(tmp_path_factory):
     files = Wholes()
     for number, layout in enumerate(LAYOUTS):
         bag = BareMcap(tmp_path_factory.mktemp("whole") / f"{number}.mcap", **layout)
-        camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
-        for index in range(COUNT):
-            bag.image(camera, index)
+        bag.images(range(COUNT))
         files.append(bag.close().read_bytes())
     return files
 
@@ -94,10 +92,7 @@ def test_no_whole_image_before_the_cut_is_lost(wholes, tmp_path, layout):
 def test_the_images_at_the_beginning_of_a_cut_compressed_chunk_are_used(tmp_path, compression):
     """One chunk of 40 images of 12 kB; what is decoded comes in blocks of up to 128 kB."""
     bag = BareMcap(tmp_path / "cut.mcap", compression=compression, chunk_size=10**6)
-    camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
-    for index in range(40):
-        message = messages.image(stamp_of(index), frame_of(index, 64, 64))
-        bag.add(camera, stamp_of(index), message, topics.IMAGE)
+    bag.images(range(40), height=64, width=64)
     whole = bag.close().read_bytes()
     bag.path.write_bytes(whole[: int(0.8 * len(whole))])
     assert 20 <= len(stamps(Recording(bag.path))) <= 32

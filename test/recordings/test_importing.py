@@ -29,7 +29,6 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.recordings import topics
-from vehicle_pf_tracker.recordings.footage import stamp_of
 from vehicle_pf_tracker.recordings.importing import import_recording
 from vehicle_pf_tracker.recordings.reader import Recording
 
@@ -126,14 +125,6 @@ def test_truth_is_exact_and_rows_without_a_box_are_no_truth(frame_folder, tmp_pa
     assert (summary.frames, summary.truths) == (6, 1)
 
 
-def test_progress_counts_to_the_total(frame_folder, tmp_path):
-    seen = []
-    import_recording(
-        frame_folder(), tmp_path / "bag", progress=lambda done, total: seen.append((done, total))
-    )
-    assert seen == [(1, 3), (2, 3), (3, 3)]
-
-
 @pytest.mark.parametrize(
     ("truth", "said"),
     [
@@ -159,22 +150,6 @@ def test_truth_that_is_no_text_is_named(frame_folder, tmp_path):
     folder = frame_folder()
     (folder / "groundtruth.csv").write_bytes(b"\xff\xfe\x00\x80")
     with pytest.raises(InputError, match="not a text table"):
-        import_recording(folder, tmp_path / "bag")
-
-
-@pytest.mark.parametrize("fps", [0, -1, "fast", True, None, float("nan")])
-def test_a_faulty_frame_rate_is_named(frame_folder, tmp_path, fps):
-    folder = frame_folder()
-    (folder / "sequence.json").write_text(json.dumps({"fps": fps}))
-    with pytest.raises(InputError, match=r"sequence\.json must be a number from"):
-        import_recording(folder, tmp_path / "bag")
-
-
-@pytest.mark.parametrize("text", ["", "[1]", "3", "{}", "not json"])
-def test_a_lacking_frame_rate_is_named(frame_folder, tmp_path, text):
-    folder = frame_folder()
-    (folder / "sequence.json").write_text(text)
-    with pytest.raises(InputError, match="does not state the frame rate"):
         import_recording(folder, tmp_path / "bag")
 
 
@@ -277,12 +252,6 @@ def test_a_video_shorter_than_it_states_is_imported_with_a_notice(video, tmp_pat
     assert "states 20 frames" in summary.notices[0]
 
 
-def test_truth_of_a_video_up_to_its_last_frame(video, tmp_path):
-    (tmp_path / "truth.csv").write_text("frame,x,y,w,h\n1,2,3,4,5\n20,3,3,4,5\n21,4,3,4,5\n")
-    summary = import_recording(video, tmp_path / "bag", truth=tmp_path / "truth.csv")
-    assert (summary.truths, summary.notices) == (2, ("frames of the truth without an image: 1",))
-
-
 def sequence_folders():
     return sorted(SEQUENCES.glob("*/*/sequence.json"))
 
@@ -338,10 +307,3 @@ def test_a_table_of_truth_is_for_videos_alone(frame_folder, video, tmp_path):
         import_recording(
             frame_folder(), tmp_path / "bag", truth=truth_file(tmp_path, "1,2,3,8,6,0")
         )
-
-
-def test_stamps_are_rounded_to_the_nearest_nanosecond():
-    # A period of 666 666 666.67 ns.
-    assert [stamp_of(index, 1.5) for index in (1, 2, 3)] == [
-        1_666_666_667, 2_333_333_333, 3_000_000_000,
-    ]  # fmt: skip

@@ -26,7 +26,7 @@ import pytest
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.importing import import_recording
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.source import FootageSource, open_source
+from vehicle_pf_tracker.recordings.source import open_source
 from vehicle_pf_tracker.recordings.video import VideoFile
 
 START = 1_000_000_000
@@ -109,7 +109,7 @@ def test_the_truth_of_a_folder_is_known_before_it_is_read(tmp_path):
 def test_a_video_of_an_even_rate_keeps_to_it_to_the_nanosecond(tmp_path):
     source = open_source(write_video(tmp_path / "v.avi", fps=30))
     assert stamps(source) == [round(n * 1e9 / 30) for n in range(6)]
-    assert isinstance(source, FootageSource)
+    assert isinstance(source, VideoFile)
 
 
 def test_a_rate_given_takes_the_place_of_the_one_stated(tmp_path):
@@ -139,7 +139,7 @@ def test_the_times_of_a_variable_rate_are_kept(tmp_path, monkeypatch):
     video = VideoFile(write_video(tmp_path / "v.avi"))
     video.fps = 1000 / 60
     monkeypatch.setattr(video, "_open", lambda: StatedTimes([0.0, 40.0, 120.0, 160.0, 240.0]))
-    assert [p.stamp_ns - START for p in video.pictures()] == [
+    assert [p.stamp_ns - START for p in video.frames()] == [
         0, 40_000_000, 120_000_000, 160_000_000, 240_000_000
     ]  # fmt: skip
 
@@ -148,9 +148,9 @@ def test_times_that_go_back_are_replaced_and_counted(tmp_path, monkeypatch):
     video = VideoFile(write_video(tmp_path / "v.avi"))
     monkeypatch.setattr(video, "_open", lambda: StatedTimes([0.0, 0.0, 0.0, 500.0]))
     video.fps = 100.0
-    found = [p.stamp_ns - START for p in video.pictures()]
+    found = [p.stamp_ns - START for p in video.frames()]
     assert found == [0, 10_000_000, 20_000_000, 500_000_000]
-    assert any("for 2 frames" in notice for notice in video.notices())
+    assert any("for 2 frames" in notice for notice in video.notices)
 
 
 def test_recordings_are_opened_as_such(tmp_path):

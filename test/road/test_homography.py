@@ -18,7 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.homography import Homography, fit_homography, oriented
+from vehicle_pf_tracker.road.plane import Homography, fit_homography, oriented
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])
 

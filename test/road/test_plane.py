@@ -92,15 +92,10 @@ def test_too_far_away_is_said():
     assert "too far away" in plane.objection(plane.to_image(np.array([0.0, 95.0])))
 
 
-@pytest.mark.parametrize(
-    ("camera", "words"),
-    [
-        (Pose(pose().rotation, np.array([0.0, 0.0, -1.0])), "above it"),
-        (Pose(pose().rotation, np.array([0.0, 0.0, 0.0])), "above it"),
-    ],
-)
-def test_cameras_that_see_no_road(camera, words):
-    with pytest.raises(InputError, match=words):
+@pytest.mark.parametrize("height", [-1.0, 0.0])
+def test_cameras_that_see_no_road(height):
+    camera = Pose(pose().rotation, np.array([0.0, 0.0, height]))
+    with pytest.raises(InputError, match="above it"):
         RoadPlane.of_camera(LENS, camera, coarsest=1.0)
 
 

@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motion of the camera, from the flow of corners outside the target.
-
-Reduced grey frames, for measurements that need neither colours nor details.
-"""
+"""Motion of the camera, from the flow of corners outside the target in reduced grey frames."""
 
 from __future__ import annotations
 
@@ -29,6 +26,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image import shared_motion
+from vehicle_pf_tracker.image.flow import PointFlow
 from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE, MotionKernels
 
 _LARGEST_SIDE = 320
@@ -93,9 +91,7 @@ _NEIGHBOURHOOD = 5
 """Side in px of the window over which changes around a corner are averaged, as noise cancels."""
 _CLEARANCE = 0.75
 """Distance of corners from the target's centre, of its size: half of it, and a margin."""
-_CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 10, 0.03)
-_FLOW = {"winSize": (9, 9), "maxLevel": 3, "criteria": _CRITERIA,
-         "flags": cv2.OPTFLOW_USE_INITIAL_FLOW}  # fmt: skip
+_FLOW = PointFlow(window=9, levels=3, steps=10, precision=0.03)
 """Windows of 13 px cost twice as much, and are no nearer to what 300 corners give."""
 
 
@@ -139,7 +135,7 @@ def fit_camera_motion(
     before, after : (N, 2) arrays
         Corners in both frames, px.
     kernels : MotionKernels
-        What fits.
+        Kernels that fit.
     """
     found = kernels.shared_similarity(before, after)
     return CameraMotion(found[:, :2], found[:, 2])
@@ -151,13 +147,13 @@ class CameraFlow:
     Attributes
     ----------
     kernels : MotionKernels
-        What fits their motion.
+        Kernels that fit the motion of the corners.
     """
 
     def __init__(self, kernels: MotionKernels = shared_motion) -> None:
         self.kernels = kernels
         self._last: npt.NDArray[np.uint8] | None = None
-        self._corners = np.empty((0, 1, 2), np.float32)
+        self._corners = np.empty((0, 2), np.float32)
         self._age = 0.0
         self._still = 0
         self._motion = CameraMotion()
@@ -187,10 +183,11 @@ class CameraFlow:
             self._age += _WEAR_IN_PLACE - 1
             self._still += 1
             return CameraMotion()
-        moved, found = _track(last, reduced, corners, self._motion)
-        kept = found.ravel() > 0
-        self._corners = np.ascontiguousarray(moved[kept])
-        before, after = (ends[kept, 0].astype(np.float64) for ends in (corners, moved))
+        # The search starts where the motion of the frame before would take the corners.
+        guess = self._motion.apply(corners.astype(np.float64)).astype(np.float32)
+        moved, found = _FLOW.follow(last, reduced, corners, guess)
+        self._corners = moved[found]
+        before, after = (ends[found].astype(np.float64) for ends in (corners, moved))
         motion = fit_camera_motion(before, after, self.kernels)
         self._motion = motion
         if motion.still:
@@ -202,11 +199,11 @@ class CameraFlow:
     def _background(
         self, grey: npt.NDArray[np.uint8], target: Box, zoom: float
     ) -> npt.NDArray[np.float32]:
-        """Corners outside the target, found again now and then, (N, 1, 2)."""
+        """Corners outside the target, found again now and then, (N, 2)."""
         self._age += 1
         if self._age >= _REFRESHED_AFTER or len(self._corners) < _GRID[0] * _GRID[1] // 3:
             self._corners, self._age = _find_corners(grey), 0.0
-        x, y = self._corners[:, 0, 0] / zoom, self._corners[:, 0, 1] / zoom
+        x, y = self._corners[:, 0] / zoom, self._corners[:, 1] / zoom
         middle_x, middle_y = target.centre
         outside = np.abs(x - middle_x) > _CLEARANCE * target.width
         outside |= np.abs(y - middle_y) > _CLEARANCE * target.height
@@ -219,7 +216,7 @@ def _stand(
     """Test whether so many corners are unchanged that flow need not be measured: the usual case."""
     height, width = present.shape
     offsets = np.arange(_NEIGHBOURHOOD) - _NEIGHBOURHOOD // 2
-    pixels = np.rint(corners + offsets[:, np.newaxis]).astype(np.intp)
+    pixels = np.rint(corners[:, np.newaxis] + offsets[:, np.newaxis]).astype(np.intp)
     columns = np.minimum(np.maximum(pixels[..., 0], 0), width - 1)[:, np.newaxis]
     rows = np.minimum(np.maximum(pixels[..., 1], 0), height - 1)[:, :, np.newaxis]
     change = cv2.absdiff(last[rows, columns], present[rows, columns])
@@ -227,21 +224,8 @@ def _stand(
     return bool(unchanged.mean() >= STILL_SHARE)
 
 
-def _track(
-    last: npt.NDArray[np.uint8], present: npt.NDArray[np.uint8], corners: npt.NDArray[np.float32],
-    motion: CameraMotion,
-) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:  # fmt: skip
-    """Lucas-Kanade on a pyramid: where the corners are now, and which of them were found.
-
-    The search starts where the motion of the frame before would take them.
-    """
-    guess = motion.apply(corners.astype(np.float64)).astype(np.float32)
-    moved, found, _ = cv2.calcOpticalFlowPyrLK(last, present, corners, guess, **_FLOW)  # type: ignore[call-overload]
-    return np.asarray(moved, np.float32), np.asarray(found, np.uint8)
-
-
 def _find_corners(grey: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
-    """Find the strongest corner of each cell of a grid, (N, 1, 2)."""
+    """Find the strongest corner of each cell of a grid, (N, 2)."""
     strength = cv2.cornerMinEigenVal(grey, 3)
     rows, columns = grey.shape
     wide, high = (columns - 2 * _BORDER) // _GRID[0], (rows - 2 * _BORDER) // _GRID[1]
@@ -252,5 +236,4 @@ def _find_corners(grey: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
     x = _BORDER + (cell % _GRID[0]) * wide + best % wide
     y = _BORDER + (cell // _GRID[0]) * high + best // wide
     strong = flat[cell, best] > _LEAST_STRENGTH
-    corners = np.column_stack([x, y])[strong].astype(np.float32)
-    return np.asarray(corners.reshape(-1, 1, 2), np.float32)
+    return np.asarray(np.column_stack([x, y])[strong], np.float32)

@@ -76,7 +76,7 @@ class CodedImage:
     Attributes
     ----------
     name : str
-        What errors call it.
+        Name in errors.
     size : (int, int)
         Width and height in px, before the file's orientation is applied.
     """

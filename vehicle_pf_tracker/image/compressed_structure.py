@@ -12,9 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Structure of a JPEG file, read from its markers without decoding a pixel.
+"""Structure of JPEG and PNG files, read without decoding a pixel.
 
-Structure of a PNG file: its size, and whether its data are those of such an image.
+A JPEG is read by its markers; a PNG by its chunks, and its data inflate to those of its size or do
+not.
 """
 
 from __future__ import annotations

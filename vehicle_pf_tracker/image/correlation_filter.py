@@ -24,7 +24,7 @@ around it. Each training step solves
 for one image by a few steps of the alternating direction method of multipliers (ADMM); `x` are the
 feature channels, `*` is correlation, and `y` a narrow Gaussian at the target's centre.
 
-Climbing on a map: the best place close to each of some places, in numpy.
+Beside it stands a search on a map: the best position close to each of some positions.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ class CorrelationFilter:
     penalty : float
         First ADMM penalty: the larger, the smoother the filter and the less a step changes it.
     kernels : SpectralKernels
-        What spectra are multiplied with.
+        Products of spectra, in numpy or compiled.
     """
 
     def __init__(self, cells: int, target: Array, penalty: float, kernels: SpectralKernels) -> None:
@@ -129,7 +129,7 @@ class CorrelationFilter:
         Parameters
         ----------
         spectrum : (n, channels, 2, n // 2 + 1) array
-            Of the image's cells.
+            Spectrum of the image's cells.
         stiffness : float
             Resistance against change; the first image is learnt without any.
         """
@@ -221,7 +221,7 @@ def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]
     places : (N, 2) array
         On the map.
     costs : (2 r + 1, 2 r + 1) array
-        Of the moves by up to `r` places, by [y, x].
+        Costs of the moves by up to `r` places, by [y, x].
 
     Returns
     -------

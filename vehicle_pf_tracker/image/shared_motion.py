@@ -160,7 +160,7 @@ def staying(before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
     alive : (N,) array
         False for places that count as lost already.
     strayed : float
-        Distance from where it should be from which on a place does not stay.
+        A place farther than this from where it should be does not stay.
     """
     turn = shared_turn(before[alive], after[alive], strayed)
     off = after - before @ turn
@@ -196,7 +196,7 @@ def carried_share(
     Parameters
     ----------
     flow : (h, w, 2) array of float32
-        Of the image that has the box; see `Flow`.
+        Flow of the image that has the box; see `Flow`.
     cells : (2, 2) array of intp
         The box; see `CellBlock`. Points are the middles of its cells, px.
     places, vehicle : (2, 2) arrays

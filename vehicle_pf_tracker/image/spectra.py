@@ -18,9 +18,8 @@ A filter that is confined to its target has a tenth of the square's cells. Of th
 channels of 32 x 32 cells only so much has to be computed; that takes a quarter of the time of whole
 fast transforms.
 
-Products of spectra over all channels: the inner loops of a correlation filter, in numpy.
-
-The kernels in numba do the same in one pass over memory; see `image.kernels`.
+Products of spectra over all channels are the inner loops of a correlation filter, here in numpy;
+the kernels in numba do the same in one pass over memory (`image.kernels`).
 """
 
 from __future__ import annotations
@@ -160,9 +159,9 @@ class FilterProblem:
     Attributes
     ----------
     spectrum : (n, channels, 2, n // 2 + 1) array
-        Of the image's cells.
+        Spectrum of the image's cells.
     before : array of the same shape
-        Of the filter before; zero where `stiffness` is.
+        Spectrum of the filter before; zero where `stiffness` is.
     label : (n // 2 + 1, n // 2 + 1) array of float32
         Spectrum of the ideal response, which is even and therefore real, over the places.
     stiffness : float
@@ -209,9 +208,9 @@ def take_filter_step(
     Parameters
     ----------
     problem : FilterProblem
-        What is to be solved.
+        Problem to solve.
     penalty : Penalty
-        Of this step.
+        Penalty of this step.
     multiplier : array like the spectrum
         The multiplier with the solution of the step before added, divided by that step's penalty;
         here it becomes that of this step (scaled ADMM).

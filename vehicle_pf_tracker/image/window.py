@@ -12,18 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Windows: the rectangle of pixels around a position from which features are taken.
+"""Windows, and features that describe each window by a histogram.
 
-A window has ``(2 w_x + 1) x (2 w_y + 1)`` pixels, as in P1. Over the border of the image it keeps
-the pixels that exist (interpretation 24).
-
-Interface of image features: histograms of windows, and their similarity.
-
-Counts of chosen bins in many windows at once, in numpy and OpenCV.
-
-Only the region that the windows cover is read, and only the bins asked for are counted. Each bin is
-a plane of zeros and ones, integrated once; a window's count then costs four look-ups. A float64
-represents integers of 53 bits exactly, so that several planes are integrated as one.
+A window is the rectangle of pixels around a position from which features are taken. It has
+``(2 w_x + 1) x (2 w_y + 1)`` pixels, as in P1; over the border of the image it keeps the pixels
+that exist (interpretation 24).
 """
 
 from __future__ import annotations
@@ -226,6 +219,7 @@ def to_grey(pixels: Frame) -> Grey:
 
 Bins: TypeAlias = npt.NDArray[np.intp]
 Counts: TypeAlias = npt.NDArray[np.int64]
+
 
 _MOST_PLANES = 48
 """Bins integrated at once: OpenCV 5 takes 128 channels at most, and small blocks stay cached."""

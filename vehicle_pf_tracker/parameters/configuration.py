@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -80,43 +81,17 @@ class NodeParameters:
 _LARGEST = 1e5
 """Bound of target coordinates in px: three times the largest side of an image (32767 px)."""
 
+_target_number = functools.partial(parameter, 0.0, maximum=_LARGEST, unit="px", effect="starts")
+
 
 @dataclass(frozen=True, slots=True)
 class TargetParameters:
     """The box to start on."""
 
-    x: float = parameter(
-        0.0,
-        "Left edge of the target.",
-        minimum=-_LARGEST,
-        maximum=_LARGEST,
-        unit="px",
-        effect="starts",
-    )
-    y: float = parameter(
-        0.0,
-        "Top edge of the target.",
-        minimum=-_LARGEST,
-        maximum=_LARGEST,
-        unit="px",
-        effect="starts",
-    )
-    width: float = parameter(
-        0.0,
-        "Width of the target; 0 waits for a target.",
-        minimum=0.0,
-        maximum=_LARGEST,
-        unit="px",
-        effect="starts",
-    )
-    height: float = parameter(
-        0.0,
-        "Height of the target; 0 waits for a target.",
-        minimum=0.0,
-        maximum=_LARGEST,
-        unit="px",
-        effect="starts",
-    )
+    x: float = _target_number("Left edge of the target.", minimum=-_LARGEST)
+    y: float = _target_number("Top edge of the target.", minimum=-_LARGEST)
+    width: float = _target_number("Width of the target; 0 waits for a target.", minimum=0.0)
+    height: float = _target_number("Height of the target; 0 waits for a target.", minimum=0.0)
 
     @property
     def box(self) -> Box | None:

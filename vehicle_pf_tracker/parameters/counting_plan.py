@@ -65,17 +65,13 @@ class CountingLine:
 
     def distance(self, point: Position) -> float:
         """Distance of `point` from the endless line in px; positive on the right-hand side."""
-        return self._turn(point) / self.length
+        return _turn(self.start, self.end, point) / self.length
 
     def share(self, point: Position) -> float:
         """Where along the line `point` is: 0 at the start, 1 at the end, beyond them outside."""
         (x, y), (to_x, to_y) = self.start, self.end
         along = (point[0] - x) * (to_x - x) + (point[1] - y) * (to_y - y)
         return along / self.length**2
-
-    def _turn(self, point: Position) -> float:
-        (x, y), (to_x, to_y) = self.start, self.end
-        return (to_x - x) * (point[1] - y) - (to_y - y) * (point[0] - x)
 
 
 @dataclass(frozen=True, slots=True)

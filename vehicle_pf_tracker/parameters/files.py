@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameters to and from ROS parameter files.
-
-YAML as people mean it: no key twice, and nothing that grows without end.
-"""
+"""Parameters to and from ROS parameter files: YAML without repeated keys or aliases."""
 
 from __future__ import annotations
 
@@ -71,7 +68,7 @@ def read_yaml_file(path: Path, what: str) -> Any:
     path : Path
         The file.
     what : str
-        What errors call it.
+        Name of the file in errors.
 
     Raises
     ------

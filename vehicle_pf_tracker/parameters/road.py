@@ -56,16 +56,13 @@ class RoadParameters:
         unit="m",
     )
     from_camera_info: bool = parameter(
-        False,
-        "Nodes: take the lens from the topic camera_info beside the images.",
+        False, "Nodes: take the lens from the topic camera_info beside the images."
     )
     from_tf: bool = parameter(
-        False,
-        "Nodes: take the camera's pose from TF, from road.frame_id to the images' frame.",
+        False, "Nodes: take the camera's pose from TF, from road.frame_id to the images' frame."
     )
     rectified: bool = parameter(
-        False,
-        "Images are rectified: camera_info's projection matrix counts, without distortion.",
+        False, "Images are rectified: camera_info's projection matrix counts, without distortion."
     )
     frame_id: str = parameter(
         "road", "Frame that positions on the road are published in; its z = 0 is the road."

@@ -46,6 +46,7 @@ EFFECTS: Mapping[Effect, str] = {
 }
 
 _KEY = "parameter"
+_BOOLEANS = {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}
 _TYPE_NAMES = {bool: "true or false", int: "an integer", float: "a number", str: "a string"}
 
 
@@ -137,10 +138,9 @@ class ParameterSpec:
     def parse(self, text: str) -> Value:
         """Read a value written on a command line."""
         word = text.strip()
-        readers: dict[type, Any] = {bool: _parse_bool, int: int, float: float, str: str}
         try:
-            value = readers[self.kind](word)
-        except ValueError:
+            value = _BOOLEANS[word.lower()] if self.kind is bool else self.kind(word)
+        except (ValueError, KeyError):
             raise InputError(
                 f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {_shown(text)}"
             ) from None
@@ -149,15 +149,6 @@ class ParameterSpec:
 
 def _plain(number: float) -> str:
     return str(int(number)) if float(number).is_integer() else f"{number:g}"
-
-
-def _parse_bool(word: str) -> bool:
-    try:
-        return {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}[
-            word.lower()
-        ]
-    except KeyError:
-        raise ValueError(word) from None
 
 
 def parameter(  # noqa: PLR0913 - one keyword per column of the table

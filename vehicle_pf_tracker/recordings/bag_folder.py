@@ -166,11 +166,6 @@ class _PlainDumper(yaml.SafeDumper):
         return True
 
 
-def qos_text() -> str:
-    """Return the QoS profiles as the text that an MCAP channel carries."""
-    return _dump(RELIABLE_QOS)
-
-
 def bag_information(
     file_name: str, start_ns: int, duration_ns: int, summaries: Sequence[TopicSummary]
 ) -> dict[str, Any]:
@@ -201,16 +196,6 @@ def bag_information(
     }
 
 
-def metadata_yaml(information: dict[str, Any]) -> str:
-    """Return the text of metadata.yaml."""
-    return _dump({"rosbag2_bagfile_information": information})
-
-
-def information_yaml(information: dict[str, Any]) -> str:
-    """Return the text of the copy that rosbag2 keeps inside the MCAP file."""
-    return _dump(information)
-
-
 def _topic(summary: TopicSummary) -> dict[str, Any]:
     return {
         "topic_metadata": {
@@ -224,5 +209,6 @@ def _topic(summary: TopicSummary) -> dict[str, Any]:
     }
 
 
-def _dump(value: Any) -> str:
+def to_yaml(value: Any) -> str:
+    """Return the text of bag information, or of QoS profiles, as rosbag2 writes it."""
     return yaml.dump(value, Dumper=_PlainDumper, sort_keys=False)

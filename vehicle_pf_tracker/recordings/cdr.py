@@ -14,10 +14,8 @@
 
 """ROS messages and their CDR bytes, definitions and hashes, without ROS.
 
-Definitions of the messages that Foxglove draws over images.
-
-They stand in each recording, so that neither writing nor reading one needs the ROS package
-foxglove_msgs.
+The definitions of the messages that Foxglove draws over images stand here and in each recording, so
+that neither writing nor reading one needs the ROS package foxglove_msgs.
 """
 
 from __future__ import annotations

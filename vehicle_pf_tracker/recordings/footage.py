@@ -12,16 +12,16 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The input of an importer: pictures with their times, and the truth where it is known."""
+"""Images with their times, as any source yields them, and footage with its truth."""
 
 from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -40,13 +40,19 @@ LAST_STAMP_NS = (2**31 - 1) * 10**9
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class StampedFrame:
+    """An image and the stamp of its header in ns; no frame where it cannot be read."""
+
+    stamp_ns: int
+    frame: Frame | None
+
+
+@dataclass(frozen=True, slots=True)
+class Picture(StampedFrame):
     """One image of the footage.
 
     Attributes
     ----------
-    stamp_ns : int
-        Stamp in ns.
     frame : Frame
         Pixels of the image.
     name : str
@@ -59,7 +65,6 @@ class Picture:
         True state of the vehicle; None where it is unknown.
     """
 
-    stamp_ns: int
     frame: Frame
     name: str
     coded_format: str | None = None
@@ -67,23 +72,39 @@ class Picture:
     truth: Truth | None = None
 
 
-class Footage(Protocol):
-    """A source of pictures: `total` of them if known, `fps` per second."""
+class Footage(ABC):
+    """Images of a video file, a folder, a camera or a stream; a source without topics.
 
+    Attributes
+    ----------
+    fps : float
+        Frames per second.
+    frame_count : int or None
+        Number of images; None where it is unknown.
+    """
+
+    image_topic = ""
     fps: float
-    total: int | None
+    frame_count: int | None
 
-    def pictures(self) -> Iterator[Picture]:
-        """Yield the pictures in the order of time; raise `InputError` for one that is broken."""
-        ...
+    @abstractmethod
+    def frames(self) -> Iterator[Picture]:
+        """Yield the images in the order of time.
 
-    def truths(self) -> list[Truth]:
-        """Return the truth that is known before the pictures are read, in the order of time."""
-        ...
+        Raises
+        ------
+        InputError
+            If one is broken.
+        """
 
+    def truth(self) -> Sequence[Truth]:
+        """Return the truth that is known before the images are read, in the order of time."""
+        return ()
+
+    @property
     def notices(self) -> list[str]:
-        """Return irregularities found while reading, a sentence each."""
-        ...
+        """Irregularities, a sentence each; complete when all images are read."""
+        return []
 
 
 def check_fps(fps: float, source: Path | str) -> float:

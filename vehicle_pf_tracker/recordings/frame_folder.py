@@ -27,6 +27,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.footage import (
+    Footage,
     Picture,
     TruthRow,
     check_fps,
@@ -45,7 +46,7 @@ ASSUMED_FPS = 30.0
 """Frame rate of a folder that states none, 1/s; the commonest of video cameras."""
 
 
-class FrameFolder:
+class FrameFolder(Footage):
     """A folder of numbered images with their frame rate, and with truth if there is any.
 
     Images are numbered by the digits that end their names, or by their order where a name has none.
@@ -64,12 +65,8 @@ class FrameFolder:
     ----------
     images : mapping of int to Path
         The image files by their numbers, in order.
-    truth : mapping of int to TruthRow
+    rows : mapping of int to TruthRow
         The truth by the number of its image; empty where there is none.
-    total : int
-        Number of images.
-    fps : float
-        Frames per second.
 
     Raises
     ------
@@ -81,32 +78,33 @@ class FrameFolder:
     def __init__(self, folder: Path, fps: float | None = None) -> None:
         self._folder = folder
         self.images = _numbered_images(folder)
-        self.total: int | None = len(self.images)
+        self.frame_count = len(self.images)
         stated = _frame_rate(folder) if fps is None else check_fps(fps, "--fps")
         self._is_assumed = stated is None
         self.fps = ASSUMED_FPS if stated is None else stated
         stamp_of(max(self.images) - min(self.images), self.fps)  # refuses what ROS cannot express
         truth_path = folder / "groundtruth.csv"
-        self.truth = read_truth_table(truth_path) if truth_path.exists() else {}
-        if self.truth and not self.truth.keys() & self.images.keys():
+        self.rows = read_truth_table(truth_path) if truth_path.exists() else {}
+        if self.rows and not self.rows.keys() & self.images.keys():
             raise InputError(f"no frame of the truth {truth_path} has an image")
 
-    def pictures(self) -> Iterator[Picture]:
+    def frames(self) -> Iterator[Picture]:
         """Yield the images by their numbers; the first is at the start, whatever its number."""
         first = min(self.images)
         for number, path in self.images.items():
             stamp = stamp_of(number - first, self.fps)
-            yield _picture(path, stamp, self.truth.get(number))
+            yield _picture(path, stamp, self.rows.get(number))
 
-    def truths(self) -> list[Truth]:
+    def truth(self) -> list[Truth]:
         """Return the truth of all images, in order."""
         first = min(self.images)
         return [
             Truth(stamp_of(number - first, self.fps), row.box, row.occlusion)
-            for number, row in sorted(self.truth.items())
+            for number, row in sorted(self.rows.items())
             if number in self.images
         ]
 
+    @property
     def notices(self) -> list[str]:
         """Report an assumed frame rate, and truth without an image."""
         notices = []
@@ -115,7 +113,7 @@ class FrameFolder:
                 f"the folder {self._folder} states no frame rate; {ASSUMED_FPS:g} frames/s are "
                 "assumed, give --fps or a sequence.json to change that"
             )
-        lost = len(self.truth.keys() - self.images.keys())
+        lost = len(self.rows.keys() - self.images.keys())
         return notices + ([f"frames of the truth without an image: {lost}"] if lost else [])
 
 

@@ -25,8 +25,7 @@ import cv2
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.recordings.footage import Footage, Picture
-from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
-from vehicle_pf_tracker.recordings.video import VideoFile, is_recording, refuse_other_bags
+from vehicle_pf_tracker.recordings.video import is_recording, open_footage
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 FORMATS = ("compressed", "raw")
@@ -91,11 +90,12 @@ def expected_size(
     """Judge the size before an import; None if there is no image. See `import_recording`."""
     _check_format(format)
     footage = _open(source, None, fps)
-    first = next(footage.pictures(), None)
+    first = next(footage.frames(), None)
     if first is None:
         return None
-    stored = _stored(first, format)
-    return ExpectedSize(stored.size, footage.total, not stored.kind)
+    coded = _coded(first, format)
+    size = len(coded[1]) if coded else first.frame.nbytes
+    return ExpectedSize(size, footage.frame_count, is_raw=coded is None)
 
 
 def _check_format(name: str | None) -> None:
@@ -142,34 +142,28 @@ def import_recording(
     footage = _open(source, truth, fps)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
-        for picture in footage.pictures():
+        for picture in footage.frames():
             size = _check_size(picture, size if frames else frame_size(picture.frame))
-            _write_picture(writer, picture, _stored(picture, format))
+            if coded := _coded(picture, format):
+                writer.write_compressed(picture.stamp_ns, *coded)
+            else:
+                writer.write_image(picture.stamp_ns, picture.frame)
             if picture.truth is not None:
                 writer.write_truth(picture.truth)
                 truths += 1
             frames += 1
             if progress is not None:
-                progress(frames, footage.total)
-    notices = tuple(footage.notices())
+                progress(frames, footage.frame_count)
+    notices = tuple(footage.notices)
     return ImportSummary(out, frames, truths, footage.fps, *size, folder_size(out), notices)
 
 
 def _open(source: Path, truth: Path | None, fps: float | None) -> Footage:
     if not source.exists():
         raise InputError(f"there is no file or folder {source} to import")
-    refuse_other_bags(source)
     if is_recording(source):
         raise InputError(f"{source} is a recording already")
-    if not source.is_dir() and not source.is_file():
-        raise InputError(f"{source} is not a regular file or a folder")
-    if not source.is_dir():
-        return VideoFile(source, truth, fps)
-    if truth is not None:
-        raise InputError(
-            f"the truth of the frame folder {source} is its groundtruth.csv; --truth is for videos"
-        )
-    return FrameFolder(source, fps)
+    return open_footage(source, truth=truth, fps=fps)
 
 
 def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:
@@ -182,28 +176,13 @@ def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:
     return size
 
 
-@dataclass(frozen=True, slots=True)
-class _Stored:
-    """A picture as it is stored: the kind and bytes of its file, or neither for its pixels."""
-
-    kind: str
-    coded: bytes
-    size: int
-
-
-def _stored(picture: Picture, wanted: str | None) -> _Stored:
+def _coded(picture: Picture, wanted: str | None) -> tuple[str, bytes] | None:
+    """Kind and bytes of the file that a picture is stored as; None where its pixels are."""
     if wanted == "raw" or (wanted is None and picture.coded_format == "png"):
-        return _Stored("", b"", picture.frame.nbytes)
-    kind = picture.coded_format or "jpeg"
-    coded = picture.coded if picture.coded_format else jpeg(picture.frame)
-    return _Stored(kind, coded, len(coded))
-
-
-def _write_picture(writer: RecordingWriter, picture: Picture, stored: _Stored) -> None:
-    if stored.kind:
-        writer.write_compressed(picture.stamp_ns, stored.kind, stored.coded)
-    else:
-        writer.write_image(picture.stamp_ns, picture.frame)
+        return None
+    if picture.coded_format:
+        return picture.coded_format, picture.coded
+    return "jpeg", jpeg(picture.frame)
 
 
 def folder_size(folder: Path) -> int:

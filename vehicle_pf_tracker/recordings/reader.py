@@ -23,7 +23,6 @@ from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.image.encodings import to_rgb
@@ -31,6 +30,7 @@ from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings import topics as names
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.cdr import deserialize, header_stamp_ns
+from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.mcap_blocks import Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
 from vehicle_pf_tracker.recordings.topic_table import (
@@ -40,17 +40,11 @@ from vehicle_pf_tracker.recordings.topic_table import (
     list_topics,
 )
 
+__all__ = ["RecordedMessage", "Recording", "StampedFrame"]
+
 _UNREADABLE_IN_A_ROW = 10
 """Unreadable images at the beginning after which reading stops: a recording of another encoding
 fails after a third of a second of video, and one damaged image does not end it."""
-
-
-@dataclass(frozen=True, slots=True)
-class StampedFrame:
-    """An image and the stamp of its header in ns; no frame where it cannot be read."""
-
-    stamp_ns: int
-    frame: Frame | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +89,8 @@ class Recording:
         Path as given.
     image_topic, image_type : str
         The image topic chosen and its ROS type, Image or CompressedImage.
+    frame_count : int
+        Number of messages on the image topic.
     topics : tuple of TopicInfo
         All topics, in the order of their first messages.
     start_ns, end_ns : int
@@ -115,17 +111,12 @@ class Recording:
         self.topics: tuple[TopicInfo, ...] = list_topics(self.files)
         chosen = choose_image_topic(self.path, self.topics, topic)
         self.image_topic, self.image_type = chosen.name, chosen.type_name
-        self._frame_count = chosen.message_count
+        self.frame_count = chosen.message_count
         blocks = [block for index in self.files for block in index.blocks]
         self.start_ns = min(block.start_ns for block in blocks)
         self.end_ns = max(block.end_ns for block in blocks)
         self._notices = ReadNotices(self.path, self.image_topic, found)
         self._notices.add_files(self.files)
-
-    @property
-    def frame_count(self) -> int:
-        """Number of messages on the image topic."""
-        return self._frame_count
 
     @property
     def duration_ns(self) -> int:
@@ -172,9 +163,9 @@ class Recording:
             yield from unread
             unread = []
             yield image
-        is_short = count < self._frame_count and not start_offset and duration is None
+        is_short = count < self.frame_count and not start_offset and duration is None
         if is_short and len(unread) < _UNREADABLE_IN_A_ROW:
-            self._notices.add_missing(self._frame_count - count)
+            self._notices.add_missing(self.frame_count - count)
         if not readable and (unread or is_short):
             raise InputError(
                 f"no image of {self.image_topic} in {self.path} can be read; "

@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Images from any source: recordings, video files, folders of images, cameras and streams.
-
-A part of a source: from one frame or second to another.
-"""
+"""Images, or a part of them, from any source: recordings, videos, folders, cameras, streams."""
 
 from __future__ import annotations
 
@@ -28,8 +25,8 @@ from typing import Protocol
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.recordings.footage import Footage
-from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
+from vehicle_pf_tracker.recordings.footage import Footage, StampedFrame
+from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.video import is_recording, open_footage
 
 
@@ -59,49 +56,9 @@ class Source(Protocol):
         """Return the true state of the vehicle, in the order of time."""
 
 
-class FootageSource:
-    """Images of a video file, a folder, a camera or a stream.
-
-    Parameters
-    ----------
-    footage : Footage
-        Reader of the images.
-    """
-
-    image_topic = ""
-
-    def __init__(self, footage: Footage) -> None:
-        self._footage = footage
-
-    @property
-    def frame_count(self) -> int | None:
-        """Number of images; None where it is unknown."""
-        return self._footage.total
-
-    @property
-    def notices(self) -> list[str]:
-        """Irregularities, a sentence each; complete when all images are read."""
-        return self._footage.notices()
-
-    def frames(self) -> Iterator[StampedFrame]:
-        """Yield the images in the order of time.
-
-        Raises
-        ------
-        InputError
-            If one cannot be read.
-        """
-        for picture in self._footage.pictures():
-            yield StampedFrame(picture.stamp_ns, picture.frame)
-
-    def truth(self) -> Sequence[Truth]:
-        """Return the truth of a folder that has any, in the order of time."""
-        return self._footage.truths()
-
-
 def open_source(
     source: str | Path, *, topic: str | None = None, fps: float | None = None
-) -> Recording | FootageSource:
+) -> Recording | Footage:
     """Open a recording, a video file, a folder of images, a camera or a stream.
 
     Parameters
@@ -126,7 +83,7 @@ def open_source(
     footage = open_footage(source, fps=fps)
     if topic is not None:
         raise InputError(f"{source} is not a recording and has no topics; leave --topic out")
-    return FootageSource(footage)
+    return footage
 
 
 def frame_at(

@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The topics of a recording, and the choice of its image topic.
-
-Irregularities of a recording, as sentences for its reader.
-"""
+"""Topics of a recording, the choice of its image topic, and its irregularities in sentences."""
 
 from __future__ import annotations
 

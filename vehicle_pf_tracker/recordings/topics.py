@@ -33,9 +33,3 @@ IMAGE_TYPES = (IMAGE, COMPRESSED_IMAGE)
 
 CAMERA_FRAME = "camera"
 """The `frame_id` of everything in our recordings."""
-
-
-def as_token(name: str) -> str:
-    """Return `name` as a part of a topic: letters, digits and underscores, no digit first."""
-    token = "".join(c if c.isascii() and c.isalnum() else "_" for c in name)
-    return f"_{token}" if token[:1].isdigit() else token

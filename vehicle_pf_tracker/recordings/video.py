@@ -12,11 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Footage in a video file, and from a camera or a stream.
+"""Footage of a video file, a camera or a stream, and footage of any kind by its name.
 
-Footage by its name: a video file, a folder of images, a camera or a stream.
-
-OpenCV's own complaints, kept off the terminal where an error says the same in one sentence.
+OpenCV's own complaints are kept off the terminal where an error says the same in one sentence.
 """
 
 from __future__ import annotations
@@ -70,7 +68,7 @@ _ROUNDING_NS = 1_000_000
 """Largest difference of a stated time from an even rate that is rounding: containers keep ms."""
 
 
-class VideoFile:
+class VideoFile(Footage):
     """The frames of a video file, at the times that the file states.
 
     Where these keep to the frame rate but for rounding, stamps are those of that rate; elsewhere,
@@ -81,7 +79,7 @@ class VideoFile:
     path : Path or str
         The file, or a URL of one.
     truth : Path or None
-        A table as `truth_table` reads it, frames counted from 1.
+        A table as `read_truth_table` reads it, frames counted from 1.
     fps : float or None
         Frame rate, 1/s, that takes the place of all stated times.
 
@@ -102,13 +100,13 @@ class VideoFile:
         video = self._open()
         self.fps = float(video.get(cv2.CAP_PROP_FPS)) if fps is None else check_fps(fps, "--fps")
         stated = video.get(cv2.CAP_PROP_FRAME_COUNT)
-        self.total = int(stated) if math.isfinite(stated) and stated > 0 else None
+        self.frame_count = int(stated) if math.isfinite(stated) and stated > 0 else None
         video.release()
         if not math.isfinite(self.fps) or self.fps <= 0:
             raise InputError(f"the video {path} states no frame rate; give it with --fps")
         check_fps(self.fps, path)
 
-    def pictures(self) -> Iterator[Picture]:
+    def frames(self) -> Iterator[Picture]:
         """Yield the frames with their stamps."""
         video = self._open()
         try:
@@ -126,10 +124,6 @@ class VideoFile:
         if not self._read:
             raise InputError(f"no frame of the video {self._path} can be decoded")
 
-    def truths(self) -> list[Truth]:
-        """Return nothing: the times of a video's frames are known when they are read."""
-        return []
-
     def _stamp(self, video: cv2.VideoCapture, last: int) -> int:
         """Return the stamp of the frame just read, in ns, later than the one before."""
         even = stamp_of(self._read, self.fps)
@@ -143,12 +137,14 @@ class VideoFile:
         self._without_time += 1
         return last + round(1e9 / self.fps) if last else START_NS
 
+    @property
     def notices(self) -> list[str]:
         """Report fewer frames than the file states, and truth without a frame."""
         notices = []
-        if self._ended and self.total is not None and self._read < self.total:
+        if self._ended and self.frame_count is not None and self._read < self.frame_count:
             notices.append(
-                f"the video {self._path} states {self.total} frames, {self._read} could be read"
+                f"the video {self._path} states {self.frame_count} frames, {self._read} could be "
+                "read"
             )
         if self._without_time:
             notices.append(
@@ -172,7 +168,7 @@ def _backend() -> int:
     return cv2.CAP_FFMPEG if has_ffmpeg else cv2.CAP_ANY
 
 
-class Camera:
+class Camera(Footage):
     """Frames of a camera or a network stream, stamped by the clock as they arrive.
 
     Parameters
@@ -194,7 +190,7 @@ class Camera:
         if not self._video.isOpened():
             raise InputError(f"{self._name} cannot be opened")
         self.fps = float(self._video.get(cv2.CAP_PROP_FPS))
-        self.total: int | None = None
+        self.frame_count = None
         self._read = 0
 
     @property
@@ -202,7 +198,7 @@ class Camera:
         """True for a live source; False where the URL is that of a video file."""
         return self._video.get(cv2.CAP_PROP_FRAME_COUNT) <= 0
 
-    def pictures(self) -> Iterator[Picture]:
+    def frames(self) -> Iterator[Picture]:
         """Yield frames until the source ends."""
         last = 0
         try:
@@ -215,14 +211,6 @@ class Camera:
         if not self._read:
             raise InputError(f"{self._name} sends no images")
 
-    def truths(self) -> list[Truth]:
-        """Return nothing: nobody knows the truth."""
-        return []
-
-    def notices(self) -> list[str]:
-        """Return nothing: a stream states nothing that could be missed."""
-        return []
-
 
 def _next_frame(video: cv2.VideoCapture) -> Frame | None:
     is_read, image = video.read()
@@ -234,20 +222,24 @@ def _next_frame(video: cv2.VideoCapture) -> Frame | None:
 _CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
 
 
-def open_footage(source: str | Path, *, fps: float | None = None) -> Footage:
+def open_footage(
+    source: str | Path, *, truth: Path | None = None, fps: float | None = None
+) -> Footage:
     """Open a video file, a folder of images, a camera or a stream.
 
     Parameters
     ----------
     source : str or Path
         Path; index of a camera, as ``0``; or URL, as ``rtsp://...`` or ``https://...``.
+    truth : Path or None
+        Truth of a video, a table as `read_truth_table` reads it.
     fps : float or None
         Frame rate of a folder or a video, 1/s; None takes what it states.
 
     Raises
     ------
     InputError
-        If there is no such source, or it is a bag.
+        If there is no such source, it is a bag, or it is not a video but a truth is given.
     """
     text = str(source)
     if text.isdecimal() and not Path(text).exists():
@@ -256,14 +248,18 @@ def open_footage(source: str | Path, *, fps: float | None = None) -> Footage:
         camera = Camera(text)
         return camera if camera.is_endless else VideoFile(text, fps=fps)
     path = Path(text)
-    refuse_other_bags(path)
+    _refuse_other_bags(path)
     if not path.exists():
         raise InputError(f"there is no file or folder {path}")
+    if path.is_dir() and truth is not None:
+        raise InputError(
+            f"the truth of the frame folder {path} is its groundtruth.csv; --truth is for videos"
+        )
     if path.is_dir():
         return FrameFolder(path, fps)
     if not path.is_file():
         raise InputError(f"{path} is not a regular file or a folder")
-    return VideoFile(path, fps=fps)
+    return VideoFile(path, truth, fps)
 
 
 def is_live(footage: Footage) -> bool:
@@ -276,7 +272,7 @@ def is_recording(path: Path) -> bool:
     return path.suffix == ".mcap" or (path / "metadata.yaml").exists()
 
 
-def refuse_other_bags(path: Path) -> None:
+def _refuse_other_bags(path: Path) -> None:
     """Raise for a bag of ROS 1 or of SQLite, with the command that converts it.
 
     Raises

@@ -31,11 +31,10 @@ from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, OutputFolder, check
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.bag_folder import (
+    RELIABLE_QOS,
     TopicSummary,
     bag_information,
-    information_yaml,
-    metadata_yaml,
-    qos_text,
+    to_yaml,
 )
 from vehicle_pf_tracker.recordings.cdr import definition, serialize, type_hash
 
@@ -174,7 +173,10 @@ class RecordingWriter:
 
     def _channel(self, topic: str, type_name: str) -> _Channel:
         if topic not in self._channels:
-            metadata = {"offered_qos_profiles": qos_text(), "topic_type_hash": type_hash(type_name)}
+            metadata = {
+                "offered_qos_profiles": to_yaml(RELIABLE_QOS),
+                "topic_type_hash": type_hash(type_name),
+            }
             channel_id = self._mcap.register_channel(
                 topic, MessageEncoding.CDR, self._schema(type_name), metadata
             )
@@ -200,12 +202,10 @@ class RecordingWriter:
         ]
         information = bag_information(self._file_name, first, last - first, summaries)
         with output_errors(self.folder):
-            self._mcap.add_metadata(
-                "rosbag2", {"serialized_metadata": information_yaml(information)}
-            )
+            self._mcap.add_metadata("rosbag2", {"serialized_metadata": to_yaml(information)})
             self._mcap.finish()  # type: ignore[no-untyped-call]
             self._stream.close()
-            text = metadata_yaml(information)
+            text = to_yaml({"rosbag2_bagfile_information": information})
             (self._output.partial / "metadata.yaml").write_text(text, encoding="utf-8")
         with output_errors(self._output.target):
             self._output.publish()

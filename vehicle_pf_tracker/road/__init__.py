@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""From pixels to the plane of the road, in plain numpy: homography, lens, pose, motion."""
+"""From pixels to the plane of the road: homography, lens, pose, motion."""

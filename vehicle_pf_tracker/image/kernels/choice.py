@@ -12,11 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Selection of the kernels.
+"""Selection of the kernels, which leaves no more memory in use than they need.
 
-Memory of LLVM, which a process needs while kernels are compiled or loaded, and not after.
-
-`python -m benchmarks.node_memory` shows what it amounts to.
+A process needs LLVM while kernels are compiled or loaded, and not after; `python -m
+benchmarks.node_memory` shows the difference.
 """
 
 from __future__ import annotations
@@ -32,7 +31,66 @@ from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.kernels.interface import Kernels
-from vehicle_pf_tracker.image.kernels.opencv import OpenCvKernels
+
+CHOICES = ("auto", "opencv", "numba")
+
+_NUMBA = "vehicle_pf_tracker.image.kernels.numba_kernels"
+_JIT = "vehicle_pf_tracker.image.kernels.numba_jit"
+"""A small part that all other kernels need, which tells whether the cache is filled."""
+
+
+def load_kernels(choice: str) -> Kernels:
+    """Make kernels that are ready for use, with everything compiled or loaded.
+
+    Parameters
+    ----------
+    choice : {"auto", "opencv", "numba"}
+        `auto` selects numba's where numba can be imported, else OpenCV's.
+
+    Raises
+    ------
+    InputError
+        If numba's are asked for and numba cannot be imported.
+    """
+    if choice == "opencv":
+        return Kernels()
+    try:
+        return load_numba()
+    except ImportError as error:
+        if choice == "numba":
+            raise InputError(
+                f"kernels: numba needs numba, which cannot be imported ({error}); "
+                "install it, or set kernels to auto or opencv"
+            ) from error
+        return Kernels(_fallback_notices(error))
+
+
+def takes_long(choice: str) -> bool:
+    """Tell whether `load_kernels` would first import numba, and perhaps compile for a while."""
+    if choice == "opencv" or load_numba.cache_info().currsize:
+        return False
+    return importlib.util.find_spec("numba") is not None
+
+
+@functools.cache
+def load_numba() -> Kernels:
+    """Make numba's kernels, with everything compiled or loaded; once in a process."""
+    # Imported late: it takes half a second, and only here is it known to be needed.
+    jit = importlib.import_module(_JIT)
+    if jit.has_filled_cache():
+        compile_elsewhere(_NUMBA)
+    kernels: Kernels = importlib.import_module(_NUMBA).NumbaKernels()
+    jit.drop_intermediate_code()
+    release_memory()
+    return kernels
+
+
+def _fallback_notices(error: ImportError) -> list[str]:
+    """Return no notice where numba is not installed, and one where it fails to load."""
+    if isinstance(error, ModuleNotFoundError) and error.name == "numba":
+        return []
+    return [f"numba is installed but cannot be imported ({error}); the OpenCV kernels are used"]
+
 
 _COMPILING = "VEHICLE_PF_TRACKER_COMPILES"
 """Variable that tells a process that it was started to compile, so that it starts no other one."""
@@ -76,13 +134,13 @@ def release_memory() -> None:
     trim, advise = getattr(library, "malloc_trim", None), getattr(library, "madvise", None)
     if advise is not None:
         advise.argtypes = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
-        for begin, end in _unwritten_mappings(_LIBRARY):
+        for begin, end in unwritten_mappings(_LIBRARY):
             advise(begin, end - begin, _MADV_DONTNEED)
     if trim is not None:
         trim(0)
 
 
-def _unwritten_mappings(name: str) -> list[tuple[int, int]]:
+def unwritten_mappings(name: str) -> list[tuple[int, int]]:
     """Begin and end of the read-only mappings of a library that have no pages of their own.
 
     Pages that were written to, as by the linker, exist nowhere else and must stay.
@@ -104,65 +162,3 @@ def _unwritten_mappings(name: str) -> list[tuple[int, int]]:
     except OSError:  # not Linux
         return []
     return found
-
-
-CHOICES = ("auto", "opencv", "numba")
-
-_NUMBA = "vehicle_pf_tracker.image.kernels.numba_kernels"
-_JIT = "vehicle_pf_tracker.image.kernels.numba_jit"
-_FIRST = "vehicle_pf_tracker.image.kernels.numba_jit"
-"""The kernels that all others need: a small part, which tells whether the cache is filled."""
-
-
-def load_kernels(choice: str) -> Kernels:
-    """Make kernels that are ready for use, with everything compiled or loaded.
-
-    Parameters
-    ----------
-    choice : {"auto", "opencv", "numba"}
-        `auto` selects numba's where numba can be imported, else OpenCV's.
-
-    Raises
-    ------
-    InputError
-        If numba's are asked for and numba cannot be imported.
-    """
-    if choice == "opencv":
-        return OpenCvKernels()
-    try:
-        return load_numba()
-    except ImportError as error:
-        if choice == "numba":
-            raise InputError(
-                f"kernels: numba needs numba, which cannot be imported ({error}); "
-                "install it, or set kernels to auto or opencv"
-            ) from error
-        return OpenCvKernels(_fallback_notices(error))
-
-
-def takes_long(choice: str) -> bool:
-    """Tell whether `load_kernels` would first import numba, and perhaps compile for a while."""
-    if choice == "opencv" or load_numba.cache_info().currsize:
-        return False
-    return importlib.util.find_spec("numba") is not None
-
-
-@functools.cache
-def load_numba() -> Kernels:
-    """Make numba's kernels, with everything compiled or loaded; once in a process."""
-    # Imported late: it takes half a second, and only here is it known to be needed.
-    importlib.import_module(_FIRST)
-    jit = importlib.import_module(_JIT)
-    if jit.has_filled_cache():
-        compile_elsewhere(_NUMBA)
-    kernels: Kernels = importlib.import_module(_NUMBA).NumbaKernels()
-    jit.drop_intermediate_code()
-    release_memory()
-    return kernels
-
-
-def _fallback_notices(error: ImportError) -> list[str]:
-    """Return no notice where numba is not installed, and one where it fails to load."""
-    if isinstance(error, ModuleNotFoundError) and error.name == "numba":
-        return []
-    return [f"numba is installed but cannot be imported ({error}); the OpenCV kernels are used"]

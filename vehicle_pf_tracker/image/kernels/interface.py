@@ -12,25 +12,25 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Interface of the kernels that measure windows."""
+"""Interface of the kernels that measure windows, and its implementation in OpenCV and numpy."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image import (
+    correlation_filter,
+    gradient_cells,
+    mean_shift,
+    shared_motion,
+    spectra,
+)
 from vehicle_pf_tracker.image.colour import JointColour
-from vehicle_pf_tracker.image.correlation_filter import Places
-from vehicle_pf_tracker.image.gradient_cells import CellFeatures, Grey
-from vehicle_pf_tracker.image.shared_motion import Alive, CellBlock, Flow
 from vehicle_pf_tracker.image.similarity import Reference
-from vehicle_pf_tracker.image.spectra import FilterProblem, Penalty, Spectrum
 from vehicle_pf_tracker.image.window import (
     Coefficients,
     Counted,
@@ -41,35 +41,40 @@ from vehicle_pf_tracker.image.window import (
     WindowFeature,
 )
 
-SimilarityMap: TypeAlias = npt.NDArray[np.float32]
 
+class Kernels:
+    """Measurement of windows by OpenCV and numpy, which are always available.
 
-class PixelRange(NamedTuple):
-    """Pixels from `left`, `top` to before `right`, `bottom`; all inside the frame."""
+    Subclasses do the same faster: they count equally, and agree on similarities to 1e-6. Each class
+    gives the same bits for the same input on one machine. What needs no window is a function of
+    another module, bound to the class.
 
-    left: int
-    top: int
-    right: int
-    bottom: int
-
-
-class Kernels(ABC):
-    """Measurement of windows; implementations count equally, and agree on similarities to 1e-6.
-
-    Each gives the same bits for the same input on one machine.
+    Parameters
+    ----------
+    notices : sequence of str
+        Problems met while the kernels were loaded, one sentence each.
 
     Attributes
     ----------
     name : str
         Value of the parameter `kernels` that selects them.
-    notices : sequence of str
-        Problems met while they were loaded, one sentence each.
     """
 
-    name: str
-    notices: Sequence[str] = ()
+    name = "opencv"
 
-    @abstractmethod
+    gradient_cells = staticmethod(gradient_cells.gradient_cells)
+    take_filter_step = staticmethod(spectra.take_filter_step)
+    correlated = staticmethod(spectra.correlated)
+    shifted = staticmethod(spectra.shifted)
+    climbed = staticmethod(correlation_filter.climbed)
+    shared_similarity = staticmethod(shared_motion.shared_similarity)
+    staying = staticmethod(shared_motion.staying)
+    shared_stretch = staticmethod(shared_motion.shared_stretch)
+    carried_share = staticmethod(shared_motion.carried_share)
+
+    def __init__(self, notices: Sequence[str] = ()) -> None:
+        self.notices = notices
+
     def counts(
         self,
         feature: WindowFeature,
@@ -98,6 +103,8 @@ class Kernels(ABC):
         Counted
             Counts of the bins (N, K), and of all bins together (N,).
         """
+        assert isinstance(feature, CountedFeature)
+        return feature.counts(frame, positions, window, active)
 
     def histograms(
         self, feature: WindowFeature, frame: Frame, positions: Positions, window: Window
@@ -107,7 +114,6 @@ class Kernels(ABC):
             return feature.histograms(frame, positions, window)
         return self.counts(feature, frame, positions, window, np.arange(feature.bins)).histograms
 
-    @abstractmethod
     def similarity(
         self,
         feature: WindowFeature,
@@ -130,32 +136,8 @@ class Kernels(ABC):
         (N,) array
             Bhattacharyya coefficients, 0 to 1.
         """
+        return feature.similarity(frame, positions, window, reference)
 
-    @abstractmethod
-    def similarity_map(
-        self,
-        feature: JointColour,
-        frame: Frame,
-        window: Window,
-        reference: Reference,
-        pixels: PixelRange | None = None,
-    ) -> SimilarityMap:
-        """Compare the windows around all pixels of a range with a reference.
-
-        Parameters
-        ----------
-        feature, frame, window, reference
-            As for `similarity`.
-        pixels : PixelRange, optional
-            Where the windows' centres lie; the whole frame if left out.
-
-        Returns
-        -------
-        (bottom - top, right - left) array of float32
-            Bhattacharyya coefficients, 0 to 1.
-        """
-
-    @abstractmethod
     def kernel_similarity(
         self,
         feature: JointColour,
@@ -165,8 +147,9 @@ class Kernels(ABC):
         reference: Reference,
     ) -> Coefficients:
         """Compare kernel-weighted histograms with a reference; see `image.mean_shift`."""
+        histogram = reference.histogram
+        return mean_shift.kernel_similarity(frame, positions, window, histogram, feature.bits)
 
-    @abstractmethod
     def mean_shift(
         self,
         feature: JointColour,
@@ -176,43 +159,4 @@ class Kernels(ABC):
         reference: Reference,
     ) -> Positions:
         """Move every position one mean-shift step; see `image.mean_shift`."""
-
-    @abstractmethod
-    def gradient_cells(self, grey: Grey, spare: int = 0) -> CellFeatures:
-        """Compute histograms of oriented gradients; see `image.gradient_cells`."""
-
-    @abstractmethod
-    def take_filter_step(
-        self, problem: FilterProblem, penalty: Penalty, multiplier: Spectrum, confined: Spectrum
-    ) -> None:
-        """Train a filter by one step; see `image.spectral_products`."""
-
-    @abstractmethod
-    def correlated(self, spectrum: Spectrum, weights: Spectrum) -> Spectrum:
-        """Correlate and sum over channels; see `image.spectral_products`."""
-
-    @abstractmethod
-    def shifted(self, spectrum: Spectrum, x: float, y: float) -> Spectrum:
-        """Move cells by (x, y); see `image.spectral_products`."""
-
-    @abstractmethod
-    def shared_similarity(self, before: Array, after: Array) -> Array:
-        """Fit a similarity to points (N, 2); see `image.shared_motion`."""
-
-    @abstractmethod
-    def staying(self, before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
-        """Tell which places (N, 2) turn with most; see `image.shared_motion`."""
-
-    @abstractmethod
-    def shared_stretch(self, before: Array, after: Array, size: Array) -> Array:
-        """Change of the distances of points (N, 2); see `image.shared_motion`."""
-
-    @abstractmethod
-    def carried_share(
-        self, flow: Flow, cells: CellBlock, places: Array, vehicle: Array, background: Array
-    ) -> float:
-        """Share of a box that has moved with its vehicle; see `image.shared_motion`."""
-
-    @abstractmethod
-    def climbed(self, values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
-        """Move places to the best value in reach; see `image.climbing`."""
+        return mean_shift.mean_shift(frame, positions, window, reference.histogram, feature.bits)

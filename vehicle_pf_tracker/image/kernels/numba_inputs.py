@@ -25,11 +25,8 @@ import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.kernels.interface import PixelRange
-from vehicle_pf_tracker.image.kernels.numba_jit import RECTANGLES, Rectangles, Table, compiled
+from vehicle_pf_tracker.image.kernels.numba_jit import Table, compiled
 from vehicle_pf_tracker.image.kernels.numba_windows import (
-    PAIR,
-    REACH,
     Pixels,
     Reach,
     Reals,
@@ -38,33 +35,6 @@ from vehicle_pf_tracker.image.kernels.numba_windows import (
 from vehicle_pf_tracker.image.similarity import Histogram, Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
 from vehicle_pf_tracker.image.window import Positions, Window, WindowFeature
-
-
-@compiled(RECTANGLES(RECTANGLES, REACH, PAIR, PAIR))
-def window_rectangles(
-    pixels: Pixels, reach: Reach, origin: tuple[int, int], size: tuple[int, int]
-) -> Rectangles:
-    """Left, top, right, bottom of windows relative to `origin`, cut at the border; shape (N, 4).
-
-    Parameters
-    ----------
-    pixels : (N, 2) array
-        Centres in the frame.
-    reach : (int, int, int)
-        As for `compare_windows`.
-    origin, size : (int, int)
-        x, y in the frame that count as 0, and width, height of the frame in px.
-    """
-    left, right, up = reach
-    rectangles = np.empty((len(pixels), 4), np.int64)
-    last = size[0] - (left + 1 - right)
-    for i in range(len(pixels)):
-        x, y = pixels[i]
-        rectangles[i, 0] = max(x - left, 0) - origin[0]
-        rectangles[i, 1] = max(y - up, 0) - origin[1]
-        rectangles[i, 2] = min(x + right, last) - origin[0]
-        rectangles[i, 3] = min(y + up + 1, size[1]) - origin[1]
-    return rectangles
 
 
 class Placement(NamedTuple):
@@ -96,20 +66,23 @@ class Placement(NamedTuple):
         pixels, extent = window_pixels(positions, *size)
         return cls(pixels, extent, reach_of(feature, window), size)
 
-    def covered(self, margin: int = 0) -> PixelRange:
-        """Smallest part of the frame that has all windows in it, and a margin as far as it goes."""
+    def covered(self, margin: int = 0) -> tuple[int, int, int, int]:
+        """Left, top, right, bottom of all windows, and of a margin as far as the frame goes."""
         (x0, y0, x1, y1), (left, _, up) = self.extent, self.reach
         width, height = self.size
-        return PixelRange(
+        return (
             max(x0 - left - margin, 0),
             max(y0 - up - margin, 0),
             min(x1 + left + 1 + margin, width),
             min(y1 + up + 1 + margin, height),
         )
 
-    def rectangles(self, origin: tuple[int, int]) -> Rectangles:
-        """Left, top, right, bottom of each window relative to `origin`, shape (N, 4)."""
-        return window_rectangles(self.pixels, self.reach, origin, self.size)
+    def areas(self) -> npt.NDArray[np.int64]:
+        """Pixels in each window, shape (N,)."""
+        (left, right, up), (width, height), (x, y) = self.reach, self.size, self.pixels.T
+        # Pairs of pixels end one column earlier at the border, too.
+        across = np.minimum(x + right, width - (left + 1 - right)) - np.maximum(x - left, 0)
+        return np.asarray(across * (np.minimum(y + up + 1, height) - np.maximum(y - up, 0)))
 
 
 def reach_of(feature: WindowFeature, window: Window) -> Reach:

@@ -140,17 +140,3 @@ def pair_cells(grey: Grey, table: Table) -> Cells:
         for x in range(width):
             cells[0, y, x] = table[((grey[y, x] >> 5) << 3) | (grey[y, x + 1] >> 5)]
     return cells
-
-
-@compiled(types.uint8[:, :, ::1](FRAME, RECTANGLES, types.int64, types.int64))
-def stack_windows(frame: Frame, rectangles: Rectangles, width: int, height: int) -> Frame:
-    """Copy windows of at most `width` x `height` px one below the other, each to the left."""
-    count = len(rectangles)
-    stack = np.zeros((count * height, width, 3), np.uint8)
-    for i in range(count):
-        left, top, right, bottom = rectangles[i]
-        for y in range(top, bottom):
-            for x in range(left, right):
-                for channel in range(3):
-                    stack[i * height + y - top, x - left, channel] = frame[y, x, channel]
-    return stack

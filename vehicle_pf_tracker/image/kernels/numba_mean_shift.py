@@ -69,7 +69,7 @@ def compare_kernels(
     Parameters
     ----------
     cells : (1, H, W) array
-        Of the region that all windows cover, cut at the border of the frame.
+        Cells of the region that all windows cover, cut at the border of the frame.
     pixels : (N, 2) array
         Centre x, y of each window in the frame.
     origin : (int, int)

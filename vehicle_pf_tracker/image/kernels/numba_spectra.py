@@ -12,14 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Products of spectra, compiled; see `image.spectral_products` for what they are.
+"""Products of spectra, compiled; see `image.spectra` for what they are.
 
 A frequency k along y and its negative are made of the same cosines and sines: cosine - i sine is
 the one, cosine + i sine the other ("low" and "high" here). Loops run over such pairs of rows, and
 along x, where they are vectorised. Frequencies 0 and n / 2 have no sine, and go first, while the
 right side of the sines is zero.
 
-Climbing on a map, compiled; see `image.climbing` for what it is.
+Climbing on a map, compiled; see `image.correlation_filter` for what it is.
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def _take_filter_step(
 
 @compiled(_SPECTRUM(_SPECTRUM, _SPECTRUM))
 def correlated(spectrum: Spectrum, weights: Spectrum) -> Spectrum:
-    """See `spectral_products.correlated`."""
+    """See `spectra.correlated`."""
     cells, channels, _, width = spectrum.shape
     half = cells // 2
     product = np.zeros((cells, 1, 2, width), np.float32)
@@ -189,7 +189,7 @@ def _rotate(spectrum: Spectrum, row: int, real: _Rows, imaginary: _Rows, moved: 
 
 @compiled(_SPECTRUM(_SPECTRUM, float64, float64))
 def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
-    """See `spectral_products.shifted`."""
+    """See `spectra.shifted`."""
     cells, channels, _, width = spectrum.shape
     half = cells // 2
     moved = np.empty_like(spectrum)
@@ -216,7 +216,7 @@ def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
 def take_filter_step(
     problem: FilterProblem, penalty: Penalty, multiplier: Spectrum, confined: Spectrum
 ) -> None:
-    """See `spectral_products.take_filter_step`."""
+    """See `spectra.take_filter_step`."""
     weights = problem.stiffness, penalty.weight, penalty.growth
     images, sums = (problem.spectrum, problem.before), (multiplier, confined)
     _take_filter_step(images, problem.label, sums, weights)
@@ -228,7 +228,7 @@ _PLACES = types.Array(intp, 2, "C")
 
 @compiled(types.Tuple([_PLACES, types.Array(float64, 1, "C")])(_MAP, _PLACES, _MAP))
 def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
-    """See `climbing.climbed`."""
+    """See `correlation_filter.climbed`."""
     reach, last = len(costs) // 2, len(values) - 1
     moves, gains = np.zeros_like(places), np.empty(len(places))
     for i in range(len(places)):

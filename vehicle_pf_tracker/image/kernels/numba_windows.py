@@ -49,7 +49,6 @@ Counts: TypeAlias = npt.NDArray[np.int32]
 Scale: TypeAlias = tuple[Reals, Reals]
 Reach: TypeAlias = tuple[int, int, int]
 Columns: TypeAlias = npt.NDArray[np.uint16]
-Map: TypeAlias = npt.NDArray[np.float32]
 
 _POSITIONS = types.Array(types.float64, 2, "A", readonly=True)
 REACH = types.UniTuple(types.int64, 3)
@@ -107,15 +106,6 @@ def _overlap(counts: Counts, values: Reals, total: int, roots: Reals) -> float:
         for k in range(len(values)):
             overlap += values[k] * math.sqrt(np.float64(counts[k]))
     return min(overlap / math.sqrt(max(total, 1)), 1.0)
-
-
-@inlined
-def _overlap_single(counts: Counts, values: Map, total: int) -> np.float32:
-    """Bhattacharyya coefficient as by `_overlap`, in single precision for the pixels of a map."""
-    overlap = np.float32(0.0)
-    for k in range(len(values)):
-        overlap += values[k] * math.sqrt(np.float32(counts[k]))
-    return min(overlap / np.float32(math.sqrt(max(total, 1))), np.float32(1.0))
 
 
 @inlined
@@ -275,7 +265,7 @@ def compare_windows(
     Parameters
     ----------
     cells, pixels : (P, H, W) array, (N, 2) array
-        Of the region that all windows cover; centre x, y of each window in the frame.
+        Cells of the region that all windows cover; centre x, y of each window in the frame.
     extent, origin : tuples of int
         Least x and y, largest x and y of `pixels`; x, y of the region's first pixel in the frame.
     reach : (int, int, int)
@@ -334,32 +324,4 @@ def compare_joint(
         cells = joint_cells(frame[top : y + above + 1, left : x + beside + 1], bits, table)
         rectangle = np.array([[0, 0, cells.shape[2], cells.shape[1]]])
         result[i] = compare_rectangles(cells, rectangle, scale, counts[i : i + 1])[0]
-    return result
-
-
-@compiled(
-    types.float32[:, ::1](
-        CELLS,
-        QUAD,
-        REACH,
-        types.Array(types.float32, 1, "C", readonly=True),
-    )
-)
-def map_windows(cells: Cells, extent: tuple[int, int, int, int], reach: Reach, values: Map) -> Map:
-    """Compare the windows around all pixels from x0, y0 to before x1, y1 of a region."""
-    planes, height, width = cells.shape
-    x0, y0, x1, y1 = extent
-    left, right, up = reach
-    columns, sums, rows = _cleared(width, len(values))
-    result = np.empty((y1 - y0, x1 - x0), np.float32)
-    for y in range(y0, y1):
-        top, bottom = max(y - up, 0), min(y + up + 1, height)
-        _follow_rows(columns, cells, rows, top, bottom)
-        _gather(sums, columns, max(x0 - left, 0), min(x0 + right, width))
-        for x in range(x0, x1):
-            if x > x0:
-                _shift(sums, columns, x - left - 1, x + right - 1)
-            across = min(x + right, width) - max(x - left, 0)
-            total = planes * across * (bottom - top)
-            result[y - y0, x - x0] = _overlap_single(sums, values, total)
     return result

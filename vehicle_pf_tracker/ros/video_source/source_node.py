@@ -196,7 +196,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         if self._is_live:
             self._note_break(f"{self._source_name} sends no more images")
             return True
-        for notice in source.notices():
+        for notice in source.notices:
             if notice not in self._told:
                 self._told.add(notice)
                 self.get_logger().warning(notice)
@@ -207,7 +207,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     def _show_images(self, source: Footage) -> None:
         self._is_live = is_live(source)
         self._pace.begin(is_live=self._is_live)
-        for picture in source.pictures():
+        for picture in source.frames():
             if self._stop.is_set():
                 return
             self._publish(picture)

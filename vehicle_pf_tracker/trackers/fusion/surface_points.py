@@ -24,13 +24,13 @@ from __future__ import annotations
 import functools
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.canonical_patch import Patch
+from vehicle_pf_tracker.image.flow import Found, PointFlow, Points
 from vehicle_pf_tracker.image.shared_motion import MotionKernels
 
 _GRID = 6
@@ -47,12 +47,10 @@ _STRAYED = 0.2
 left the vehicle; the prediction turns with the other points."""
 _ROUND_TRIP_PX = 1.0
 """Largest error in canonical px of a point tracked forth and back (Kalal et al. 2010)."""
-_CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 8, 0.05)
-_FLOW = {"winSize": (9, 9), "maxLevel": 0, "criteria": _CRITERIA,
-         "flags": cv2.OPTFLOW_USE_INITIAL_FLOW}  # fmt: skip
+_FLOW = PointFlow(window=9, levels=0, steps=8, precision=0.05)
 """No pyramid: the response's peak has told the motion to within a few canonical px."""
 _FIRST_GRID = 10
-_FIRST_FLOW = {"winSize": (13, 13), "maxLevel": 3}
+_FIRST_FLOW = PointFlow(window=13, levels=3)
 """The first step knows no velocity, hence larger windows and more pyramid levels."""
 _FIRST_MOVED_PX = 1.5
 """Motion in canonical px, and least in px of the frame, above which a point moves against the
@@ -106,9 +104,8 @@ class SurfacePoints:
         previous, _ = self._previous
         places = _grid(_FIRST_GRID, 0.45)
         start = (places * size * previous.zoom + previous.side / 2 - 0.5).astype(np.float32)
-        start = start[:, np.newaxis]
         end, found = _flow(previous, patch, start, None, _FIRST_FLOW)
-        moves = (end - start)[found, 0].astype(np.float64)
+        moves = (end - start)[found].astype(np.float64)
         least = _FIRST_MOVED_PX * max(float(patch.zoom.max()), 1.0)
         moves = moves[np.hypot(moves[:, 0], moves[:, 1]) > least]
         if len(moves) < _FIRST_FEWEST:
@@ -155,8 +152,8 @@ class SurfacePoints:
         before = positions[alive]
         start = np.asarray(previous.to_patch(before) - 0.5, np.float32)
         guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
-        end, found = _flow(previous, patch, start[:, np.newaxis], guess[:, np.newaxis], _FLOW)
-        after = patch.to_frame(end[:, 0].astype(np.float64) + 0.5)
+        end, found = _flow(previous, patch, start, guess, _FLOW)
+        after = patch.to_frame(end.astype(np.float64) + 0.5)
         self.stretch = self.kernels.shared_stretch(before[found], after[found], size)
         positions[alive] = after
         alive[alive] = found
@@ -175,14 +172,8 @@ def _grid(count: int, reach: float) -> Array:
 
 
 def _flow(
-    before: Patch, after: Patch, start: npt.NDArray[np.float32],
-    guess: npt.NDArray[np.float32] | None, options: dict[str, object],
-) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.bool_]]:  # fmt: skip
-    """Track points (N, 1, 2) forth and back; also tell which came back to where they started."""
-    forth = None if guess is None else guess.copy()
-    back = None if guess is None else start.copy()
-    end, found, _ = cv2.calcOpticalFlowPyrLK(before.grey, after.grey, start, forth, **options)  # type: ignore[call-overload]
-    again, refound, _ = cv2.calcOpticalFlowPyrLK(after.grey, before.grey, end, back, **options)  # type: ignore[call-overload]
-    error = np.square(again - start).sum(axis=2).ravel()
-    good = (found & refound).ravel().astype(bool) & (error < _ROUND_TRIP_PX**2)
-    return np.asarray(end, np.float32), np.asarray(good, np.bool_)
+    before: Patch, after: Patch, start: Points, guess: Points | None, flow: PointFlow
+) -> tuple[Points, Found]:
+    """Track points (N, 2) forth and back; also tell which came back to where they started."""
+    end, found, error = flow.follow_and_return(before.grey, after.grey, start, guess)
+    return end, found & (np.square(error).sum(axis=1) < _ROUND_TRIP_PX**2)

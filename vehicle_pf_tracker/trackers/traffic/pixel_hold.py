@@ -24,11 +24,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.flow import PointFlow
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, TrafficNumbers, areas
 from vehicle_pf_tracker.trackers.traffic.track import ColourBins, Track, similarity
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import V, X
@@ -61,9 +61,7 @@ _STANDS = 0.4
 """Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
 _SLIP, _SLIP_PX = 0.02, 0.3
 """Standard deviation by which a box slips on its vehicle in a frame, of its size and in px."""
-_CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 10, 0.03)
-_WINDOW = (9, 9)
-_LEVELS = 2
+_FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,30 +186,11 @@ def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
     if not len(old):
         return np.empty((0, 2))
     # Pixel 0 is centred at 0.5 here and at 0 in OpenCV.
-    start = (old[:, np.newaxis] - 0.5).astype(np.float32)
-    first = (guess[:, np.newaxis] - 0.5).astype(np.float32)
-    new, found = _flow(before, present, start, first)
-    back, returned = _flow(present, before, new, start.copy())
-    error = np.abs(back - start).reshape(-1, 2).max(axis=1)
-    moved = new.reshape(-1, 2).astype(np.float64) + 0.5
-    moved[(found == 0) | (returned == 0) | (error > _ROUND_TRIP_PX)] = np.nan
-    return np.asarray(moved)
-
-
-def _flow(
-    one: Grey, two: Grey, points: npt.NDArray[np.float32], guess: npt.NDArray[np.float32]
-) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:
-    moved, found, _ = cv2.calcOpticalFlowPyrLK(
-        one,
-        two,
-        points,
-        guess,
-        winSize=_WINDOW,
-        maxLevel=_LEVELS,
-        criteria=_CRITERIA,
-        flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
-    )
-    return np.asarray(moved, np.float32), np.asarray(found, np.uint8).ravel()
+    start, first = (old - 0.5).astype(np.float32), (guess - 0.5).astype(np.float32)
+    new, found, error = _FLOW.follow_and_return(before, present, start, first)
+    moved = new.astype(np.float64) + 0.5
+    moved[~found | (np.abs(error).max(axis=1) > _ROUND_TRIP_PX)] = np.nan
+    return moved
 
 
 def _points(edges: Array) -> Array:
