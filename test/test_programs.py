@@ -28,9 +28,8 @@ from reproduction.catalogue import EXPERIMENTS
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines.client import VARIABLE, baseline_python
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
-from vehicle_pf_tracker.scenes.catalogue import make_scene
+from vehicle_pf_tracker.scenes.catalogue import make_scene, make_traffic_scene
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
-from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
 
 pytestmark = pytest.mark.slow
 

@@ -21,8 +21,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.scenes.models import Model
-from vehicle_pf_tracker.scenes.paths import Bend, Pace, Pose, Swaying, Wave
+from vehicle_pf_tracker.scenes.models import Bend, Model, Pace, Pose, Swaying, Wave
 from vehicle_pf_tracker.scenes.solids import ELEVATION
 from vehicle_pf_tracker.scenes.vehicles import car
 

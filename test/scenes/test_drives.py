@@ -19,8 +19,8 @@ from itertools import groupby, pairwise
 
 import pytest
 
+from laboratory.scenes import SCENES, make_scene
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 
 NONE, PARTIAL, TOTAL = Occlusion.NONE, Occlusion.PARTIAL, Occlusion.TOTAL
 SEEDS = [0, pytest.param(1, marks=pytest.mark.slow)]

@@ -20,10 +20,10 @@ from itertools import islice
 import numpy as np
 import pytest
 
+from laboratory.scenes import make_scene
+from laboratory.scenes.drives import Cloud
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.cameras import MARGIN, Disturbance, OutdoorCamera
-from vehicle_pf_tracker.scenes.catalogue import make_scene
-from vehicle_pf_tracker.scenes.light import Cloud
+from vehicle_pf_tracker.scenes.scene import MARGIN, Disturbance, OutdoorCamera
 
 CALM = Disturbance(0.0, 0.0, 0.0)
 SHAKY = Disturbance(0.0, 3.0, 0.0)

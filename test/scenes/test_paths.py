@@ -19,7 +19,7 @@ import math
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.paths import Attached, Driven, Still, Straight, Wave
+from vehicle_pf_tracker.scenes.models import Attached, Driven, Still, Straight, Wave
 
 START = Box(10, 20, 4, 3)
 

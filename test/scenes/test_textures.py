@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.scenes.compositing import check_seed, stream
-from vehicle_pf_tracker.scenes.solids import asphalt, concrete, foliage, grass, plain, value_noise
+from vehicle_pf_tracker.scenes.scenery import asphalt, concrete, foliage, grass, plain, value_noise
 
 SURFACES = (asphalt, concrete, foliage, grass)
 

@@ -60,8 +60,6 @@ class SimulatedDetector:
         Standard deviation of each edge, as a share of the side.
     merges : float
         Share of overlapping pairs that are detected as one.
-    power, factor : float
-        Scores are raised to `power` and multiplied by `factor`.
     """
 
     misses: float = 0.02
@@ -69,8 +67,6 @@ class SimulatedDetector:
     false_alarms: float = 0.05
     noise: float = 0.03
     merges: float = 0.0
-    power: float = 1.0
-    factor: float = 1.0
 
 
 SIMULATED_DETECTORS: Mapping[str, SimulatedDetector] = MappingProxyType(
@@ -83,11 +79,9 @@ SIMULATED_DETECTORS: Mapping[str, SimulatedDetector] = MappingProxyType(
         "poor": SimulatedDetector(
             misses=0.15, miss_length=4.0, false_alarms=0.7, noise=0.07, merges=0.4
         ),
-        "squared": SimulatedDetector(power=2.0),
-        "halved": SimulatedDetector(factor=0.5),
     }
 )
-"""The simulated detectors by name; `squared` and `halved` are `good` with other scores."""
+"""The simulated detectors by name."""
 
 
 def detect(
@@ -101,13 +95,13 @@ def detect(
     Parameters
     ----------
     detector : SimulatedDetector
-        What it does wrong.
+        The detector, by its errors.
     truths : sequence of sequence of VehicleTruth
         Truth of every frame.
     size : (int, int)
         Width and height of the image, px.
     seed : int
-        Seed; two detectors that differ in scores alone find the same boxes.
+        Seed of the detector.
 
     Returns
     -------
@@ -123,7 +117,7 @@ def detect(
                  for boxes, share in _merged(seen, detector.merges, rng)]  # fmt: skip
         found += [_false_alarm(size, rng) for _ in range(rng.poisson(detector.false_alarms))]
         for box, score in found:
-            rows.append([frame, *box.tolist(), detector.factor * score**detector.power])
+            rows.append([frame, *box.tolist(), score])
     return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
