@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from laboratory import scenes as laboratory_scenes
@@ -244,10 +244,7 @@ def _past_a_parked_lorry(drive: Drive) -> list[Actor]:
     rear = drive.start + length / 2 + CLEAR * speed
     stretch = (length + OVERLAPPED * speed) / Model(van((0, 0, 0)), drive.scale).size[0]
     faces = [
-        replace(
-            face,
-            points=tuple((x * stretch, y, z * _LORRY_HEIGHT) for x, y, z in face.points),
-        )
+        face.moved(lambda x, y, z: (x * stretch, y, z * _LORRY_HEIGHT))
         for face in van((206, 206, 200))
     ]
     return list(_parked(drive, faces, rear))

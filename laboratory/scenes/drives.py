@@ -27,7 +27,7 @@ from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, overlap
 from vehicle_pf_tracker.scenes.drive import LANE, PAINTS, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.models import Bend, Model, Pace, Pose, Still
 from vehicle_pf_tracker.scenes.roads import convoy, side_road
-from vehicle_pf_tracker.scenes.scene import Actor, Scene
+from vehicle_pf_tracker.scenes.scene import DISTURBANCES, Actor, OutdoorCamera, Scene
 from vehicle_pf_tracker.scenes.scenery import value_noise
 from vehicle_pf_tracker.scenes.solids import ELEVATION, SHADE
 from vehicle_pf_tracker.scenes.vehicles import car, coach, saloon, suv, van
@@ -71,6 +71,19 @@ class Cloud:
         return light * (1 - 0.08 * cover + warmth), light, light * (1 + 0.1 * cover - warmth)
 
 
+@dataclass(frozen=True, slots=True)
+class CloudyCamera(OutdoorCamera):
+    """A camera on a mast while a cloud passes."""
+
+    cloud: Cloud
+
+    def gain(self, index: int) -> Colour:
+        """Give the gains of red, green and blue in frame `index`."""
+        flicker = OutdoorCamera.gain(self, index)[0]
+        red, green, blue = self.cloud(index)
+        return red * flicker, green * flicker, blue * flicker
+
+
 def tree_shadows(drive: Drive, shares: tuple[float, ...], depth: float) -> list[Actor]:
     """Let trees outside the image cast dappled shadows across the road, and on what drives there.
 
@@ -112,8 +125,9 @@ def illumination(parameters: IlluminationParameters, seed: int) -> Scene:
     """Make the scene: a cloud darkens it for half the time, and then the sun is warmer."""
     drive = Drive(parameters, seed)
     frames = drive.frame_count
-    light = Cloud(0.2 * frames, 0.5 * frames, parameters.dimming)
-    return drive.scene(light=light)
+    cloud = Cloud(0.2 * frames, 0.5 * frames, parameters.dimming)
+    disturbance = DISTURBANCES[parameters.disturbance]
+    return replace(drive.scene(), camera=CloudyCamera(disturbance, seed, cloud))
 
 
 @dataclass(frozen=True, slots=True)

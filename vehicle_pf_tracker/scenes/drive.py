@@ -32,7 +32,6 @@ from vehicle_pf_tracker.scenes.compositing import Colour, Image, stream
 from vehicle_pf_tracker.scenes.models import (
     Bend,
     Course,
-    Driven,
     Model,
     Pace,
     Pose,
@@ -57,10 +56,8 @@ from vehicle_pf_tracker.scenes.scene import (
     MARGIN,
     Actor,
     Camera,
-    Light,
     OutdoorCamera,
     Scene,
-    daylight,
 )
 from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
@@ -229,7 +226,6 @@ class Drive:
         front: Iterable[Actor] = (),
         *,
         behind: Iterable[Actor] | None = None,
-        light: Light = daylight,
     ) -> Scene:
         """Make the scene: the target between what is `behind` it and what is in `front` of it.
 
@@ -248,7 +244,7 @@ class Drive:
             backdrop=self.backdrop,
             actors=(*behind, *own, *front),
             target=len(behind) + 1,
-            camera=OutdoorCamera(DISTURBANCES[self.parameters.disturbance], self.seed, light),
+            camera=OutdoorCamera(DISTURBANCES[self.parameters.disturbance], self.seed),
         )
 
     def _roads(self) -> tuple[Carriageway, Carriageway]:
@@ -326,7 +322,7 @@ def _slow_lane(rng: np.random.Generator) -> list[Actor]:
     hatchback = Vehicle(car((38, 92, 168)), lane)
     start = hatchback.box(START - hatchback.size[0] / 2 + rng.uniform(-2, 2), lane)
     course = Straight(start, (SPEED, 0.0))
-    own = hatchback.on(Driven(course, _swing(2.0, 90, rng), _swing(0.7, 130, rng)))
+    own = hatchback.on(Swaying(course, _swing(2.0, 90, rng), _swing(0.7, 130, rng)))
     ahead = Vehicle(saloon((62, 84, 132)), lane)
     leader = ahead.on(Straight(ahead.box(start.x + rng.uniform(105, 125), lane), (3.05, 0.0)))
     behind = any_car(lane, rng)

@@ -21,9 +21,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TypeAlias
+from typing import Generic, TypeAlias, TypeVar
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
@@ -31,7 +31,6 @@ from vehicle_pf_tracker.scenes.scene import Actor, Path
 from vehicle_pf_tracker.scenes.solids import (
     ELEVATION,
     Face,
-    Point,
     draw,
     extent,
     normal_of,
@@ -79,20 +78,6 @@ class Wave:
 
 
 @dataclass(frozen=True, slots=True)
-class Driven:
-    """Follows `course` as a human drives: `surge` along x, `weave` along y."""
-
-    course: Path
-    surge: Wave
-    weave: Wave
-
-    def __call__(self, frame: float) -> Box:
-        """Give the box in `frame`."""
-        box = self.course(frame)
-        return Box(box.x + self.surge(frame), box.y + self.weave(frame), box.width, box.height)
-
-
-@dataclass(frozen=True, slots=True)
 class Attached:
     """Stays with `leader`: `offset` (px) from its corner, of its own `size` (px)."""
 
@@ -126,6 +111,7 @@ class Pose:
     scale: float
 
 
+Placed = TypeVar("Placed", Box, Pose)
 Course: TypeAlias = Callable[[float], Pose]
 """Gives the pose of a vehicle at a frame number, counted from 0."""
 
@@ -203,18 +189,17 @@ class Bend:
 
 
 @dataclass(frozen=True, slots=True)
-class Swaying:
-    """Follows `course` as a human drives: `surge` along x, `weave` along y."""
+class Swaying(Generic[Placed]):
+    """Follows a path or a course as a human drives: `surge` along x, `weave` along y."""
 
-    course: Course
+    course: Callable[[float], Placed]
     surge: Wave
     weave: Wave
 
-    def __call__(self, frame: float) -> Pose:
-        """Give the pose in `frame`."""
-        pose = self.course(frame)
-        x, y = pose.x + self.surge(frame), pose.y + self.weave(frame)
-        return Pose(x, y, pose.heading, pose.scale)
+    def __call__(self, frame: float) -> Placed:
+        """Give the box or pose in `frame`."""
+        placed = self.course(frame)
+        return replace(placed, x=placed.x + self.surge(frame), y=placed.y + self.weave(frame))
 
 
 def _rotated(along: float, across: float, heading: float) -> tuple[float, float]:
@@ -235,29 +220,24 @@ def all_round(faces: Sequence[Face]) -> list[Face]:
     both = [
         half
         for face in faces
-        for half in ((face, _reflected(face, width)) if normal_of(face)[1] < -0.3 else (face,))
+        for half in (
+            (face, face.moved(lambda x, y, z: (x, width - y, z)))
+            if normal_of(face)[1] < -0.3
+            else (face,)
+        )
     ]
     middle = (min(x) + max(x)) / 2, width / 2
-    return [
-        Face(tuple((px - middle[0], py - middle[1], pz) for px, py, pz in face.points),
-             face.colour, face.glow)
-        for face in (*both, *_ends(min(x), max(x), width))
-    ]  # fmt: skip
+    faces = (*both, *_ends(min(x), max(x), width))
+    return [face.moved(lambda x, y, z: (x - middle[0], y - middle[1], z)) for face in faces]
 
 
 def turned(faces: Iterable[Face], heading: float) -> list[Face]:
     """Turn a solid by `heading` (rad): 0 drives to the right, pi/2 away from the viewer."""
     cosine, sine = math.cos(heading), math.sin(heading)
-
-    def moved(point: Point) -> Point:
-        x, y, z = point
-        return x * cosine - y * sine, x * sine + y * cosine, z
-
-    return [Face(tuple(map(moved, face.points)), face.colour, face.glow) for face in faces]
-
-
-def _reflected(face: Face, width: float) -> Face:
-    return Face(tuple((x, width - y, z) for x, y, z in face.points), face.colour, face.glow)
+    return [
+        face.moved(lambda x, y, z: (x * cosine - y * sine, x * sine + y * cosine, z))
+        for face in faces
+    ]
 
 
 def _ends(rear: float, front: float, width: float) -> list[Face]:

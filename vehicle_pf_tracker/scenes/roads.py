@@ -243,15 +243,9 @@ def _pave(picture: Image, roads: Sequence[Carriageway], rng: np.random.Generator
 
 
 PAINTS: tuple[Colour, ...] = (
-    (222, 222, 220),
-    (168, 172, 176),
-    (44, 46, 50),
-    (96, 100, 104),
-    (158, 34, 36),
-    (40, 74, 58),
-    (186, 172, 140),
-    (206, 208, 212),
-)
+    (222, 222, 220), (168, 172, 176), (44, 46, 50), (96, 100, 104), (158, 34, 36), (40, 74, 58),
+    (186, 172, 140), (206, 208, 212),
+)  # fmt: skip
 """Common colours of cars; none is near the target's."""
 
 

@@ -14,7 +14,7 @@
 
 """A scene: actors on paths in front of a backdrop, seen by a camera, with exact truth.
 
-Cameras are fixed with sensor noise, or on a mast that shakes, flickers and follows the light.
+Cameras are fixed with sensor noise, or on a mast that shakes and flickers.
 """
 
 from __future__ import annotations
@@ -90,6 +90,12 @@ class Actor:
     path: Path
     hides: bool = True
 
+    def paint(self, picture: Image, frame: float) -> None:
+        """Paint it over `picture` where it is in `frame`."""
+        box = self.path(frame)
+        if not PixelWindow.of(box, picture.shape[1], picture.shape[0]).empty:
+            paint(picture, self.seen(frame), box)
+
     def seen(self, frame: float) -> Sprite:
         """Give the sprite it shows in `frame`."""
         return self.sprite if isinstance(self.sprite, Sprite) else self.sprite(frame)
@@ -135,9 +141,7 @@ class Scene:
         for index in range(self.frame_count):
             picture = backdrop.copy()
             for actor in self.actors:
-                box = actor.path(index)
-                if not PixelWindow.of(box, picture.shape[1], picture.shape[0]).empty:
-                    paint(picture, actor.seen(index), box)
+                actor.paint(picture, index)
             yield SceneFrame(self.camera.capture(picture, index), self.truth(index))
 
     def truths(self) -> Iterator[Truth]:
@@ -194,21 +198,17 @@ class Camera:
             noise = grain.standard_normal(picture.shape, dtype=np.float32)
             noise *= np.float32(self.noise)
             picture += noise
-        np.rint(picture, out=picture)
-        np.clip(picture, 0, 255, out=picture)
-        return picture.astype(np.uint8)
+        return _quantised(picture)
+
+
+def _quantised(picture: Image) -> Frame:
+    np.rint(picture, out=picture)
+    np.clip(picture, 0, 255, out=picture)
+    return picture.astype(np.uint8)
 
 
 MARGIN = 12
 """Stage around the image, px on each side: room for the camera to shake."""
-
-Light: TypeAlias = Callable[[float], Colour]
-"""Gives the gains of red, green and blue at a frame number."""
-
-
-def daylight(frame: float) -> Colour:
-    """Light that does not change."""
-    return 1.0, 1.0, 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,11 +235,10 @@ DISTURBANCES = {"clean": Disturbance(2.0, 0.0, 0.0), "rough": Disturbance(8.0, 3
 
 @dataclass(frozen=True, slots=True)
 class OutdoorCamera:
-    """Shows the stage without its margin, shaken by the wind; see `Disturbance` and `Light`."""
+    """Shows the stage without its margin, shaken by the wind; see `Disturbance`."""
 
     disturbance: Disturbance
     seed: int
-    light: Light = daylight
 
     def offset(self, index: int) -> tuple[float, float]:
         """Give the image's top-left corner on the stage in frame `index`, px.
@@ -261,20 +260,17 @@ class OutdoorCamera:
     def capture(self, picture: Image, index: int) -> Frame:
         """Turn the composed stage of frame `index` into an 8-bit frame."""
         image = _shown(picture, self.offset(index))
-        image *= np.asarray(self._gain(index), np.float32)
+        image *= np.asarray(self.gain(index), np.float32)
         image += _noise(image.shape, self.disturbance.noise, self.seed, index)
-        np.rint(image, out=image)
-        np.clip(image, 0, 255, out=image)
-        return image.astype(np.uint8)
+        return _quantised(image)
 
-    def _gain(self, index: int) -> Colour:
+    def gain(self, index: int) -> Colour:
+        """Give the gains of red, green and blue in frame `index`."""
         flicker = 1.0
         if self.disturbance.flicker > 0:
-            flicker += self.disturbance.flicker * float(
-                stream(self.seed, "flicker", index).standard_normal()
-            )
-        red, green, blue = self.light(index)
-        return red * flicker, green * flicker, blue * flicker
+            noise = stream(self.seed, "flicker", index).standard_normal()
+            flicker += self.disturbance.flicker * float(noise)
+        return flicker, flicker, flicker
 
 
 def _shown(picture: Image, offset: tuple[float, float]) -> Image:

@@ -21,8 +21,8 @@ as through the long lens of a traffic camera, so that a solid keeps its size alo
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -55,6 +55,10 @@ class Face:
     colour: Colour
     glow: bool = False
 
+    def moved(self, to: Callable[[float, float, float], Point]) -> Face:
+        """Return the face with each corner (x, y, z) moved."""
+        return replace(self, points=tuple(to(*point) for point in self.points))
+
 
 def side_panel(
     contour: Sequence[tuple[float, float]], y: float, colour: Colour, *, glow: bool = False
@@ -82,19 +86,16 @@ def disc(x: float, z: float, radius: float, colour: Colour, y: float = 0.0) -> F
 
 def mirrored(faces: Iterable[Face]) -> list[Face]:
     """Turn a solid round so that it heads to the left."""
-    return [
-        Face(tuple((-x, y, z) for x, y, z in face.points), face.colour, face.glow) for face in faces
-    ]
+    return [face.moved(lambda x, y, z: (-x, y, z)) for face in faces]
 
 
 def shadow(faces: Iterable[Face]) -> list[Face]:
     """Cast every face along the sun's rays onto the ground (z = 0)."""
     east, away, up = (float(part) for part in _SUN)
-    return [
-        Face(tuple((x - z * east / up, y - z * away / up, 0.0) for x, y, z in face.points),
-             SHADE, glow=True)
-        for face in faces
-    ]  # fmt: skip
+    cast = [
+        face.moved(lambda x, y, z: (x - z * east / up, y - z * away / up, 0.0)) for face in faces
+    ]
+    return [replace(face, colour=SHADE, glow=True) for face in cast]
 
 
 def extent(faces: Iterable[Face]) -> Box:

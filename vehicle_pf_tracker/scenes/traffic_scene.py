@@ -25,7 +25,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.scenes.compositing import Image, PixelWindow, overlap, paint, stream
+from vehicle_pf_tracker.scenes.compositing import Image, PixelWindow, overlap, stream
 from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.scenes.roads import PAINTS, Carriageway, Lane, Vehicle, any_car, countryside
 from vehicle_pf_tracker.scenes.scene import Actor, Camera, Eye
@@ -114,9 +114,7 @@ class TrafficScene:
             shadows = [self.vehicles[number][0] for number in order]
             bodies = [self.vehicles[number][1] for number in order]
             for actor in (*shadows, *bodies, *self.obstacles):
-                box = actor.path(index)
-                if not PixelWindow.of(box, self.width, self.height).empty:
-                    paint(picture, actor.seen(index), box)
+                actor.paint(picture, index)
             yield self.camera.capture(picture, index), self.truth(index)
 
     def truth(self, index: int) -> tuple[VehicleTruth, ...]:
