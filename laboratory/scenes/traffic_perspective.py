@@ -35,7 +35,9 @@ from laboratory.scenes.perspective import (
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.road.calibration import format_pairs
 from vehicle_pf_tracker.road.camera import Lens
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.scenes.roads import PAINTS
@@ -65,7 +67,16 @@ _CARS = (
     (van, (1.0, 4.5)),
 )
 """Makers and axles (m from the rear) of the kinds of vehicles to choose from."""
+_ROAD_FROM = 0.5
+"""Row of the farthest pairs of a road, of the image's height: clearly below its horizon."""
 _LORRY_AXLES = (1.0, 2.2, 7.1, 9.4)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PerspectiveScene(TrafficScene):
+    """Traffic in perspective, with the exact map from pixels to the road."""
+
+    road: RoadPlane
 
 
 class _OnRoad:
@@ -105,7 +116,7 @@ class PerspectiveParameters(TrafficSceneParameters):
     )
 
 
-def perspective_scene(parameters: PerspectiveParameters, seed: int) -> TrafficScene:
+def perspective_scene(parameters: PerspectiveParameters, seed: int) -> PerspectiveScene:
     """Make traffic seen from over the road.
 
     Raises
@@ -122,7 +133,7 @@ def perspective_scene(parameters: PerspectiveParameters, seed: int) -> TrafficSc
         parameters.vehicles - count, False, parameters, stream(seed, "going traffic")
     )
     vehicles = [*coming, *going]
-    return TrafficScene(
+    return PerspectiveScene(
         width=WIDTH,
         height=HEIGHT,
         frame_rate=parameters.frame_rate,
@@ -139,6 +150,19 @@ def perspective_scene(parameters: PerspectiveParameters, seed: int) -> TrafficSc
         order=_order(vehicles, float(camera.pose.position[0])),
         road=camera.plane,
     )
+
+
+def road_file(scene: PerspectiveScene) -> str:
+    """Return a parameter file with pairs of the road: a grid below the horizon."""
+    columns, rows = np.meshgrid(
+        np.linspace(0, scene.width, 3), np.linspace(_ROAD_FROM, 1, 3) * scene.height
+    )
+    pixels = np.stack([columns, rows], axis=-1).reshape(-1, 2)
+    pairs = tuple(
+        Pair((u, v), (x, y))
+        for (u, v), (x, y) in zip(pixels.tolist(), scene.road.to_road(pixels).tolist(), strict=True)
+    )
+    return f'/**:\n  ros__parameters:\n    road.pairs: "{format_pairs(pairs)}"\n'
 
 
 def camera_over(parameters: PerspectiveParameters, seed: int) -> RoadCamera:

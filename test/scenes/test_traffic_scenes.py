@@ -22,6 +22,7 @@ import pytest
 import yaml
 
 from laboratory.scenes import TRAFFIC_SCENES, make_traffic_scene
+from laboratory.scenes.traffic_perspective import road_file
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.traffic.identities import matches
@@ -199,10 +200,9 @@ def test_bridges_are_seen_from_the_side_only():
         make_traffic_scene("traffic-jam", settings=["bridges=1"])
 
 
-def test_a_scene_in_perspective_has_its_road(tmp_path):
+def test_a_scene_in_perspective_has_its_road():
     scene = make_traffic_scene("traffic-jam", settings={"frames": 2, "vehicles": 4})
-    write_mot_folder(scene, tmp_path / "jam", 0)
-    text = yaml.safe_load((tmp_path / "jam" / "road.yaml").read_text())
+    text = yaml.safe_load(road_file(scene))
     pairs = parse_pairs(text["/**"]["ros__parameters"]["road.pairs"])
     plane = RoadPlane.of_pairs(pairs, None, margin=0.1, coarsest=1.0)
     points = np.array([[100.0, 300.0], [400.0, 200.0]])

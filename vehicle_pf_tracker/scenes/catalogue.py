@@ -95,19 +95,11 @@ def _traffic(summary: str, **settings: object) -> SceneKind[TrafficScene]:
 TRAFFIC_SCENES: dict[str, SceneKind[TrafficScene]] = {
     "traffic-pair": _traffic(
         "a car overtakes behind a lorry, which hides it",
-        vehicles=2,
-        directions=1,
-        lanes=2,
-        lorries=0.5,
-        frames=240,
+        vehicles=2, directions=1, lanes=2, lorries=0.5, frames=240,
     ),
     "traffic-lanes": _traffic(
         "twenty vehicles; the fast ones change lanes",
-        vehicles=20,
-        changing=True,
-        gap=14.0,
-        lorries=0.2,
-        frames=350,
+        vehicles=20, changing=True, gap=14.0, lorries=0.2, frames=350,
     ),
     "traffic-queue": _traffic(
         "all wait at a red light, and go on", vehicles=24, lorries=0.0, flow="queue", frames=540
@@ -115,33 +107,20 @@ TRAFFIC_SCENES: dict[str, SceneKind[TrafficScene]] = {
     "traffic-waves": _traffic("stop and go", vehicles=30, flow="waves", gap=12.0, frames=600),
     "traffic-lorries": _traffic(
         "lorries hide several cars at once",
-        vehicles=24,
-        lanes=2,
-        lorries=0.25,
-        gap=12.0,
-        frames=500,
+        vehicles=24, lanes=2, lorries=0.25, gap=12.0, frames=500,
     ),
     "traffic-bridge": _traffic(
         "a bridge hides every vehicle once", vehicles=16, bridges=1, bridge_width=90.0
     ),
     "traffic-forty": _traffic(
         "forty vehicles, about 180 total occlusions",
-        vehicles=40,
-        bridges=5,
-        bridge_width=58.0,
-        lorries=0.05,
-        frames=650,
+        vehicles=40, bridges=5, bridge_width=58.0, lorries=0.05, frames=650,
     ),
     "traffic-eighty": _traffic(
         "eighty vehicles in eight lanes",
-        vehicles=80,
-        lanes=4,
-        gap=9.0,
-        changing=True,
-        flow="waves",
-        frames=600,
+        vehicles=80, lanes=4, gap=9.0, changing=True, flow="waves", frames=600,
     ),
-}
+}  # fmt: skip
 """The scenes with many vehicles, by name."""
 
 

@@ -235,24 +235,16 @@ class TrafficSceneParameters:
         unit="m",
     )  # fmt: skip
     lorries: float = parameter(
-        0.1,
-        "share of lorries, which drive in the nearest lane and hide others",
-        minimum=0.0,
-        maximum=1.0,
-    )
+        0.1, "share of lorries, which drive in the nearest lane and hide others",
+        minimum=0.0, maximum=1.0,
+    )  # fmt: skip
     lorry_speed: float = parameter(
-        0.5,
-        "speed of lorries; above 1 they overtake the cars",
-        minimum=0.2,
-        maximum=2.0,
-        unit="of the other vehicles'",
-    )
+        0.5, "speed of lorries; above 1 they overtake the cars",
+        minimum=0.2, maximum=2.0, unit="of the other vehicles'",
+    )  # fmt: skip
     mixed: bool = parameter(False, "lorries drive among the cars, not in a lane of their own")
     bridges: int = parameter(
-        0,
-        "bridges, each of which hides every vehicle once",
-        minimum=0,
-        maximum=5,
+        0, "bridges, each of which hides every vehicle once", minimum=0, maximum=5
     )
     bridge_width: float = parameter(
         50.0, "wider bridges hide vehicles for longer", minimum=10.0, maximum=200.0, unit="px"
@@ -303,7 +295,7 @@ def drive(
     visible: float,
     rng: np.random.Generator,
 ) -> Flow:
-    """Simulate the vehicles of one direction.
+    """Place the vehicles of one direction one behind the other, and let them drive.
 
     Parameters
     ----------
@@ -318,24 +310,6 @@ def drive(
     rng : numpy.random.Generator
         Draws speeds and gaps.
     """
-    return simulate(
-        _drivers(lengths, is_lorry, parameters, visible, rng),
-        parameters.lanes,
-        parameters.frames,
-        parameters.frame_rate,
-        _holds(parameters, visible),
-        changing=parameters.changing,
-    )
-
-
-def _drivers(
-    lengths: Sequence[float],
-    is_lorry: Sequence[bool],
-    parameters: TrafficSceneParameters,
-    visible: float,
-    rng: np.random.Generator,
-) -> list[Driver]:
-    """Place vehicles one behind the other."""
     own_lane = any(is_lorry) and parameters.lanes > 1 and not parameters.mixed
     slow = parameters.lanes - 1 if own_lane else parameters.lanes
     ahead = rng.uniform(*_FIRST, parameters.lanes + 1) * visible
@@ -350,7 +324,14 @@ def _drivers(
         drivers.append(Driver(lane, float(ahead[lane]), length, float(speed)))
         gap = parameters.gap * rng.uniform(*_GAPS) * (_LORRY_GAP if lane == slow else 1.0)
         ahead[lane] -= length + gap
-    return drivers
+    return simulate(
+        drivers,
+        parameters.lanes,
+        parameters.frames,
+        parameters.frame_rate,
+        _holds(parameters, visible),
+        changing=parameters.changing,
+    )
 
 
 def _holds(parameters: TrafficSceneParameters, visible: float) -> tuple[Hold, ...]:

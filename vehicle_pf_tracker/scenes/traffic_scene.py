@@ -24,11 +24,10 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.scenes.compositing import Image, PixelWindow, overlap, stream
 from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.scenes.roads import PAINTS, Carriageway, Lane, Vehicle, any_car, countryside
-from vehicle_pf_tracker.scenes.scene import Actor, Camera, Eye
+from vehicle_pf_tracker.scenes.scene import Actor, Camera, Eye, Path
 from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.vehicles import lorry
 
@@ -90,8 +89,6 @@ class TrafficScene:
     order : callable or None
         Indices of the vehicles of a frame, far to near; None: the lower a body stands, the
         nearer it is.
-    road : RoadPlane or None
-        Exact map from pixels to the road, where the scene is in perspective.
     """
 
     width: int
@@ -103,7 +100,6 @@ class TrafficScene:
     obstacles: tuple[Actor, ...]
     camera: Eye
     order: Callable[[int], list[int]] | None = None
-    road: RoadPlane | None = None
 
     def frames(self) -> Iterator[tuple[Frame, tuple[VehicleTruth, ...]]]:
         """Render every frame in order, with its truth."""
@@ -228,7 +224,7 @@ def _direction(
     lengths = [body.size[0] / SCALE for body in bodies]
     flow = drive(lengths, is_lorry, parameters, WIDTH / SCALE, rng)
     return [
-        body.on(_Way(road, body.size, flow.front[number], flow.lane[number]))
+        body.on(_way(road, body.size, flow.front[number], flow.lane[number]))
         for number, body in enumerate(bodies)
     ]
 
@@ -238,20 +234,11 @@ def _lorry(lane: Lane, rng: np.random.Generator) -> Vehicle:
     return Vehicle(lorry(cab, load, stripe), lane)
 
 
-class _Way:
-    """Path of a vehicle through the flow; constant before its first and after its last frame."""
-
-    def __init__(
-        self, road: Carriageway, size: tuple[float, float], front: Array, lane: Array
-    ) -> None:
-        ground = [road.lane(number).ground for number in range(road.lanes)]
-        x = front * SCALE
-        self._left = (x - size[0] if road.rightward else WIDTH - x).tolist()
-        foot = np.interp(lane, np.arange(road.lanes), ground)
-        self._top = (foot - size[1]).tolist()
-        self._size = size
-
-    def __call__(self, frame: float) -> Box:
-        """Give the box in `frame`."""
-        index = min(max(round(frame), 0), len(self._left) - 1)
-        return Box(self._left[index], self._top[index], *self._size)
+def _way(road: Carriageway, size: tuple[float, float], front: Array, lane: Array) -> Path:
+    """Make the path of a vehicle; constant before its first and after its last frame."""
+    x = front * SCALE
+    left = x - size[0] if road.rightward else WIDTH - x
+    ground = [road.lane(number).ground for number in range(road.lanes)]
+    top = np.interp(lane, np.arange(road.lanes), ground) - size[1]
+    boxes = [Box(*corner, *size) for corner in zip(left.tolist(), top.tolist(), strict=True)]
+    return lambda frame: boxes[min(max(round(frame), 0), len(boxes) - 1)]
