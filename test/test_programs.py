@@ -208,4 +208,8 @@ def test_every_program_is_tried():
 def test_every_experiment_is_reproduced(tmp_path):
     run("reproduction", "all", "--quick", "--seeds", "1", "-o", str(tmp_path))
     for name in EXPERIMENTS:
-        assert any((tmp_path / name).iterdir())
+        assert {path.name for path in (tmp_path / name).iterdir()} == {
+            "data.csv", "figure.svg", "figure.png", "verdict.json", "verdict.md",
+        }  # fmt: skip
+        verdict = json.loads((tmp_path / name / "verdict.json").read_text())
+        assert all(claim["findings"] for claim in verdict["claims"])

@@ -30,11 +30,6 @@ def test_value_noise_is_linear_between_its_grid_corners():
     assert np.abs(noise).max() <= 1
 
 
-@pytest.mark.parametrize("shape", [(1, 7), (7, 1), (13, 200)])
-def test_any_shape_is_covered(shape):
-    assert value_noise(shape, (3, 5), stream(0, "noise")).shape == shape
-
-
 @pytest.mark.parametrize("surface", SURFACES)
 def test_surfaces_have_contrast_within_the_levels(surface):
     image = surface((120, 160), stream(2, "surface"))

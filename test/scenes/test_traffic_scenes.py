@@ -89,11 +89,6 @@ def drivers(*places, speed=15.0):
     return [Driver(lane, front, 4.0, speed) for lane, front in places]
 
 
-def test_a_free_driver_keeps_the_wanted_speed():
-    front = simulate(drivers((0, 0.0)), 1, 31, 30).front[0]
-    assert front[30] - front[0] == pytest.approx(15.0, rel=1e-6)
-
-
 def test_nobody_drives_into_the_one_ahead_when_a_light_is_red():
     places = [(0, 40.0 - 12 * number) for number in range(4)]
     flow = simulate(drivers(*places), 1, 1050, 30, [Hold(90.0, 1.0, 20.0)])
@@ -193,11 +188,6 @@ def test_who_hides_another_is_nearer_and_painted_later():
     assert nearer.depth < hidden.depth
     order = scene.order(index)
     assert order.index(hidden.identity - 1) < order.index(nearer.identity - 1)
-
-
-def test_bridges_are_seen_from_the_side_only():
-    with pytest.raises(InputError, match="a scene in perspective has no bridges"):
-        make_traffic_scene("traffic-jam", settings=["bridges=1"])
 
 
 def test_a_scene_in_perspective_has_its_road():
