@@ -29,7 +29,7 @@ from vehicle_pf_tracker.evaluation.baselines.worker_process import WorkerProcess
 from vehicle_pf_tracker.evaluation.traffic.identities import scorable
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
-_WORKER = Path(__file__).with_name("worker.py")
+_WORKER = Path(__file__).with_name("traffic_worker.py")
 
 
 class TrafficBaseline(NamedTuple):
