@@ -27,8 +27,8 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 demo: .venv/installed
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
 
-# Three parts of which two run side by side: the tests through ROS mostly wait, and the others mostly
-# compute. In processes of their own, since rclpy and Dask in one have crashed.
+# Three parts side by side on two cores: the tests through ROS mostly wait, and the others compute. In
+# processes of their own, since rclpy and Dask in one have crashed.
 PARTS := test-ros test-offline test-footage
 RUN := $(BIN)/python -m pytest -m "not slow"
 
@@ -38,7 +38,7 @@ test: .venv/installed
 else
 # What takes a few seconds or less, without coverage.
 test: .venv/installed kernels
-	$(MAKE) --no-print-directory --jobs=2 --keep-going $(PARTS)
+	$(MAKE) --no-print-directory --jobs=3 --keep-going $(PARTS)
 endif
 
 # Everything, with branch coverage; the slow tests try every way to install, colcon's too.

@@ -101,8 +101,8 @@ VIEWS: Mapping[str, View] = MappingProxyType(
 )
 """The same, and three of them on the harder scene."""
 INTERPRETATIONS_NOTE = (
-    "The paper's rule is its tables I and II, with the plain mean of the particles as the "
-    "position, and a criterion that can be reached (0.7 of 200 particles). Our interpretation, "
+    "The paper's rule is its tables I and II. The position is the plain mean of the particles, "
+    "and the criterion can be reached (0.7 of 200 particles). Our interpretation, "
     "the variants' defaults, takes the weighted mean. As printed, the criterion is all particles, "
     "which no filter can reach. Both filters have the same sigma, random walk and seeds, and at "
     "most 20 passes a frame, as in the paper. The paper does not define low weights: they are "

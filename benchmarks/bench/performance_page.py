@@ -49,8 +49,8 @@ on real video.
 """
 _COSTS = """## Cost of more particles, larger windows and images, more trackers
 
-Ratio to the same variant by default (200 particles, a window of 41x31 px, 640x480 images, one
-tracker), and the time of one tracker's step.
+The default is 200 particles, a window of 41x31 px, 640x480 images and one tracker. Ratio to it,
+and the time of one tracker's step.
 """
 _KERNELS = f"""## Windows measured at once
 

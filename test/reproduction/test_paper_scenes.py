@@ -101,12 +101,15 @@ def some(name, count=2, **options):
 
 
 @pytest.mark.parametrize("name", FIXED_SCENES)
-def test_a_seed_decides_every_bit_and_another_changes_more_than_the_noise(name):
-    shown = some(name, seed=7)
-    for one, two in zip(shown, some(name, seed=7), strict=True):
+def test_a_seed_decides_every_bit_and_frames_have_the_scene_s_truths(name):
+    scene = make_scene(name, seed=7)
+    shown, truths = some(name, seed=7), list(scene.truths())
+    for one, two in zip(shown, islice(scene.frames(), 2), strict=True):
         np.testing.assert_array_equal(one.frame, two.frame)
         assert one.truth == two.truth
-    other = some(name, 1, seed=8)[0]
+    assert [shot.truth for shot in shown] == truths[:2]
+    assert len(truths) == scene.frame_count
+    other = some(name, 1, seed=8)[0]  # which changes more than the noise
     assert np.abs(shown[0].frame.astype(int) - other.frame).mean() > 2.5
 
 

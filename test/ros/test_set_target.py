@@ -54,11 +54,11 @@ def test_the_node_starts_on_the_target(bench, set_target, shift):
 
 def test_without_such_a_node_it_says_which_there_are(bench, set_target):
     Rig(bench)
-    process = set_target("apf_trackr", "1,2,30,40", "--timeout", "2")
+    process = set_target("apf_trackr", "1,2,30,40", "--timeout", "10")
     bench.wait_for(lambda: process.popen.poll() is not None)
     assert process.wait() == 1
     assert process.output == (
-        "vehicle-pf-tracker: error: there is no node /apf_trackr that takes targets after 2 s: "
+        "vehicle-pf-tracker: error: there is no node /apf_trackr that takes targets after 10 s: "
         "there is /apf_tracker\n"
     )
 

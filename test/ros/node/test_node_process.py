@@ -221,7 +221,9 @@ def test_the_node_loads_neither_recordings_nor_evaluation():
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     ).stdout
     rooms = {name.split(".")[1] for name in loaded.split()}
-    assert rooms == {"ros", "road", "trackers", "image", "filtering", "parameters", "core"}
+    assert rooms == {
+        "ros", "offline", "road", "trackers", "image", "filtering", "parameters", "core",
+    }  # fmt: skip
     assert "player" not in loaded
 
 
