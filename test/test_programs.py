@@ -18,10 +18,12 @@ import json
 import os
 import subprocess
 import sys
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
 import cv2
+import numpy as np
 import pytest
 
 from reproduction.catalogue import EXPERIMENTS
@@ -39,6 +41,7 @@ PATIENCE = 1800
 FRAMES = 60
 """Frames of a toy sequence: painted occluders need a second before them and one after."""
 PICTURE = "fusion_turn"
+FAST_PNG = (cv2.IMWRITE_PNG_COMPRESSION, 1)
 
 
 class Program(NamedTuple):
@@ -113,16 +116,14 @@ LIBRARIES = {
 """Modules beside the programs that these import."""
 
 
-def write_sequence(folder, seed, frames=FRAMES):
-    """Write the beginning of a scene as a frame folder."""
+def write_sequence(folder, shots):
+    """Write frames with their truth as a frame folder."""
     (folder / "img").mkdir(parents=True)
     lines = ["frame,x,y,w,h,visible,occ"]
-    for number, each in enumerate(make_scene("bridge", seed=seed).frames(), start=1):
-        if number > frames:
-            break
+    for number, each in enumerate(shots, start=1):
         box = each.truth.box
         occlusion = int(each.truth.occlusion)
-        cv2.imwrite(str(folder / "img" / f"{number:04d}.png"), each.frame[..., ::-1])
+        cv2.imwrite(str(folder / "img" / f"{number:04d}.png"), each.frame[..., ::-1], FAST_PNG)
         lines.append(
             f"{number},{box.x},{box.y},{box.width},{box.height},{int(occlusion < 2)},{occlusion}"
         )
@@ -134,14 +135,17 @@ def write_sequence(folder, seed, frames=FRAMES):
 def toy(tmp_path_factory):
     """Folder of two sequences, a clip with truth and a traffic scene."""
     folder = tmp_path_factory.mktemp("toy")
-    for seed, name in enumerate(("one", "two")):
-        write_sequence(folder / "sequences" / "toy" / name, seed)
-    write_sequence(folder / "clip", 0, frames=90)  # with the whole occlusion, which is judged
-    images = [cv2.imread(str(path)) for path in sorted((folder / "clip" / "img").iterdir())]
-    size = images[0].shape[1::-1]
+    one, two = (
+        list(islice(make_scene("bridge", seed=seed).frames(), count))
+        for seed, count in enumerate((90, FRAMES))
+    )
+    for name, shots in (("one", one), ("two", two)):
+        write_sequence(folder / "sequences" / "toy" / name, shots[:FRAMES])
+    write_sequence(folder / "clip", one)  # with the whole occlusion, which is judged
+    size = one[0].frame.shape[1::-1]
     writer = cv2.VideoWriter(str(folder / "clip.mp4"), cv2.VideoWriter.fourcc(*"mp4v"), 15.0, size)
-    for image in images:
-        writer.write(image)
+    for each in one:
+        writer.write(np.ascontiguousarray(each.frame[..., ::-1]))
     writer.release()
     scene = make_traffic_scene("traffic-pair", settings={"frames": 50})
     write_mot_folder(scene, folder / "traffic", 0)
