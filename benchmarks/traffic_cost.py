@@ -38,10 +38,10 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
-from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.scenes.roads import Carriageway, any_car, countryside
+from vehicle_pf_tracker.scenes.scene import Camera
 from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
@@ -109,7 +109,6 @@ def made(count: int, folder: Path, frames: int = FRAMES) -> TrafficSequence:
         path = partial(place, vehicle.box(0.0, lane), start, speed if road.rightward else -speed)
         vehicles.append(vehicle.on(path))
     scene = TrafficScene(
-        name="cost",
         width=WIDTH,
         height=HEIGHT,
         frame_rate=30.0,

@@ -29,6 +29,7 @@ from pathlib import Path
 
 import cv2
 
+from laboratory.scenes import make_scene
 from laboratory.stress.scoring import Score, score_estimates
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
@@ -36,7 +37,6 @@ from vehicle_pf_tracker.offline.driver import OfflineTracker
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.registry import find_variant
 

@@ -35,6 +35,8 @@ from typing import Any
 import cv2
 import numpy as np
 
+from laboratory.scenes.perspective import RoadCamera
+from laboratory.scenes.road import RoadSceneParameters, camera_of, road
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
@@ -44,8 +46,6 @@ from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.road.calibration import format_pairs
 from vehicle_pf_tracker.road.plane import Pair
-from vehicle_pf_tracker.scenes.perspective import RoadCamera
-from vehicle_pf_tracker.scenes.road import RoadSceneParameters, camera_of, road
 from vehicle_pf_tracker.trackers.localisation import Localisation
 from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session

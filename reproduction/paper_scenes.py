@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Scenes after the papers' videos and cases, beside those of the package.
+"""Scenes after the papers' videos and cases, beside those of the package and the laboratory.
 
 Sources: Scharcanski et al. 2011, table I (vehicle, occlusion, resolution) and figure 5 (in its
 video 3 signs, then a bus hide the vehicle); Abdulla et al., section V (cases 1 to 6); Khong et al.,
@@ -24,33 +24,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeAlias
 
+from laboratory import scenes as laboratory_scenes
+from laboratory.scenes.drives import cross, dense, near_traffic, tree_shadows
 from vehicle_pf_tracker.core.truth import TOTAL_BELOW
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.scenes import catalogue as package_scenes
+from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.catalogue import SceneKind
 from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.drive import LANE, RADIUS, Drive, DriveParameters
-from vehicle_pf_tracker.scenes.light import tree_shadows
-from vehicle_pf_tracker.scenes.manoeuvres import clear, turning
-from vehicle_pf_tracker.scenes.models import Model
-from vehicle_pf_tracker.scenes.obstacles import tree
-from vehicle_pf_tracker.scenes.occluded_drives import (
+from vehicle_pf_tracker.scenes.drives import (
     bridge_at,
+    clear,
     coach_at,
-    cross,
-    dense,
-    near_traffic,
-    pillar_at,
+    hiding_width,
     posts_at,
     sign_at,
     trees_at,
-    van_at,
+    turning,
 )
-from vehicle_pf_tracker.scenes.paths import Pace
+from vehicle_pf_tracker.scenes.models import Model, Pace
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
+from vehicle_pf_tracker.scenes.scenery import pillar, tree
 from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
 from vehicle_pf_tracker.scenes.vehicles import coach, van
 
@@ -97,7 +94,7 @@ class FixedScene:
     def scene(self, parameters: NoParameters, seed: int) -> Scene:
         """Make the scene; rows of one seed differ in vehicle, traffic and ground."""
         own = int(stream(seed, self.name).integers(2**32))
-        return replace(self.build(self.parameters, own), name=self.name)
+        return self.build(self.parameters, own)
 
 
 def past(*obstacles: Callable[[Drive], list[Actor]]) -> Build:
@@ -106,7 +103,7 @@ def past(*obstacles: Callable[[Drive], list[Actor]]) -> Build:
     def build(parameters: DriveParameters, seed: int) -> Scene:
         drive = Drive(parameters, seed)
         front = [actor for obstacle in obstacles for actor in obstacle(drive)]
-        return drive.scene("", front)
+        return drive.scene(front)
 
     return build
 
@@ -117,9 +114,23 @@ def chosen(kind: str, speed: float, heading: str, others: Mapping[str, str]) -> 
     return from_mapping(DriveParameters, values)
 
 
+def pillar_at(drive: Drive, share: float, frames: float) -> list[Actor]:
+    """Put up a pillar that hides the target for `frames` frames."""
+    middle, width = drive.x(drive.along(share)), hiding_width(drive, frames)
+    return pillar(middle, width, drive.height, stream(drive.seed, "pillar"))
+
+
+def van_at(drive: Drive, share: float, frames: float) -> list[Actor]:
+    """Let the target overtake a van in the nearer lane, half hidden by it for about `frames`."""
+    faces = van((196, 196, 190))
+    length = Model(faces, drive.scale).size[0]
+    speed = drive.parameters.speed - (length + drive.target.size[0]) / frames
+    return drive.meeting(faces, drive.along(share), speed)
+
+
 def _turn_past_trees(parameters: DriveParameters, seed: int) -> Scene:
     drive = turning(parameters, seed)
-    return drive.scene("", trees_at(drive, (0.2, 0.36)), behind=())
+    return drive.scene(trees_at(drive, (0.2, 0.36)), behind=())
 
 
 _LARGE = {"resolution": "768x576"}
@@ -197,7 +208,7 @@ def _turn_behind_trees(parameters: DriveParameters, seed: int) -> Scene:
             drive.x(drive.corner + share * RADIUS), (105, top, drive.row + 45), foot, 0.8, rng
         )
     ]
-    return drive.scene("", front, behind=())
+    return drive.scene(front, behind=())
 
 
 def _past_parked_vehicles(drive: Drive) -> list[Actor]:
@@ -233,10 +244,7 @@ def _past_a_parked_lorry(drive: Drive) -> list[Actor]:
     rear = drive.start + length / 2 + CLEAR * speed
     stretch = (length + OVERLAPPED * speed) / Model(van((0, 0, 0)), drive.scale).size[0]
     faces = [
-        replace(
-            face,
-            points=tuple((x * stretch, y, z * _LORRY_HEIGHT) for x, y, z in face.points),
-        )
+        face.moved(lambda x, y, z: (x * stretch, y, z * _LORRY_HEIGHT))
         for face in van((206, 206, 200))
     ]
     return list(_parked(drive, faces, rear))
@@ -276,7 +284,7 @@ CASES: dict[str, FixedScene] = {case.name: case for case in _CASE_TABLE}
 
 FIXED_SCENES: dict[str, FixedScene] = VIDEOS | CASES
 """The scenes after the papers, by name."""
-SCENES: dict[str, SceneKind] = package_scenes.SCENES | {
+SCENES: dict[str, SceneKind[Scene]] = laboratory_scenes.SCENES | {
     name: SceneKind(NoParameters, row.scene, row.summary) for name, row in FIXED_SCENES.items()
 }
 
@@ -285,4 +293,4 @@ def make_scene(
     name: str, *, seed: int = 0, settings: Mapping[str, object] | Sequence[str] = ()
 ) -> Scene:
     """Make the scene `name`, as `vehicle_pf_tracker.scenes.catalogue.make_scene` does."""
-    return package_scenes.make_scene(name, seed=seed, settings=settings, scenes=SCENES)
+    return catalogue.make_scene(name, seed=seed, settings=settings, scenes=SCENES)

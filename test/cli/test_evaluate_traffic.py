@@ -20,8 +20,8 @@ import pytest
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.evaluation import baselines as client
+from vehicle_pf_tracker.scenes.catalogue import make_traffic_scene
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
-from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
 
 WORKER = """
 import json, sys

@@ -23,12 +23,12 @@ pytest.importorskip("scipy", reason="the extra evaluation is not installed")
 
 from laboratory.covariance_coverage import COLUMNS, INSIDE, Runs, fit, fitted_table, runs_of
 from laboratory.road_speed import roads_of, settings_of
+from laboratory.scenes.road import RoadSceneParameters, camera_of
 from laboratory.uncertainty import rows_of
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes.catalogue import make_scene
-from vehicle_pf_tracker.scenes.road import RoadSceneParameters, camera_of
 from vehicle_pf_tracker.trackers.localisation import Localisation
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.session import Session

@@ -25,8 +25,8 @@ from laboratory.traffic_perturbed import PERTURBATIONS
 from laboratory.traffic_spread import Run, summary
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
+from vehicle_pf_tracker.scenes.catalogue import make_traffic_scene
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
-from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, TrafficNumbers
 
 

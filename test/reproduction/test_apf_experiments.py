@@ -14,7 +14,6 @@
 
 """Every experiment in its smallest size: it runs, draws and judges."""
 
-import json
 import math
 
 import pytest
@@ -46,23 +45,6 @@ def reports(tmp_path_factory):
         return made[name]
 
     return report
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", EXPERIMENTS)
-def test_an_experiment_gives_data_figure_and_verdict(reports, tmp_path, name):
-    report = reports(name)
-    write_report(tmp_path, EXPERIMENTS[name], report, SIZE)
-    assert {path.name for path in tmp_path.iterdir()} == {
-        "data.csv", "figure.svg", "figure.png", "verdict.json", "verdict.md",
-    }  # fmt: skip
-    assert len(report.data.rows) > 0
-    assert all(len(row) == len(report.data.columns) for row in report.data.rows)
-    verdict = json.loads((tmp_path / "verdict.json").read_text())
-    assert verdict["holds"] in {"yes", "partly", "no"}
-    assert all(claim["findings"] for claim in verdict["claims"])
-    text = (tmp_path / "verdict.md").read_text()
-    assert f"python -m reproduction {name} --quick --seeds 1 --first-seed 100`" in text
 
 
 def test_figures_are_the_same_every_time(tmp_path):

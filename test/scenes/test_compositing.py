@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Sprites: exact places, exact scale, exact visibility, by hand numbers."""
+"""Sprites at exact positions and scales, exact visibility, and filled polygons, by hand."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.compositing import PixelWindow, Sprite, paint, visible_fraction
+from vehicle_pf_tracker.scenes.compositing import (
+    PixelWindow,
+    Sprite,
+    cells_inside,
+    paint,
+)
 
 WHITE = Sprite.plain((255.0, 255.0, 255.0))
 PLACES = st.floats(-30, 70, allow_nan=False)
@@ -29,14 +34,6 @@ SIZES = st.floats(0.5, 40, allow_nan=False)
 
 def canvas(width=40, height=30):
     return np.zeros((height, width, 3), np.float32)
-
-
-def test_a_whole_pixel_box_fills_its_pixels_and_no_other():
-    picture = canvas()
-    paint(picture, WHITE, Box(3, 4, 5, 6))
-    expected = canvas()
-    expected[4:10, 3:8] = 255
-    np.testing.assert_allclose(picture, expected, atol=1e-3)
 
 
 def test_a_quarter_pixel_shift_splits_the_edge_pixels():
@@ -90,50 +87,51 @@ def test_centre_of_mass_is_the_centre_of_the_box(x, y):
     assert found == pytest.approx(box.centre, abs=0.02)
 
 
-@pytest.mark.parametrize(
-    ("cover", "visible"),
-    [
-        (Box(0, 0, 3, 30), 0.7 + 0.2),
-        (Box(5, 0, 3, 30), 0.7),
-        (Box(2, 10, 10, 5), 0.5),
-        (Box(4.5, 0, 3.25, 30), 0.675),
-        (Box(0, 0, 40, 30), 0.0),
-        (Box(20, 0, 3, 30), 1.0),
-        (Box(12, 0, 3, 30), 1.0),
-    ],
-)
-def test_visible_fraction_by_hand(cover, visible):
-    target = WHITE, Box(2, 10, 10, 10)
-    assert visible_fraction(target, [(WHITE, cover)], 40, 30) == pytest.approx(visible, abs=1e-9)
-
-
-def test_two_covers_hide_what_either_hides():
-    target = WHITE, Box(0, 0, 10, 10)
-    covers = [(WHITE, Box(0, 0, 4, 10)), (WHITE, Box(2, 0, 4, 10))]
-    assert visible_fraction(target, covers, 40, 30) == pytest.approx(0.4)
-
-
-@pytest.mark.parametrize(("left", "visible"), [(-4, 0.6), (35, 0.5), (-10, 0.0), (40, 0.0)])
-def test_parts_outside_the_image_are_not_visible(left, visible):
-    target = WHITE, Box(left, 5, 10, 10)
-    assert visible_fraction(target, [], 40, 30) == pytest.approx(visible, abs=1e-9)
-
-
-def test_only_the_silhouette_counts():
-    half = Sprite(np.zeros((1, 2, 3)), [[1, 0]])
-    assert half.area(Box(0, 0, 10, 10)) == pytest.approx(50)
-    over_empty_half = [(WHITE, Box(5, 0, 5, 10))]
-    assert visible_fraction((half, Box(0, 0, 10, 10)), over_empty_half, 40, 30) == 1.0
-
-
-@given(PLACES, PLACES, SIZES, SIZES)
-def test_a_target_free_inside_the_image_is_wholly_visible(x, y, width, height):
-    inside = min(x, y) >= 0 and x + width <= 40 and y + height <= 30
-    seen = visible_fraction((WHITE, Box(x, y, width, height)), [], 40, 30)
-    assert 0 <= seen <= 1
-    assert not inside or seen == 1.0
-
-
 def test_window_of_a_box_is_clipped_to_the_image():
     assert PixelWindow.of(Box(-2.5, 3.2, 5, 1.5), 40, 30) == PixelWindow(0, 3, 3, 5)
     assert PixelWindow.of(Box(50, 3, 5, 1), 40, 30).empty
+
+
+def filled(corners, rows=8, columns=10):
+    grid = np.zeros((rows, columns), bool)
+    window, inside = cells_inside(np.array(corners, float), rows, columns)
+    grid[window.slices] = inside
+    return grid
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_a_rectangle_on_cell_edges_fills_its_cells(turn):
+    grid = filled([(2, 1), (6, 1), (6, 4), (2, 4)][::turn])
+    assert grid[1:4, 2:6].all()
+    assert grid.sum() == 12
+
+
+def test_a_cell_belongs_to_the_polygon_that_has_its_centre():
+    assert filled([(2.6, 1), (6.4, 1), (6.4, 2), (2.6, 2)])[1].nonzero()[0].tolist() == [3, 4, 5]
+
+
+def test_two_polygons_that_share_an_edge_share_no_cell_and_leave_no_gap():
+    upper, lower = filled([(0, 0), (8, 0), (8, 8)]), filled([(0, 0), (8, 8), (0, 8)])
+    assert not (upper & lower).any()
+    assert (upper | lower)[:, :8].all()
+
+
+def test_a_notch_stays_empty():
+    grid = filled([(0, 0), (9, 0), (9, 6), (6, 6), (6, 2), (3, 2), (3, 6), (0, 6)])
+    assert grid.sum() == 9 * 6 - 3 * 4
+    assert not grid[2:6, 3:6].any()
+
+
+def test_what_lies_outside_the_grid_is_clipped():
+    assert filled([(-5, -5), (50, -5), (50, 50), (-5, 50)]).all()
+    window, inside = cells_inside(np.array([(2.2, 3.1), (4.2, 3.1), (4.2, 3.3)]), 8, 10)
+    assert window == PixelWindow(2, 3, 5, 4)
+    assert not inside.any()
+
+
+@given(st.floats(1, 30), st.floats(1, 30))
+def test_area_of_an_ellipse(across, down):
+    turns = np.linspace(0, 2 * np.pi, 90, endpoint=False)
+    outline = np.stack([35 + across * np.cos(turns), 35 + down * np.sin(turns)], axis=1)
+    _, inside = cells_inside(outline, 70, 70)
+    assert inside.sum() == pytest.approx(np.pi * across * down, abs=2.2 * (across + down))

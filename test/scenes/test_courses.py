@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Speeds, bends and headings, by hand numbers."""
+"""Paths, speeds, bends and headings, by hand numbers."""
 
 import math
 
@@ -21,11 +21,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.scenes.models import Model
-from vehicle_pf_tracker.scenes.paths import Bend, Pace, Pose, Swaying, Wave
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.scenes.models import (
+    Attached,
+    Bend,
+    Model,
+    Pace,
+    Pose,
+    Still,
+    Straight,
+    Swaying,
+    Wave,
+)
 from vehicle_pf_tracker.scenes.solids import ELEVATION
 from vehicle_pf_tracker.scenes.vehicles import car
 
+BOX = Box(10, 20, 4, 3)
 START = Pose(100.0, 200.0, 0.0, 10.0)
 SLANT = math.sin(ELEVATION)
 
@@ -68,6 +79,8 @@ def test_before_its_start_a_course_goes_straight_on_backwards():
 def test_swaying_adds_its_swings():
     pose = Swaying(Bend(START, Pace.steady(1.0)), Wave(2, 40, 0), Wave(0.5, 20, math.pi / 2))(10)
     assert (pose.x, pose.y) == pytest.approx((112, 199.5))
+    box = Swaying(Straight(BOX, (1, 0)), Wave(2, 40, 0), Wave(0.5, 20, math.pi / 2))(10)
+    assert (box.x, box.y, box.width) == pytest.approx((22, 19.5, 4))
 
 
 @pytest.mark.parametrize("degrees", [0, 37, 90, 180, 270])
@@ -93,3 +106,18 @@ def test_a_model_shows_its_other_side_when_it_turns_round():
     areas = [actor.seen(0).area(actor.path(0)) for actor in (right, left)]
     assert areas[0] == pytest.approx(areas[1], rel=0.03)
     assert np.subtract(right.path(0).centre, left.path(0).centre) == pytest.approx((0, 0), abs=0.3)
+
+
+def test_still_and_straight():
+    assert Still(BOX)(7) == BOX
+    assert Straight(BOX, (2.5, -1))(4) == Box(20, 16, 4, 3)
+
+
+def test_wave_is_a_sine_of_the_frame():
+    wave = Wave(amplitude=2, period=40, phase=0)
+    assert [wave(frame) for frame in (0, 10, 20, 30)] == pytest.approx([0, 2, 0, -2], abs=1e-12)
+    assert Wave(2, 40, math.pi / 2)(0) == pytest.approx(2)
+
+
+def test_attached_keeps_its_offset_and_its_own_size():
+    assert Attached(Straight(BOX, (1, 0)), (-3, 2), (8, 1))(5) == Box(12, 22, 8, 1)

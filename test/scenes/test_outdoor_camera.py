@@ -20,10 +20,10 @@ from itertools import islice
 import numpy as np
 import pytest
 
+from laboratory.scenes import make_scene
+from laboratory.scenes.drives import Cloud, CloudyCamera
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.cameras import MARGIN, Disturbance, OutdoorCamera
-from vehicle_pf_tracker.scenes.catalogue import make_scene
-from vehicle_pf_tracker.scenes.light import Cloud
+from vehicle_pf_tracker.scenes.scene import MARGIN, Disturbance, OutdoorCamera
 
 CALM = Disturbance(0.0, 0.0, 0.0)
 SHAKY = Disturbance(0.0, 3.0, 0.0)
@@ -90,7 +90,7 @@ def test_a_cloud_dims_and_tints_and_leaves_warmer_light():
     red, green, blue = cloud(80)
     assert green == 1
     assert red > green > blue
-    frame = OutdoorCamera(CALM, 0, cloud).capture(np.full((40, 40, 3), 100, np.float32), 35)
+    frame = CloudyCamera(CALM, 0, cloud).capture(np.full((40, 40, 3), 100, np.float32), 35)
     assert frame[0, 0, 1] == 60
 
 

@@ -17,9 +17,9 @@
 import numpy as np
 import pytest
 
+from laboratory.scenes.perspective import looking
+from laboratory.scenes.road import KMH, RoadSceneParameters, camera_of, road
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.scenes.perspective import looking
-from vehicle_pf_tracker.scenes.road import KMH, RoadSceneParameters, camera_of, road
 
 
 def test_a_camera_looks_at_its_point_and_is_level():

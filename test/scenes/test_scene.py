@@ -19,10 +19,9 @@ import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import Sprite
-from vehicle_pf_tracker.scenes.paths import Still, Straight
-from vehicle_pf_tracker.scenes.scene import Actor, Scene
+from vehicle_pf_tracker.scenes.models import Still, Straight
+from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene
 
 RED, BLUE, BLACK = (Sprite.plain(c) for c in ((200.0, 0, 0), (0, 0, 200.0), (0, 0, 0)))
 
@@ -30,7 +29,7 @@ RED, BLUE, BLACK = (Sprite.plain(c) for c in ((200.0, 0, 0), (0, 0, 200.0), (0, 
 def scene(*after, before=(), rate=30.0, noise=0.0):
     target = Actor(RED, Straight(Box(2, 3, 10, 4), (2.0, 0.0)))
     return Scene(
-        "hand", 40, 12, rate, 8, lambda: np.full((12, 40, 3), 90, np.float32),
+        40, 12, rate, 8, lambda: np.full((12, 40, 3), 90, np.float32),
         (*before, target, *after), len(before), Camera(noise, seed=1),
     )  # fmt: skip
 

@@ -21,24 +21,25 @@ import numpy as np
 import pytest
 import yaml
 
+from laboratory.scenes import TRAFFIC_SCENES, make_traffic_scene
+from laboratory.scenes.traffic_perspective import road_file
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.traffic.identities import matches
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 from vehicle_pf_tracker.road.calibration import parse_pairs
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.compositing import Sprite
 from vehicle_pf_tracker.scenes.flow import Driver, Hold, simulate
+from vehicle_pf_tracker.scenes.models import Still
 from vehicle_pf_tracker.scenes.mot_folder import (
     SIMULATED_DETECTORS,
     SimulatedDetector,
     detect,
     write_mot_folder,
 )
-from vehicle_pf_tracker.scenes.paths import Still
-from vehicle_pf_tracker.scenes.scene import Actor
-from vehicle_pf_tracker.scenes.traffic_catalogue import TRAFFIC_SCENES, make_traffic_scene
+from vehicle_pf_tracker.scenes.scene import Actor, Camera
 from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, VehicleTruth
 
 
@@ -50,7 +51,6 @@ def block(box, colour=(200, 0, 0)):
 
 def still(*boxes, obstacles=()):
     return TrafficScene(
-        name="still",
         width=60,
         height=40,
         frame_rate=30,
@@ -87,11 +87,6 @@ def test_vehicles_outside_the_image_have_no_truth():
 
 def drivers(*places, speed=15.0):
     return [Driver(lane, front, 4.0, speed) for lane, front in places]
-
-
-def test_a_free_driver_keeps_the_wanted_speed():
-    front = simulate(drivers((0, 0.0)), 1, 31, 30).front[0]
-    assert front[30] - front[0] == pytest.approx(15.0, rel=1e-6)
 
 
 def test_nobody_drives_into_the_one_ahead_when_a_light_is_red():
@@ -151,7 +146,7 @@ def test_the_lorry_hides_the_car_that_overtakes_it():
     assert total_occlusions(make_traffic_scene("traffic-pair"))[0] == 1
 
 
-PERSPECTIVE = [name for name in TRAFFIC_SCENES if "view" in TRAFFIC_SCENES[name].settings]
+PERSPECTIVE = sorted(set(TRAFFIC_SCENES) - set(catalogue.TRAFFIC_SCENES))
 
 
 @pytest.mark.parametrize("name", PERSPECTIVE)
@@ -195,15 +190,9 @@ def test_who_hides_another_is_nearer_and_painted_later():
     assert order.index(hidden.identity - 1) < order.index(nearer.identity - 1)
 
 
-def test_bridges_are_seen_from_the_side_only():
-    with pytest.raises(InputError, match="traffic-jam has bridges in the view from the side only"):
-        make_traffic_scene("traffic-jam", settings=["bridges=1"])
-
-
-def test_a_scene_in_perspective_has_its_road(tmp_path):
+def test_a_scene_in_perspective_has_its_road():
     scene = make_traffic_scene("traffic-jam", settings={"frames": 2, "vehicles": 4})
-    write_mot_folder(scene, tmp_path / "jam", 0)
-    text = yaml.safe_load((tmp_path / "jam" / "road.yaml").read_text())
+    text = yaml.safe_load(road_file(scene))
     pairs = parse_pairs(text["/**"]["ros__parameters"]["road.pairs"])
     plane = RoadPlane.of_pairs(pairs, None, margin=0.1, coarsest=1.0)
     points = np.array([[100.0, 300.0], [400.0, 200.0]])
@@ -285,15 +274,6 @@ def test_overlapping_vehicles_may_be_found_as_one():
     assert one[0, 1:5].tolist() == [30, 50, 70, 20]
 
 
-def test_other_scores_are_of_the_same_boxes():
-    good, squared, halved = (
-        detect(SIMULATED_DETECTORS[name], TRUTHS, SIZE, 5) for name in ("good", "squared", "halved")
-    )
-    assert (good[:, :5] == squared[:, :5]).all()
-    assert squared[:, 5] == pytest.approx(good[:, 5] ** 2)
-    assert halved[:, 5] == pytest.approx(good[:, 5] / 2)
-
-
 def test_a_folder_holds_the_scene(tmp_path):
     scene = make_traffic_scene("traffic-bridge", settings={"frames": 90, "vehicles": 6})
     done = []
@@ -337,7 +317,7 @@ def test_a_folder_is_not_written_over(tmp_path):
 
 def test_the_page_lists_scenes_and_detectors():
     page = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text(encoding="utf-8")
-    for name, kind in TRAFFIC_SCENES.items():
+    for name, kind in catalogue.TRAFFIC_SCENES.items():
         counts = f"{kind.settings['vehicles']} | {kind.settings.get('frames', 400)}"
         assert f"| `{name}` | {kind.summary} | {counts} |" in page
     for name, one in SIMULATED_DETECTORS.items():

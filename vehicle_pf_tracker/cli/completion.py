@@ -30,8 +30,7 @@ from pathlib import Path
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError
 from vehicle_pf_tracker.cli.requests import add_options
 from vehicle_pf_tracker.offline.output_files import make_folder, write_text
-from vehicle_pf_tracker.scenes.catalogue import SCENES
-from vehicle_pf_tracker.scenes.traffic_catalogue import TRAFFIC_SCENES
+from vehicle_pf_tracker.scenes.catalogue import SCENES, TRAFFIC_SCENES
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 SHELLS = ("bash", "zsh")

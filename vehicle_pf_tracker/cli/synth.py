@@ -32,14 +32,15 @@ from vehicle_pf_tracker.offline.pictures import NO_ENCODER, SUFFIX, has_encoder,
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.importing import FORMATS, jpeg
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
-from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
-from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
-from vehicle_pf_tracker.scenes.scene import Scene
-from vehicle_pf_tracker.scenes.traffic_catalogue import (
+from vehicle_pf_tracker.scenes.catalogue import (
+    SCENES,
     TRAFFIC_SCENES,
+    make_scene,
     make_traffic_scene,
 )
-from vehicle_pf_tracker.scenes.traffic_scene import TrafficSceneParameters
+from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters
+from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
+from vehicle_pf_tracker.scenes.scene import Scene
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,9 +17,8 @@
 A sprite keeps the integral of its finely drawn picture, so that the mean over any pixel is four
 look-ups, exact for every sub-pixel shift and every scale.
 
-Polygons filled on a grid of cells, the same to the bit whatever the image library.
-
-Named random streams: what one part of a scene draws never shifts another part's numbers.
+Polygons are filled alike to the bit whatever the image library; and random streams have names, so
+that the numbers one part of a scene draws never shift those of another.
 """
 
 from __future__ import annotations

@@ -12,12 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A vehicle drives along a road from one side of the image to the other: what most scenes share.
+"""A vehicle drives along a road from one side of the image to the other, as in most scenes.
 
-Traffic on a dual carriageway: the target passes a bridge, then a lorry overtakes and hides it.
-
-The target drives in the far slow lane. The bridge hides it for about 22 frames, and later a lorry
-in the next lane for about 24; each comes and goes over 10 to 15 frames of partial occlusion.
+On the highway, a dual carriageway, it drives in the far slow lane. A bridge hides it for about 22
+frames, and later a lorry in the next lane for about 24; each comes and goes over 10 to 15 frames of
+partial occlusion.
 """
 
 from __future__ import annotations
@@ -29,21 +28,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.cameras import (
-    DISTURBANCES,
-    MARGIN,
-    Camera,
-    Light,
-    OutdoorCamera,
-    daylight,
-)
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, stream
-from vehicle_pf_tracker.scenes.models import Model
-from vehicle_pf_tracker.scenes.obstacles import bridge
-from vehicle_pf_tracker.scenes.paths import (
+from vehicle_pf_tracker.scenes.models import (
     Bend,
     Course,
-    Driven,
+    Model,
     Pace,
     Pose,
     Straight,
@@ -62,7 +51,15 @@ from vehicle_pf_tracker.scenes.roads import (
     side_road,
     town,
 )
-from vehicle_pf_tracker.scenes.scene import Actor, Scene
+from vehicle_pf_tracker.scenes.scene import (
+    DISTURBANCES,
+    MARGIN,
+    Actor,
+    Camera,
+    OutdoorCamera,
+    Scene,
+)
+from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
 from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, suv, truck
 
@@ -226,11 +223,9 @@ class Drive:
 
     def scene(
         self,
-        name: str,
         front: Iterable[Actor] = (),
         *,
         behind: Iterable[Actor] | None = None,
-        light: Light = daylight,
     ) -> Scene:
         """Make the scene: the target between what is `behind` it and what is in `front` of it.
 
@@ -242,7 +237,6 @@ class Drive:
         behind = list(behind)
         own = self.target.on(self.sways(self.course(self.start, self.pace)))
         return Scene(
-            name=name,
             width=self.image_size[0],
             height=self.image_size[1],
             frame_rate=self.parameters.frame_rate,
@@ -250,7 +244,7 @@ class Drive:
             backdrop=self.backdrop,
             actors=(*behind, *own, *front),
             target=len(behind) + 1,
-            camera=OutdoorCamera(DISTURBANCES[self.parameters.disturbance], self.seed, light),
+            camera=OutdoorCamera(DISTURBANCES[self.parameters.disturbance], self.seed),
         )
 
     def _roads(self) -> tuple[Carriageway, Carriageway]:
@@ -311,7 +305,6 @@ def highway(parameters: HighwayParameters, seed: int) -> Scene:
         *bridge(150 + rng.uniform(-4, 4), 100, HEIGHT, stream(seed, "bridge")),
     ]
     return Scene(
-        name="highway",
         width=WIDTH,
         height=HEIGHT,
         frame_rate=parameters.frame_rate,
@@ -329,7 +322,7 @@ def _slow_lane(rng: np.random.Generator) -> list[Actor]:
     hatchback = Vehicle(car((38, 92, 168)), lane)
     start = hatchback.box(START - hatchback.size[0] / 2 + rng.uniform(-2, 2), lane)
     course = Straight(start, (SPEED, 0.0))
-    own = hatchback.on(Driven(course, _swing(2.0, 90, rng), _swing(0.7, 130, rng)))
+    own = hatchback.on(Swaying(course, _swing(2.0, 90, rng), _swing(0.7, 130, rng)))
     ahead = Vehicle(saloon((62, 84, 132)), lane)
     leader = ahead.on(Straight(ahead.box(start.x + rng.uniform(105, 125), lane), (3.05, 0.0)))
     behind = any_car(lane, rng)

@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Flow of traffic in lanes: drivers who follow each other, change lanes and wait.
-
-Drivers of a scene with many vehicles, and what holds them up.
-"""
+"""Flow of traffic in lanes: drivers who follow each other, change lanes and wait at red lights."""
 
 from __future__ import annotations
 
@@ -27,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.scenes.traffic_scene import TrafficSceneParameters
+from vehicle_pf_tracker.parameters.table import parameter
 
 _ACCELERATION, _BRAKING = 1.5, 2.0
 """Comfortable acceleration and braking, m/s²: Treiber's intelligent driver model in towns."""
@@ -218,6 +215,55 @@ def simulate(
     return Flow(front, lane)
 
 
+@dataclass(frozen=True, slots=True)
+class TrafficSceneParameters:
+    """Parameters of every scene with many vehicles."""
+
+    vehicles: int = parameter(
+        20, "more vehicles in both directions together", minimum=2, maximum=80
+    )
+    directions: int = parameter(2, "1: all drive to the right", minimum=1, maximum=2)
+    lanes: int = parameter(
+        3, "more lanes of each direction: more vehicles beside each other", minimum=1, maximum=4
+    )
+    speed: float = parameter(
+        55.0, "faster vehicles move farther between two frames",
+        minimum=10.0, maximum=130.0, unit="km/h",
+    )  # fmt: skip
+    gap: float = parameter(
+        18.0, "mean gap in the beginning; shorter ones pack vehicles", minimum=4.0, maximum=200.0,
+        unit="m",
+    )  # fmt: skip
+    lorries: float = parameter(
+        0.1, "share of lorries, which drive in the nearest lane and hide others",
+        minimum=0.0, maximum=1.0,
+    )  # fmt: skip
+    lorry_speed: float = parameter(
+        0.5, "speed of lorries; above 1 they overtake the cars",
+        minimum=0.2, maximum=2.0, unit="of the other vehicles'",
+    )  # fmt: skip
+    mixed: bool = parameter(False, "lorries drive among the cars, not in a lane of their own")
+    bridges: int = parameter(
+        0, "bridges, each of which hides every vehicle once", minimum=0, maximum=5
+    )
+    bridge_width: float = parameter(
+        50.0, "wider bridges hide vehicles for longer", minimum=10.0, maximum=200.0, unit="px"
+    )
+    flow: str = parameter(
+        "free", "queue: a red light holds all for 6 s; waves: short holds again and again",
+        choices=("free", "queue", "waves"),
+    )  # fmt: skip
+    changing: bool = parameter(False, "drivers overtake slower ones")
+    frames: int = parameter(400, "a longer scene", minimum=2, maximum=5000, unit="frames")
+    noise: float = parameter(
+        2.0, "more makes histograms differ from frame to frame",
+        minimum=0.0, maximum=60.0, unit="levels of 255",
+    )  # fmt: skip
+    frame_rate: float = parameter(
+        30.0, "more frames on the same way", minimum=5.0, maximum=240.0, unit="frames/s"
+    )
+
+
 _KMH = 3.6
 """km/h in a m/s."""
 _FIRST = (0.0, 0.3)
@@ -249,12 +295,12 @@ def drive(
     visible: float,
     rng: np.random.Generator,
 ) -> Flow:
-    """Simulate the vehicles of one direction.
+    """Place the vehicles of one direction one behind the other, and let them drive.
 
     Parameters
     ----------
     lengths : sequence of float
-        Of the vehicles, m.
+        Lengths of the vehicles, m.
     is_lorry : sequence of bool
         Which of them are lorries; where there are any, the last lane is theirs.
     parameters : TrafficSceneParameters
@@ -264,24 +310,6 @@ def drive(
     rng : numpy.random.Generator
         Draws speeds and gaps.
     """
-    return simulate(
-        _drivers(lengths, is_lorry, parameters, visible, rng),
-        parameters.lanes,
-        parameters.frames,
-        parameters.frame_rate,
-        _holds(parameters, visible),
-        changing=parameters.changing,
-    )
-
-
-def _drivers(
-    lengths: Sequence[float],
-    is_lorry: Sequence[bool],
-    parameters: TrafficSceneParameters,
-    visible: float,
-    rng: np.random.Generator,
-) -> list[Driver]:
-    """Place vehicles one behind the other."""
     own_lane = any(is_lorry) and parameters.lanes > 1 and not parameters.mixed
     slow = parameters.lanes - 1 if own_lane else parameters.lanes
     ahead = rng.uniform(*_FIRST, parameters.lanes + 1) * visible
@@ -296,7 +324,14 @@ def _drivers(
         drivers.append(Driver(lane, float(ahead[lane]), length, float(speed)))
         gap = parameters.gap * rng.uniform(*_GAPS) * (_LORRY_GAP if lane == slow else 1.0)
         ahead[lane] -= length + gap
-    return drivers
+    return simulate(
+        drivers,
+        parameters.lanes,
+        parameters.frames,
+        parameters.frame_rate,
+        _holds(parameters, visible),
+        changing=parameters.changing,
+    )
 
 
 def _holds(parameters: TrafficSceneParameters, visible: float) -> tuple[Hold, ...]:

@@ -12,19 +12,200 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Vehicles that turn: both flanks and both ends of a solid, and the solid at any heading."""
+"""Vehicles that turn, and the ways things take through the frames.
+
+Paths give boxes in the image, courses the poses of vehicles on the ground.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Generic, TypeAlias, TypeVar
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
-from vehicle_pf_tracker.scenes.paths import Course, Pose
-from vehicle_pf_tracker.scenes.scene import Actor
-from vehicle_pf_tracker.scenes.solids import Face, Point, draw, extent, normal_of, shadow
+from vehicle_pf_tracker.scenes.scene import Actor, Path
+from vehicle_pf_tracker.scenes.solids import (
+    ELEVATION,
+    Face,
+    draw,
+    extent,
+    normal_of,
+    shadow,
+)
 from vehicle_pf_tracker.scenes.vehicles import HEAD_LAMP, SILL, TAIL_LAMP
+
+
+@dataclass(frozen=True, slots=True)
+class Still:
+    """Stands for ever in `box`."""
+
+    box: Box
+
+    def __call__(self, frame: float) -> Box:
+        """Give the same box for every `frame`."""
+        return self.box
+
+
+@dataclass(frozen=True, slots=True)
+class Straight:
+    """Moves from `start` (its box in frame 0) with `velocity` (px/frame, in x and y)."""
+
+    start: Box
+    velocity: tuple[float, float]
+
+    def __call__(self, frame: float) -> Box:
+        """Give the box in `frame`."""
+        dx, dy = self.velocity
+        start = self.start
+        return Box(start.x + dx * frame, start.y + dy * frame, start.width, start.height)
+
+
+@dataclass(frozen=True, slots=True)
+class Wave:
+    """A slow swing: `amplitude` (px), `period` (frames) and `phase` (rad)."""
+
+    amplitude: float
+    period: float
+    phase: float
+
+    def __call__(self, frame: float) -> float:
+        """Give the displacement in `frame`, px."""
+        return self.amplitude * math.sin(2 * math.pi * frame / self.period + self.phase)
+
+
+@dataclass(frozen=True, slots=True)
+class Attached:
+    """Stays with `leader`: `offset` (px) from its corner, of its own `size` (px)."""
+
+    leader: Path
+    offset: tuple[float, float]
+    size: tuple[float, float]
+
+    def __call__(self, frame: float) -> Box:
+        """Give the box in `frame`."""
+        box = self.leader(frame)
+        return Box(box.x + self.offset[0], box.y + self.offset[1], *self.size)
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A position on the ground, and the heading of a vehicle there.
+
+    Attributes
+    ----------
+    x, y : float
+        The point on the stage under the vehicle's middle, px.
+    heading : float
+        0 to the right, pi/2 away from the viewer, rad.
+    scale : float
+        Size there, px per metre.
+    """
+
+    x: float
+    y: float
+    heading: float
+    scale: float
+
+
+Placed = TypeVar("Placed", Box, Pose)
+Course: TypeAlias = Callable[[float], Pose]
+"""Gives the pose of a vehicle at a frame number, counted from 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """A speed that changes linearly between `knots` (frame, px/frame), constant outside them."""
+
+    knots: tuple[tuple[float, float], ...]
+
+    @classmethod
+    def steady(cls, speed: float) -> Pace:
+        """Make the pace of one `speed` (px/frame)."""
+        return cls(((0.0, speed),))
+
+    def __call__(self, frame: float) -> float:
+        """Give the distance covered from the first knot to `frame`, px."""
+        (start, speed), (end, last_speed) = self.knots[0], self.knots[-1]
+        distance = speed * min(frame - start, 0.0) + last_speed * max(frame - end, 0.0)
+        for (t0, v0), (t1, v1) in pairwise(self.knots):
+            spent = min(max(frame, t0), t1) - t0
+            distance += v0 * spent + (v1 - v0) * spent**2 / (2 * (t1 - t0))
+        return distance
+
+    def arrival(self, distance: float) -> float:
+        """Give the frame in which `distance` (px, at least 0) is covered, for speeds over 0."""
+        low, high = self.knots[0][0], self.knots[0][0] + 1.0
+        while self(high) < distance:
+            high += high - low
+        for _ in range(60):
+            middle = (low + high) / 2
+            low, high = (middle, high) if self(middle) < distance else (low, middle)
+        return high
+
+
+@dataclass(frozen=True, slots=True)
+class Bend:
+    """Drives straight, then along an arc, and straight on; as flat ground looks from `ELEVATION`.
+
+    Attributes
+    ----------
+    start : Pose
+        The pose from which `pace` counts.
+    pace : Pace
+        Distance on the ground, px.
+    straight, radius : float
+        Length before the arc and radius of the arc, px.
+    angle : float
+        Change of heading, at most pi/2, to the left if positive, rad; 0 goes straight for ever.
+    """
+
+    start: Pose
+    pace: Pace
+    straight: float = 0.0
+    radius: float = 1.0
+    angle: float = 0.0
+
+    def __call__(self, frame: float) -> Pose:
+        """Give the pose in `frame`."""
+        gone = self.pace(frame)
+        before = gone if self.angle == 0 else min(gone, self.straight)
+        arc = min(gone - before, self.radius * abs(self.angle))
+        after = gone - before - arc
+        side = math.copysign(1.0, self.angle)
+        turn = side * arc / self.radius
+        along = before + self.radius * abs(math.sin(turn)) + after * math.cos(turn)
+        across = side * self.radius * (1 - math.cos(turn)) + after * math.sin(turn)
+        east, north = _rotated(along, across, self.start.heading)
+        return Pose(
+            self.start.x + east,
+            self.start.y - north * math.sin(ELEVATION),
+            self.start.heading + turn,
+            self.start.scale,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Swaying(Generic[Placed]):
+    """Follows a path or a course as a human drives: `surge` along x, `weave` along y."""
+
+    course: Callable[[float], Placed]
+    surge: Wave
+    weave: Wave
+
+    def __call__(self, frame: float) -> Placed:
+        """Give the box or pose in `frame`."""
+        placed = self.course(frame)
+        return replace(placed, x=placed.x + self.surge(frame), y=placed.y + self.weave(frame))
+
+
+def _rotated(along: float, across: float, heading: float) -> tuple[float, float]:
+    cosine, sine = math.cos(heading), math.sin(heading)
+    return along * cosine - across * sine, along * sine + across * cosine
+
 
 PLATE: Colour = (226, 226, 216)
 
@@ -39,29 +220,24 @@ def all_round(faces: Sequence[Face]) -> list[Face]:
     both = [
         half
         for face in faces
-        for half in ((face, _reflected(face, width)) if normal_of(face)[1] < -0.3 else (face,))
+        for half in (
+            (face, face.moved(lambda x, y, z: (x, width - y, z)))
+            if normal_of(face)[1] < -0.3
+            else (face,)
+        )
     ]
     middle = (min(x) + max(x)) / 2, width / 2
-    return [
-        Face(tuple((px - middle[0], py - middle[1], pz) for px, py, pz in face.points),
-             face.colour, face.glow)
-        for face in (*both, *_ends(min(x), max(x), width))
-    ]  # fmt: skip
+    faces = (*both, *_ends(min(x), max(x), width))
+    return [face.moved(lambda x, y, z: (x - middle[0], y - middle[1], z)) for face in faces]
 
 
 def turned(faces: Iterable[Face], heading: float) -> list[Face]:
     """Turn a solid by `heading` (rad): 0 drives to the right, pi/2 away from the viewer."""
     cosine, sine = math.cos(heading), math.sin(heading)
-
-    def moved(point: Point) -> Point:
-        x, y, z = point
-        return x * cosine - y * sine, x * sine + y * cosine, z
-
-    return [Face(tuple(map(moved, face.points)), face.colour, face.glow) for face in faces]
-
-
-def _reflected(face: Face, width: float) -> Face:
-    return Face(tuple((x, width - y, z) for x, y, z in face.points), face.colour, face.glow)
+    return [
+        face.moved(lambda x, y, z: (x * cosine - y * sine, x * sine + y * cosine, z))
+        for face in faces
+    ]
 
 
 def _ends(rear: float, front: float, width: float) -> list[Face]:

@@ -12,9 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Scenes with many vehicles as folders in MOTChallenge's layout.
+"""Scenes with many vehicles as folders in MOTChallenge's layout, with simulated detectors.
 
-Simulated detectors: truth with misses, false alarms, noise and merged boxes.
+A simulated detector gives the truth with misses, false alarms, noise and merged boxes.
 """
 
 from __future__ import annotations
@@ -31,8 +31,6 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import whole_folder
-from vehicle_pf_tracker.road.calibration import format_pairs
-from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, VehicleTruth
 
@@ -60,8 +58,6 @@ class SimulatedDetector:
         Standard deviation of each edge, as a share of the side.
     merges : float
         Share of overlapping pairs that are detected as one.
-    power, factor : float
-        Scores are raised to `power` and multiplied by `factor`.
     """
 
     misses: float = 0.02
@@ -69,8 +65,6 @@ class SimulatedDetector:
     false_alarms: float = 0.05
     noise: float = 0.03
     merges: float = 0.0
-    power: float = 1.0
-    factor: float = 1.0
 
 
 SIMULATED_DETECTORS: Mapping[str, SimulatedDetector] = MappingProxyType(
@@ -83,11 +77,9 @@ SIMULATED_DETECTORS: Mapping[str, SimulatedDetector] = MappingProxyType(
         "poor": SimulatedDetector(
             misses=0.15, miss_length=4.0, false_alarms=0.7, noise=0.07, merges=0.4
         ),
-        "squared": SimulatedDetector(power=2.0),
-        "halved": SimulatedDetector(factor=0.5),
     }
 )
-"""The simulated detectors by name; `squared` and `halved` are `good` with other scores."""
+"""The simulated detectors by name."""
 
 
 def detect(
@@ -101,13 +93,13 @@ def detect(
     Parameters
     ----------
     detector : SimulatedDetector
-        What it does wrong.
+        The detector, by its errors.
     truths : sequence of sequence of VehicleTruth
         Truth of every frame.
     size : (int, int)
         Width and height of the image, px.
     seed : int
-        Seed; two detectors that differ in scores alone find the same boxes.
+        Seed of the detector.
 
     Returns
     -------
@@ -123,7 +115,7 @@ def detect(
                  for boxes, share in _merged(seen, detector.merges, rng)]  # fmt: skip
         found += [_false_alarm(size, rng) for _ in range(rng.poisson(detector.false_alarms))]
         for box, score in found:
-            rows.append([frame, *box.tolist(), detector.factor * score**detector.power])
+            rows.append([frame, *box.tolist(), score])
     return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
@@ -199,8 +191,6 @@ def _false_alarm(size: tuple[int, int], rng: np.random.Generator) -> tuple[Array
 OCCLUDERS_HEADER = "frame,id,depth,hidden_by,share"
 JPEG_QUALITY = 95
 """Quality of the images: OpenCV's default, at which edges of vehicles stay sharp."""
-_ROAD_FROM = 0.5
-"""Row of the farthest pairs of a road, of the image's height: clearly below its horizon."""
 LEAST_SIDE = 8.0
 """Sides of a box inside the image, px, below which a vehicle has no truth but is ignored."""
 
@@ -244,8 +234,6 @@ def write_mot_folder(
                 progress(number, scene.frame_count)
             (partial / "seqinfo.ini").write_text(_information(scene, folder.resolve().name))
             _write_tables(scene, truths, partial, seed)
-            if scene.road is not None:
-                (partial / "road.yaml").write_text(_road(scene.road, scene.width, scene.height))
     except OSError as error:
         raise InputError(f"cannot write {folder}: {error.strerror}") from error
 
@@ -263,17 +251,6 @@ def _information(scene: TrafficScene, name: str) -> str:
         f"seqLength={scene.frame_count}\nimWidth={scene.width}\nimHeight={scene.height}\n"
         "imExt=.jpg\n"
     )
-
-
-def _road(plane: RoadPlane, width: int, height: int) -> str:
-    """Return a parameter file with pairs of the road: a grid below the horizon."""
-    columns, rows = np.meshgrid(np.linspace(0, width, 3), np.linspace(_ROAD_FROM, 1, 3) * height)
-    pixels = np.stack([columns, rows], axis=-1).reshape(-1, 2)
-    pairs = tuple(
-        Pair((u, v), (x, y))
-        for (u, v), (x, y) in zip(pixels.tolist(), plane.to_road(pixels).tolist(), strict=True)
-    )
-    return f'/**:\n  ros__parameters:\n    road.pairs: "{format_pairs(pairs)}"\n'
 
 
 def _write_tables(

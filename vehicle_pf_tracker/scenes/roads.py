@@ -30,24 +30,19 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, cells_inside
-from vehicle_pf_tracker.scenes.paths import Attached, Path, Straight
-from vehicle_pf_tracker.scenes.scene import Actor
+from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY, Attached, Straight
+from vehicle_pf_tracker.scenes.scene import Actor, Path
+from vehicle_pf_tracker.scenes.scenery import PAINT, asphalt, concrete, foliage, grass, value_noise
 from vehicle_pf_tracker.scenes.solids import (
     ELEVATION,
     Face,
-    asphalt,
-    concrete,
     draw,
     extent,
-    foliage,
-    grass,
     mirrored,
     shadow,
-    value_noise,
 )
 from vehicle_pf_tracker.scenes.vehicles import car, saloon, tinted, van
 
-PAINT: Colour = (214, 214, 206)
 STEEL: Colour = (176, 180, 182)
 
 
@@ -247,18 +242,10 @@ def _pave(picture: Image, roads: Sequence[Carriageway], rng: np.random.Generator
         mark(picture, (first - 2, rows.stop - SHOULDER), dividers, rng)
 
 
-SHADOW_OPACITY = 0.5
-
 PAINTS: tuple[Colour, ...] = (
-    (222, 222, 220),
-    (168, 172, 176),
-    (44, 46, 50),
-    (96, 100, 104),
-    (158, 34, 36),
-    (40, 74, 58),
-    (186, 172, 140),
-    (206, 208, 212),
-)
+    (222, 222, 220), (168, 172, 176), (44, 46, 50), (96, 100, 104), (158, 34, 36), (40, 74, 58),
+    (186, 172, 140), (206, 208, 212),
+)  # fmt: skip
 """Common colours of cars; none is near the target's."""
 
 

@@ -16,22 +16,20 @@
 
 Coordinates in metres: x forward, y away from the viewer, z up. The view is a parallel projection,
 as through the long lens of a traffic camera, so that a solid keeps its size along the road.
-
-Ground textures from value noise: random levels on grids of several sizes, interpolated.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, cells_inside
+from vehicle_pf_tracker.scenes.compositing import Colour, Sprite, cells_inside
 
 ELEVATION = math.radians(35)
 """Angle of the view above the horizon."""
@@ -56,6 +54,10 @@ class Face:
     points: tuple[Point, ...]
     colour: Colour
     glow: bool = False
+
+    def moved(self, to: Callable[[float, float, float], Point]) -> Face:
+        """Return the face with each corner (x, y, z) moved."""
+        return replace(self, points=tuple(to(*point) for point in self.points))
 
 
 def side_panel(
@@ -84,19 +86,16 @@ def disc(x: float, z: float, radius: float, colour: Colour, y: float = 0.0) -> F
 
 def mirrored(faces: Iterable[Face]) -> list[Face]:
     """Turn a solid round so that it heads to the left."""
-    return [
-        Face(tuple((-x, y, z) for x, y, z in face.points), face.colour, face.glow) for face in faces
-    ]
+    return [face.moved(lambda x, y, z: (-x, y, z)) for face in faces]
 
 
 def shadow(faces: Iterable[Face]) -> list[Face]:
     """Cast every face along the sun's rays onto the ground (z = 0)."""
     east, away, up = (float(part) for part in _SUN)
-    return [
-        Face(tuple((x - z * east / up, y - z * away / up, 0.0) for x, y, z in face.points),
-             SHADE, glow=True)
-        for face in faces
-    ]  # fmt: skip
+    cast = [
+        face.moved(lambda x, y, z: (x - z * east / up, y - z * away / up, 0.0)) for face in faces
+    ]
+    return [replace(face, colour=SHADE, glow=True) for face in cast]
 
 
 def extent(faces: Iterable[Face]) -> Box:
@@ -168,84 +167,3 @@ def normal_of(face: Face) -> Array:
     normal = normal / math.hypot(*normal)
     result: Array = normal if normal @ _VIEW >= 0 else -normal
     return result
-
-
-def value_noise(
-    shape: tuple[int, int], cell: tuple[float, float], rng: np.random.Generator
-) -> Array:
-    """Smooth noise of about unit size.
-
-    Parameters
-    ----------
-    shape : tuple of int
-        Rows and columns.
-    cell : tuple of float
-        Height and width of the grid's cells in px; wide flat cells make streaks.
-    rng : numpy.random.Generator
-        Source of the random levels.
-
-    Returns
-    -------
-    array of shape `shape`
-        Uniform levels in [-1, 1] on the grid's corners, linear between them.
-    """
-    down = np.arange(shape[0]) / cell[0]
-    right = np.arange(shape[1]) / cell[1]
-    grid = rng.uniform(-1, 1, (int(down[-1]) + 2, int(right[-1]) + 2))
-    row, column = down.astype(np.intp), right.astype(np.intp)
-    fy, fx = (down - row)[:, np.newaxis], right - column
-    rows: Array = grid[row] * (1 - fy) + grid[row + 1] * fy
-    result: Array = rows[:, column] * (1 - fx) + rows[:, column + 1] * fx
-    return result
-
-
-def _tinted(base: Colour, shade: Array) -> Image:
-    return (np.asarray(base) * (1 + shade[..., np.newaxis])).astype(np.float32)
-
-
-def plain(shape: tuple[int, int], base: Colour, rng: np.random.Generator) -> Image:
-    """Make a nearly even surface of colour `base`, shape (rows, columns, 3)."""
-    shade = 0.03 * value_noise(shape, (60, 80), rng) + 0.02 * value_noise(shape, (9, 9), rng)
-    return _tinted(base, shade)
-
-
-def asphalt(shape: tuple[int, int], rng: np.random.Generator) -> Image:
-    """Make worn asphalt of a road along x: grain, patches, and streaks where tyres run."""
-    grain = rng.uniform(-1, 1, shape)
-    shade = (
-        0.03 * grain
-        + 0.04 * value_noise(shape, (2.5, 2.5), rng)
-        + 0.05 * value_noise(shape, (30, 90), rng)
-        + 0.04 * value_noise(shape, (3, 260), rng)
-    )
-    return _tinted((112, 112, 114), shade)
-
-
-def grass(shape: tuple[int, int], rng: np.random.Generator) -> Image:
-    """Make rough grass: tufts, and dry patches that are more yellow."""
-    tufts = (
-        0.10 * rng.uniform(-1, 1, shape)
-        + 0.12 * value_noise(shape, (2, 3), rng)
-        + 0.10 * value_noise(shape, (6, 11), rng)
-        + 0.08 * value_noise(shape, (30, 70), rng)
-    )
-    dry = (0.5 + 0.5 * value_noise(shape, (18, 50), rng))[..., np.newaxis]
-    hue = np.asarray((84.0, 108.0, 54.0)) * (1 - dry) + np.asarray((122.0, 122.0, 72.0)) * dry
-    return (hue * (1 + tufts[..., np.newaxis])).astype(np.float32)
-
-
-def foliage(shape: tuple[int, int], rng: np.random.Generator) -> Image:
-    """Make the crowns of a hedge: lit tops, dark gaps."""
-    crowns = value_noise(shape, (16, 22), rng) + 0.8 * value_noise(shape, (6, 8), rng)
-    leaves = value_noise(shape, (2, 2), rng) + 0.6 * rng.uniform(-1, 1, shape)
-    return _tinted((56, 80, 42), 0.22 * crowns + 0.16 * leaves)
-
-
-def concrete(shape: tuple[int, int], rng: np.random.Generator) -> Image:
-    """Make weathered concrete."""
-    shade = (
-        0.02 * rng.uniform(-1, 1, shape)
-        + 0.03 * value_noise(shape, (3, 3), rng)
-        + 0.05 * value_noise(shape, (40, 8), rng)
-    )
-    return _tinted((164, 161, 152), shade)

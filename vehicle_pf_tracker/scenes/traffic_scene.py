@@ -12,22 +12,24 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A scene with many vehicles, and the exact truth about every one of them.
-
-Settings of the scenes with many vehicles.
-"""
+"""A scene with many vehicles, and the exact truth about every one of them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.scenes.compositing import Image, PixelWindow, overlap, paint
-from vehicle_pf_tracker.scenes.scene import Actor, Eye
+from vehicle_pf_tracker.scenes.compositing import Image, PixelWindow, overlap, stream
+from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters, draw_lorries, drive
+from vehicle_pf_tracker.scenes.roads import PAINTS, Carriageway, Lane, Vehicle, any_car, countryside
+from vehicle_pf_tracker.scenes.scene import Actor, Camera, Eye, Path
+from vehicle_pf_tracker.scenes.scenery import bridge
+from vehicle_pf_tracker.scenes.vehicles import lorry
 
 SCENERY = "scene"
 """Stands for whatever hides a vehicle and is none."""
@@ -70,8 +72,6 @@ class TrafficScene:
 
     Attributes
     ----------
-    name : str
-        Name in the catalogue.
     width, height : int
         Image size in px.
     frame_rate : float
@@ -89,11 +89,8 @@ class TrafficScene:
     order : callable or None
         Indices of the vehicles of a frame, far to near; None: the lower a body stands, the
         nearer it is.
-    road : RoadPlane or None
-        Exact map from pixels to the road, where the scene is in perspective.
     """
 
-    name: str
     width: int
     height: int
     frame_rate: float
@@ -103,7 +100,6 @@ class TrafficScene:
     obstacles: tuple[Actor, ...]
     camera: Eye
     order: Callable[[int], list[int]] | None = None
-    road: RoadPlane | None = None
 
     def frames(self) -> Iterator[tuple[Frame, tuple[VehicleTruth, ...]]]:
         """Render every frame in order, with its truth."""
@@ -114,9 +110,7 @@ class TrafficScene:
             shadows = [self.vehicles[number][0] for number in order]
             bodies = [self.vehicles[number][1] for number in order]
             for actor in (*shadows, *bodies, *self.obstacles):
-                box = actor.path(index)
-                if not PixelWindow.of(box, self.width, self.height).empty:
-                    paint(picture, actor.seen(index), box)
+                actor.paint(picture, index)
             yield self.camera.capture(picture, index), self.truth(index)
 
     def truth(self, index: int) -> tuple[VehicleTruth, ...]:
@@ -177,64 +171,74 @@ class TrafficScene:
         return visible, most, min(round(shares[most], 9), 1.0)
 
 
-@dataclass(frozen=True, slots=True)
-class TrafficSceneParameters:
-    """Parameters of every scene with many vehicles."""
+WIDTH, HEIGHT = 640, 360
+SCALE = 7.0
+"""px per metre: a car is about 30 px long, a lorry 80."""
+_TOP = 66
+"""First row of asphalt, px."""
+_MEDIAN = 34
+"""Rows between the two carriageways, px."""
 
-    vehicles: int = parameter(
-        20, "more vehicles in both directions together", minimum=2, maximum=80
+
+def traffic(parameters: TrafficSceneParameters, seed: int) -> TrafficScene:
+    """Make traffic in the view from beside the road."""
+    far = Carriageway(_TOP, parameters.lanes, SCALE, rightward=True)
+    near = Carriageway(far.rows.stop + _MEDIAN, parameters.lanes, SCALE, rightward=False)
+    count = parameters.vehicles if parameters.directions == 1 else (parameters.vehicles + 1) // 2
+    vehicles = [
+        *_direction(far, count, parameters, stream(seed, "far traffic")),
+        *_direction(near, parameters.vehicles - count, parameters, stream(seed, "near traffic")),
+    ]
+    return TrafficScene(
+        width=WIDTH,
+        height=HEIGHT,
+        frame_rate=parameters.frame_rate,
+        frame_count=parameters.frames,
+        backdrop=lambda: countryside((HEIGHT, WIDTH), (far, near), stream(seed, "backdrop")),
+        vehicles=tuple(vehicles),
+        obstacles=tuple(_bridges(parameters, seed)),
+        camera=Camera(parameters.noise, seed),
     )
-    directions: int = parameter(2, "1: all drive to the right", minimum=1, maximum=2)
-    lanes: int = parameter(
-        3, "more lanes of each direction: more vehicles beside each other", minimum=1, maximum=4
-    )
-    speed: float = parameter(
-        55.0, "faster vehicles move farther between two frames",
-        minimum=10.0, maximum=130.0, unit="km/h",
-    )  # fmt: skip
-    gap: float = parameter(
-        18.0, "mean gap in the beginning; shorter ones pack vehicles", minimum=4.0, maximum=200.0,
-        unit="m",
-    )  # fmt: skip
-    lorries: float = parameter(
-        0.1,
-        "share of lorries, which drive in the nearest lane and hide others",
-        minimum=0.0,
-        maximum=1.0,
-    )
-    lorry_speed: float = parameter(
-        0.5,
-        "speed of lorries; above 1 they overtake the cars",
-        minimum=0.2,
-        maximum=2.0,
-        unit="of the other vehicles'",
-    )
-    mixed: bool = parameter(False, "lorries drive among the cars, not in a lane of their own")
-    view: str = parameter(
-        "side",
-        "gantry: in perspective from over the road, the last lane is the outer one; mast: from "
-        "the middle of the road, the last lane is the inner one",
-        choices=("side", "gantry", "mast"),
-    )
-    bridges: int = parameter(
-        0,
-        "bridges, each of which hides every vehicle once; in the view from the side",
-        minimum=0,
-        maximum=5,
-    )
-    bridge_width: float = parameter(
-        50.0, "wider bridges hide vehicles for longer", minimum=10.0, maximum=200.0, unit="px"
-    )
-    flow: str = parameter(
-        "free", "queue: a red light holds all for 6 s; waves: short holds again and again",
-        choices=("free", "queue", "waves"),
-    )  # fmt: skip
-    changing: bool = parameter(False, "drivers overtake slower ones")
-    frames: int = parameter(400, "a longer scene", minimum=2, maximum=5000, unit="frames")
-    noise: float = parameter(
-        2.0, "more makes histograms differ from frame to frame",
-        minimum=0.0, maximum=60.0, unit="levels of 255",
-    )  # fmt: skip
-    frame_rate: float = parameter(
-        30.0, "more frames on the same way", minimum=5.0, maximum=240.0, unit="frames/s"
-    )
+
+
+def _bridges(parameters: TrafficSceneParameters, seed: int) -> list[Actor]:
+    rng = stream(seed, "bridges")
+    pitch = WIDTH / (parameters.bridges + 1)
+    return [
+        actor
+        for number in range(1, parameters.bridges + 1)
+        for actor in bridge(
+            number * pitch - parameters.bridge_width / 2 + rng.uniform(-0.1, 0.1) * pitch,
+            parameters.bridge_width, HEIGHT, rng,
+        )
+    ]  # fmt: skip
+
+
+def _direction(
+    road: Carriageway, count: int, parameters: TrafficSceneParameters, rng: np.random.Generator
+) -> list[tuple[Actor, Actor]]:
+    """Make the vehicles of one direction: shadow and body of each."""
+    lane = Lane(0.0, SCALE, road.rightward)
+    is_lorry = draw_lorries(count, parameters, rng)
+    bodies = [_lorry(lane, rng) if large else any_car(lane, rng) for large in is_lorry]
+    lengths = [body.size[0] / SCALE for body in bodies]
+    flow = drive(lengths, is_lorry, parameters, WIDTH / SCALE, rng)
+    return [
+        body.on(_way(road, body.size, flow.front[number], flow.lane[number]))
+        for number, body in enumerate(bodies)
+    ]
+
+
+def _lorry(lane: Lane, rng: np.random.Generator) -> Vehicle:
+    cab, load, stripe = (PAINTS[number] for number in rng.choice(len(PAINTS), 3, replace=False))
+    return Vehicle(lorry(cab, load, stripe), lane)
+
+
+def _way(road: Carriageway, size: tuple[float, float], front: Array, lane: Array) -> Path:
+    """Make the path of a vehicle; constant before its first and after its last frame."""
+    x = front * SCALE
+    left = x - size[0] if road.rightward else WIDTH - x
+    ground = [road.lane(number).ground for number in range(road.lanes)]
+    top = np.interp(lane, np.arange(road.lanes), ground) - size[1]
+    boxes = [Box(*corner, *size) for corner in zip(left.tolist(), top.tolist(), strict=True)]
+    return lambda frame: boxes[min(max(round(frame), 0), len(boxes) - 1)]

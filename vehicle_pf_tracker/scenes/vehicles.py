@@ -33,6 +33,15 @@ AMBER_LAMP: Colour = (236, 140, 30)
 Contour = Sequence[tuple[float, float]]
 
 
+def _panel(
+    x: tuple[float, float], z: tuple[float, float], colour: Colour, *, glow: bool = False
+) -> Face:
+    """Make an upright rectangle on the near side."""
+    (rear, front), (low, high) = x, z
+    contour = [(rear, low), (rear, high), (front, high), (front, low)]
+    return side_panel(contour, 0, colour, glow=glow)
+
+
 def car(paint: Colour) -> list[Face]:
     """Build a small hatchback, 3.7 m long, with a dark glass roof."""
     body = [(0.0, 0.32), (0.0, 0.78), (0.12, 0.95), (2.55, 0.95), (3.4, 0.8), (3.66, 0.62),
@@ -101,7 +110,7 @@ def suv(paint: Colour) -> list[Face]:
           for y in (1.6, 0.28)),
         *(_side_window(window) for window in windows),
         *_flank(body, paint, door=1.85),
-        side_panel([(0.05, 0.4), (0.05, 0.62), (4.45, 0.62), (4.45, 0.4)], 0, SILL),
+        _panel((0.05, 4.45), (0.4, 0.62), SILL),
         *lamps(body, front=4.5, rear=0.0),
         *wheels((0.9, 3.6), 0.38),
     ]  # fmt: skip
@@ -118,11 +127,9 @@ def _flank(body: Contour, paint: Colour, door: float) -> list[Face]:
     rear, front = body[0][0], body[-1][0]
     return [
         side_panel(body, 0, paint),
-        side_panel([(rear, 0.3), (rear, 0.55), (front, 0.55), (front, 0.3)], 0,
-                   tinted(paint, 0.8)),
-        side_panel([(rear + 0.3, 0.22), (rear + 0.3, 0.36), (front - 0.3, 0.36),
-                    (front - 0.3, 0.22)], 0, SILL),
-        side_panel([(door, 0.4), (door, 0.95), (door + 0.05, 0.95), (door + 0.05, 0.4)], 0, SILL),
+        _panel((rear, front), (0.3, 0.55), tinted(paint, 0.8)),
+        _panel((rear + 0.3, front - 0.3), (0.22, 0.36), SILL),
+        _panel((door, door + 0.05), (0.4, 0.95), SILL),
     ]  # fmt: skip
 
 
@@ -154,10 +161,8 @@ def lamps(body: Contour, front: float, rear: float) -> list[Face]:
     return [
         side_panel([(front - 0.42, top - 0.14), (front - 0.42, top), (front - 0.02, top),
                     (front, top - 0.14)], 0, HEAD_LAMP, glow=True),
-        side_panel([(front - 0.55, top - 0.14), (front - 0.55, top), (front - 0.42, top),
-                    (front - 0.42, top - 0.14)], 0, AMBER_LAMP, glow=True),
-        side_panel([(rear, 0.6), (rear, 0.85), (rear + 0.22, 0.85), (rear + 0.22, 0.6)], 0,
-                   TAIL_LAMP, glow=True),
+        _panel((front - 0.55, front - 0.42), (top - 0.14, top), AMBER_LAMP, glow=True),
+        _panel((rear, rear + 0.22), (0.6, 0.85), TAIL_LAMP, glow=True),
     ]  # fmt: skip
 
 
@@ -192,12 +197,12 @@ def lorry(cab: Colour, box: Colour, stripe: Colour) -> list[Face]:
         side_panel([(9.1, 1.9), (9.1, 2.75), (9.9, 2.75), (10.25, 1.9)], 0, SIDE_GLASS),
         *strips(load[1:3], 0, width, box),
         side_panel(load, 0, box),
-        side_panel([(0.0, 2.0), (0.0, 2.5), (8.3, 2.5), (8.3, 2.0)], 0, stripe),
-        *(side_panel([(x, 1.15), (x, 3.95), (x + 0.06, 3.95), (x + 0.06, 1.15)], 0, SILL)
+        _panel((0.0, 8.3), (2.0, 2.5), stripe),
+        *(_panel((x, x + 0.06), (1.15, 3.95), SILL)
           for x in (0.02, 8.2)),
-        side_panel([(2.9, 0.5), (2.9, 1.05), (6.0, 1.05), (6.0, 0.5)], 0, (120, 122, 124)),
+        _panel((2.9, 6.0), (0.5, 1.05), (120, 122, 124)),
         side_panel([(10.3, 0.8), (10.3, 1.1), (10.58, 1.1), (10.6, 0.8)], 0, HEAD_LAMP, glow=True),
-        side_panel([(0.0, 0.8), (0.0, 1.05), (0.3, 1.05), (0.3, 0.8)], 0, TAIL_LAMP, glow=True),
+        _panel((0.0, 0.3), (0.8, 1.05), TAIL_LAMP, glow=True),
         *wheels((1.0, 2.2, 7.1, 9.4), 0.5),
     ]  # fmt: skip
 
@@ -215,8 +220,8 @@ def truck(cab: Colour, box: Colour) -> list[Face]:
         side_panel([(4.7, 1.4), (4.7, 2.0), (5.2, 2.0), (5.65, 1.4)], 0, SIDE_GLASS),
         *strips(load, 0, width, box),
         side_panel(load, 0, box),
-        side_panel([(0.0, 0.8), (0.0, 1.0), (4.2, 1.0), (4.2, 0.8)], 0, tinted(box, 0.7)),
-        side_panel([(0.7, 1.5), (0.7, 2.2), (3.5, 2.2), (3.5, 1.5)], 0, tinted(cab, 0.9)),
+        _panel((0.0, 4.2), (0.8, 1.0), tinted(box, 0.7)),
+        _panel((0.7, 3.5), (1.5, 2.2), tinted(cab, 0.9)),
         *lamps(front, front=5.98, rear=0.0),
         *wheels((1.0, 5.0), 0.42),
     ]
@@ -233,11 +238,10 @@ def coach(paint: Colour, stripe: Colour, length: float = 12.0) -> list[Face]:
         *strips(body, 0, width, paint),
         *strips([(length - 0.04, top - 0.4), (length - 0.01, 1.3)], 0.15, width - 0.15, SCREEN),
         side_panel(body, 0, paint),
-        side_panel([(0.0, 1.3), (0.0, 1.7), (length, 1.7), (length, 1.3)], 0, stripe),
-        *(side_panel([(x, 2.0), (x, 3.25), (x + pane - 0.12, 3.25), (x + pane - 0.12, 2.0)], 0,
-                     SIDE_GLASS)
+        _panel((0.0, length), (1.3, 1.7), stripe),
+        *(_panel((x, x + pane - 0.12), (2.0, 3.25), SIDE_GLASS)
           for x in (0.45 + pane * number for number in range(count))),
-        *(side_panel([(x, 0.5), (x, 3.2), (x + 0.95, 3.2), (x + 0.95, 0.5)], 0, SCREEN)
+        *(_panel((x, x + 0.95), (0.5, 3.2), SCREEN)
           for x in (length - 1.5, length * 0.52)),
         *strips([(length * 0.3, top + 0.1), (length * 0.45, top + 0.1)], 0.6, 1.9, ROOF_UNIT),
         *lamps([*body[:-2], (length - 0.05, 1.0), (length, 0.4)], front=length, rear=0.0),

@@ -28,8 +28,8 @@ from vehicle_pf_tracker.evaluation.traffic.comparison import (
     write_traffic_report,
 )
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
+from vehicle_pf_tracker.scenes.catalogue import make_traffic_scene
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
-from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 

@@ -22,11 +22,11 @@ import numpy as np
 import pytest
 from street import Street, error, follow, vehicle
 
+from laboratory.scenes import make_scene
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion import track
 from vehicle_pf_tracker.trackers.fusion import tracker as tracker_module

@@ -20,9 +20,9 @@ import numpy as np
 import pytest
 from traffic_samples import MODES, vehicle
 
+from laboratory.scenes.road import RoadSceneParameters, camera_of, road
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, CountingZone
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
-from vehicle_pf_tracker.scenes.road import RoadSceneParameters, camera_of, road
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 

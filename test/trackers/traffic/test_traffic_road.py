@@ -18,11 +18,11 @@ import numpy as np
 import pytest
 from traffic_samples import track
 
+from laboratory.scenes import make_traffic_scene
+from laboratory.scenes.perspective import looking
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.road.camera import Lens, Pose
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.scenes.perspective import looking
-from vehicle_pf_tracker.scenes.traffic_catalogue import make_traffic_scene
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.horizon import calibrated_row
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters

@@ -21,26 +21,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.camera import Lens
-from vehicle_pf_tracker.scenes.cameras import Camera
-from vehicle_pf_tracker.scenes.compositing import stream
-from vehicle_pf_tracker.scenes.flow import draw_lorries, drive
-from vehicle_pf_tracker.scenes.perspective import (
+from laboratory.scenes.perspective import (
     RoadCamera,
     RoadMarks,
     RoadVehicle,
     ground_picture,
     looking,
 )
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.road.calibration import format_pairs
+from vehicle_pf_tracker.road.camera import Lens
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane
+from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.scenes.roads import PAINTS
-from vehicle_pf_tracker.scenes.scene import Actor
+from vehicle_pf_tracker.scenes.scene import Actor, Camera
 from vehicle_pf_tracker.scenes.solids import Face
-from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, TrafficSceneParameters
+from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene
 from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, tinted, van
 
 WIDTH, HEIGHT = 640, 360
@@ -64,7 +67,16 @@ _CARS = (
     (van, (1.0, 4.5)),
 )
 """Makers and axles (m from the rear) of the kinds of vehicles to choose from."""
+_ROAD_FROM = 0.5
+"""Row of the farthest pairs of a road, of the image's height: clearly below its horizon."""
 _LORRY_AXLES = (1.0, 2.2, 7.1, 9.4)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PerspectiveScene(TrafficScene):
+    """Traffic in perspective, with the exact map from pixels to the road."""
+
+    road: RoadPlane
 
 
 class _OnRoad:
@@ -92,8 +104,20 @@ class _OnRoad:
         return float(self.x[index]), float(self.y[index])
 
 
-def perspective_scene(name: str, parameters: TrafficSceneParameters, seed: int) -> TrafficScene:
-    """Make the scene `name`.
+@dataclass(frozen=True, slots=True)
+class PerspectiveParameters(TrafficSceneParameters):
+    """Parameters of traffic in perspective, which has no bridges."""
+
+    view: str = parameter(
+        "gantry",
+        "gantry: from over the road, the last lane is the outer one; mast: from the middle of the "
+        "road, the last lane is the inner one",
+        choices=("gantry", "mast"),
+    )
+
+
+def perspective_scene(parameters: PerspectiveParameters, seed: int) -> PerspectiveScene:
+    """Make traffic seen from over the road.
 
     Raises
     ------
@@ -101,7 +125,7 @@ def perspective_scene(name: str, parameters: TrafficSceneParameters, seed: int) 
         If there are to be bridges.
     """
     if parameters.bridges:
-        raise InputError(f"the scene {name} has bridges in the view from the side only")
+        raise InputError("a scene in perspective has no bridges; leave out the setting bridges")
     camera = camera_over(parameters, seed)
     count = parameters.vehicles if parameters.directions == 1 else (parameters.vehicles + 1) // 2
     coming = _direction(count, True, parameters, stream(seed, "coming traffic"))
@@ -109,8 +133,7 @@ def perspective_scene(name: str, parameters: TrafficSceneParameters, seed: int) 
         parameters.vehicles - count, False, parameters, stream(seed, "going traffic")
     )
     vehicles = [*coming, *going]
-    return TrafficScene(
-        name=name,
+    return PerspectiveScene(
         width=WIDTH,
         height=HEIGHT,
         frame_rate=parameters.frame_rate,
@@ -129,7 +152,20 @@ def perspective_scene(name: str, parameters: TrafficSceneParameters, seed: int) 
     )
 
 
-def camera_over(parameters: TrafficSceneParameters, seed: int) -> RoadCamera:
+def road_file(scene: PerspectiveScene) -> str:
+    """Return a parameter file with pairs of the road: a grid below the horizon."""
+    columns, rows = np.meshgrid(
+        np.linspace(0, scene.width, 3), np.linspace(_ROAD_FROM, 1, 3) * scene.height
+    )
+    pixels = np.stack([columns, rows], axis=-1).reshape(-1, 2)
+    pairs = tuple(
+        Pair((u, v), (x, y))
+        for (u, v), (x, y) in zip(pixels.tolist(), scene.road.to_road(pixels).tolist(), strict=True)
+    )
+    return f'/**:\n  ros__parameters:\n    road.pairs: "{format_pairs(pairs)}"\n'
+
+
+def camera_over(parameters: PerspectiveParameters, seed: int) -> RoadCamera:
     """Return the camera of the scene of this seed."""
     rng = stream(seed, "camera over traffic")
     focal = float(rng.uniform(950, 1050))
@@ -142,13 +178,13 @@ def camera_over(parameters: TrafficSceneParameters, seed: int) -> RoadCamera:
     return RoadCamera(lens, looking(place, (middle, _AHEAD)))
 
 
-def _lanes(way: int, parameters: TrafficSceneParameters) -> list[float]:
+def _lanes(way: int, parameters: PerspectiveParameters) -> list[float]:
     """Middles (x, m) of the lanes of one direction, the first the inner one but for a mast."""
     lanes = [way * (MEDIAN / 2 + LANE_WIDTH * (number + 0.5)) for number in range(parameters.lanes)]
     return lanes[::-1] if parameters.view == "mast" else lanes
 
 
-def _marks(parameters: TrafficSceneParameters) -> RoadMarks:
+def _marks(parameters: PerspectiveParameters) -> RoadMarks:
     inner, outer = MEDIAN / 2, MEDIAN / 2 + LANE_WIDTH * parameters.lanes
     ways = (-1, 1)[: parameters.directions]
     between = [inner + LANE_WIDTH * number for number in range(1, parameters.lanes)]
@@ -164,7 +200,7 @@ def _marks(parameters: TrafficSceneParameters) -> RoadMarks:
 
 
 def _direction(
-    count: int, coming: bool, parameters: TrafficSceneParameters, rng: np.random.Generator
+    count: int, coming: bool, parameters: PerspectiveParameters, rng: np.random.Generator
 ) -> list[_OnRoad]:
     """Make the vehicles of one direction with their ways; those that come drive on the left."""
     is_lorry = draw_lorries(count, parameters, rng)

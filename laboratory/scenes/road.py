@@ -24,12 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.road.camera import Lens
-from vehicle_pf_tracker.scenes.cameras import Camera
-from vehicle_pf_tracker.scenes.compositing import stream
-from vehicle_pf_tracker.scenes.drive import PAINTS
-from vehicle_pf_tracker.scenes.perspective import (
+from laboratory.scenes.perspective import (
     Drive,
     RoadCamera,
     RoadMarks,
@@ -37,7 +32,11 @@ from vehicle_pf_tracker.scenes.perspective import (
     ground_picture,
     looking,
 )
-from vehicle_pf_tracker.scenes.scene import Actor, Scene
+from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.road.camera import Lens
+from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.drive import PAINTS
+from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene
 from vehicle_pf_tracker.scenes.vehicles import car, saloon, suv
 
 WIDTH, HEIGHT = 640, 480
@@ -109,7 +108,6 @@ def road(parameters: RoadSceneParameters, seed: int) -> Scene:
     target = _vehicle(parameters.vehicle, (shift, start), way, camera, rng)
     others = _others(way, camera, rng)
     return Scene(
-        name="road",
         width=WIDTH,
         height=HEIGHT,
         frame_rate=parameters.frame_rate,

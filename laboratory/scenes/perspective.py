@@ -16,8 +16,7 @@
 
 Coordinates in metres: x to the right, y ahead, z up. Edges between projected corners are straight,
 also where the lens bends them: over a vehicle that is a fraction of a pixel.
-
-The ground with a road on it, as a camera sees it in perspective.
+The ground has a road on it.
 """
 
 from __future__ import annotations
@@ -36,7 +35,8 @@ from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.scenes.compositing import Image, Sprite, cells_inside
 from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY, all_round, turned
 from vehicle_pf_tracker.scenes.scene import Actor
-from vehicle_pf_tracker.scenes.solids import SAME_PLACE, Face, asphalt, grass, lit, shadow
+from vehicle_pf_tracker.scenes.scenery import asphalt, grass
+from vehicle_pf_tracker.scenes.solids import SAME_PLACE, Face, lit, shadow
 from vehicle_pf_tracker.scenes.vehicles import TYRE
 
 _OVERSAMPLING = 4

@@ -1,0 +1,49 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The command line of the scenes: ``python -m laboratory.scenes SCENE OUT``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from laboratory.scenes import SCENES, TRAFFIC_SCENES, make_scene, make_traffic_scene
+from laboratory.scenes.traffic_perspective import PerspectiveScene, road_file
+from vehicle_pf_tracker.cli.main import exit_status
+from vehicle_pf_tracker.cli.synth import record_scene
+from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
+
+
+def main() -> int:
+    """Write a scene as a recording, or traffic as a folder in MOTChallenge's layout."""
+    parser = argparse.ArgumentParser(prog="python -m laboratory.scenes", description=main.__doc__)
+    parser.add_argument("scene", metavar="SCENE", choices=(*SCENES, *TRAFFIC_SCENES))
+    parser.add_argument("out", metavar="OUT", type=Path)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
+    args = parser.parse_args()
+    if args.scene in SCENES:
+        record_scene(make_scene(args.scene, seed=args.seed, settings=args.set), args.out)
+    else:
+        scene = make_traffic_scene(args.scene, seed=args.seed, settings=args.set)
+        write_mot_folder(scene, args.out, args.seed)
+        if isinstance(scene, PerspectiveScene):
+            (args.out / "road.yaml").write_text(road_file(scene), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(exit_status(main, "python -m laboratory.scenes"))

@@ -1,0 +1,237 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Drives past crossing, dense or faster traffic, in changing light, and at a changing speed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, overlap, stream
+from vehicle_pf_tracker.scenes.drive import LANE, PAINTS, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.models import Bend, Model, Pace, Pose, Still
+from vehicle_pf_tracker.scenes.roads import convoy, side_road
+from vehicle_pf_tracker.scenes.scene import DISTURBANCES, Actor, OutdoorCamera, Scene
+from vehicle_pf_tracker.scenes.scenery import value_noise
+from vehicle_pf_tracker.scenes.solids import ELEVATION, SHADE
+from vehicle_pf_tracker.scenes.vehicles import car, coach, saloon, suv, van
+
+
+@dataclass(frozen=True, slots=True)
+class ShadowParameters(DriveParameters):
+    """Parameters of static shadows."""
+
+    depth: float = parameter(
+        0.55, "deeper shadows change the target's colours more", minimum=0.1, maximum=0.8
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class IlluminationParameters(DriveParameters):
+    """Parameters of changing light."""
+
+    dimming: float = parameter(
+        0.45, "the share of the light that the cloud takes away", minimum=0.05, maximum=0.8
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Cloud:
+    """A cloud before the sun: darker and bluer light from frame `start` for `length` frames.
+
+    The light falls and rises over a fifth of the time each; after it the sun is warmer.
+    """
+
+    start: float
+    length: float
+    dimming: float
+
+    def __call__(self, frame: float) -> Colour:
+        """Give the gains of red, green and blue in `frame`."""
+        into = (frame - self.start) / self.length
+        cover = float(np.interp(into, (0, 0.2, 0.8, 1.0), (0, 1, 1, 0)))
+        warmth = 0.06 * float(np.interp(into, (0.8, 1.0), (0, 1)))
+        light = 1 - self.dimming * cover
+        return light * (1 - 0.08 * cover + warmth), light, light * (1 + 0.1 * cover - warmth)
+
+
+@dataclass(frozen=True, slots=True)
+class CloudyCamera(OutdoorCamera):
+    """A camera on a mast while a cloud passes."""
+
+    cloud: Cloud
+
+    def gain(self, index: int) -> Colour:
+        """Give the gains of red, green and blue in frame `index`."""
+        flicker = OutdoorCamera.gain(self, index)[0]
+        red, green, blue = self.cloud(index)
+        return red * flicker, green * flicker, blue * flicker
+
+
+def tree_shadows(drive: Drive, shares: tuple[float, ...], depth: float) -> list[Actor]:
+    """Let trees outside the image cast dappled shadows across the road, and on what drives there.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    shares : tuple of float
+        Places along the way.
+    depth : float
+        Share of the light that is missing in the darkest parts.
+    """
+    rng = stream(drive.seed, "tree shadows")
+    top = drive.road.rows.start - 30
+    bottom = drive.road.rows.stop + 12
+    actors = []
+    for share in shares:
+        columns = round(rng.uniform(1.6, 2.4) * drive.target.size[0])
+        rows = bottom - top
+        rim = np.abs(np.linspace(-1, 1, columns)) + 0.25 * value_noise(
+            (rows, columns), (16, 12), rng
+        )
+        sunflecks = value_noise((rows, columns), (6, 7), rng)
+        opacity = depth * np.clip(3 * (0.9 - rim), 0, 1) * np.clip(1.5 - 2.2 * sunflecks, 0, 1)
+        place = Box(drive.x(drive.along(share)) - columns / 2, top, columns, rows)
+        sprite = Sprite(np.tile(SHADE, (rows, columns, 1)), opacity)
+        actors.append(Actor(sprite, Still(place), hides=False))
+    return actors
+
+
+def shadows(parameters: ShadowParameters, seed: int) -> Scene:
+    """Make the scene: strong dappled shadows across the road."""
+    drive = Drive(parameters, seed)
+    places = (0.19, 0.36, 0.52, 0.68, 0.86)
+    return drive.scene(tree_shadows(drive, places, parameters.depth))
+
+
+def illumination(parameters: IlluminationParameters, seed: int) -> Scene:
+    """Make the scene: a cloud darkens it for half the time, and then the sun is warmer."""
+    drive = Drive(parameters, seed)
+    frames = drive.frame_count
+    cloud = Cloud(0.2 * frames, 0.5 * frames, parameters.dimming)
+    disturbance = DISTURBANCES[parameters.disturbance]
+    return replace(drive.scene(), camera=CloudyCamera(disturbance, seed, cloud))
+
+
+@dataclass(frozen=True, slots=True)
+class AccelerationParameters(DriveParameters):
+    """Parameters of a change of speed while visible."""
+
+    change: float = parameter(
+        2.2, "highest speed over the speed at the start and at the end", minimum=1.0, maximum=3.0
+    )
+
+
+def acceleration(parameters: AccelerationParameters, seed: int) -> Scene:
+    """Make the scene: the target speeds up, holds the speed, and brakes."""
+    low, high = parameters.speed, parameters.speed * parameters.change
+    knots = (0.0, low), (14.0, low), (34.0, high), (48.0, high), (64.0, low)
+    return Drive(parameters, seed, Pace(knots)).scene()
+
+
+CLEAR_FRAMES = 10
+"""Frames at the start in which nothing may hide the target: trackers learn it there."""
+
+
+def near_traffic(drive: Drive) -> list[Actor]:
+    """Fill the nearer lane with faster vehicles, each of which hides a part of the target."""
+    rng = stream(drive.seed, "near lane")
+    speed = drive.parameters.speed * rng.uniform(1.5, 1.7)
+    lane = drive.road.lane(LANE + 1)
+    others = convoy(lane, speed, drive.frame_count, drive.width, rng, (40, 130), (van,))
+    return _clear_at_first(drive, others)
+
+
+def _clear_at_first(drive: Drive, others: list[Actor]) -> list[Actor]:
+    """Leave out the vehicles that would hide the target before it has been seen for a while."""
+    own = drive.target.on(drive.course(drive.start, drive.pace))[1]
+    return [
+        actor
+        for pair in zip(others[::2], others[1::2], strict=True)
+        if not any(overlap(pair[1].path(frame), own.path(frame)) for frame in range(CLEAR_FRAMES))
+        for actor in pair
+    ]
+
+
+def dense(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: full lanes, of which the nearer one hides parts of the target."""
+    drive = Drive(parameters, seed)
+    rng = stream(seed, "dense")
+    slow, fast = parameters.speed * rng.uniform(0.7, 0.8), parameters.speed * rng.uniform(1.3, 1.5)
+    stage, gaps = (drive.frame_count, drive.width), (14, 60)
+    far = convoy(drive.road.lane(LANE - 1), slow, *stage, rng, gaps)
+    near = convoy(drive.road.lane(LANE + 1), fast, *stage, rng, gaps, (van, suv))
+    ahead = _own_lane(drive, rng)
+    return drive.scene(
+        [*_clear_at_first(drive, near), *drive.opposite_traffic()], behind=[*far, *ahead]
+    )
+
+
+def _own_lane(drive: Drive, rng: np.random.Generator) -> list[Actor]:
+    """Make the vehicles before and behind the target in its own lane, as fast as it is."""
+    actors: list[Actor] = []
+    for distance in (-200.0, -100.0, 100.0, 200.0):
+        faces = (car, saloon)[rng.integers(2)](PAINTS[rng.integers(len(PAINTS))])
+        place = drive.start + distance + rng.uniform(-15, 15)
+        actors += Model(faces, drive.scale).on(drive.course(place, drive.pace))
+    return actors
+
+
+CROSSING = math.radians(28)
+"""Angle between the road and the one that crosses it."""
+
+
+def cross(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: the target slows down for a coach that crosses the road before it."""
+    base = Drive(parameters, seed)
+    speed, slow = parameters.speed, 0.5 * parameters.speed
+    brake = base.frame_at(base.along(0.33))
+    pace = Pace(((0.0, speed), (brake, speed), (brake + 12, slow), (brake + 26, slow),
+                 (brake + 38, speed)))  # fmt: skip
+    drive = Drive(parameters, seed, pace)
+    scene = drive.scene(_crossing_coach(drive, brake + 22), behind=())
+    return replace(scene, backdrop=lambda: _crossroads(drive, brake + 22))
+
+
+def _crossing_coach(drive: Drive, frame: float) -> list[Actor]:
+    """Make the coach whose middle is right in front of the target in `frame`."""
+    x, y = _crossing(drive, frame)
+    heading = CROSSING - math.pi if drive.rightward else -CROSSING
+    pace = Pace(((frame, 0.9 * drive.parameters.speed),))
+    model = Model(coach((190, 60, 48), (230, 226, 216)), drive.scale)
+    return list(model.on(Bend(Pose(x, y, heading, drive.scale), pace)))
+
+
+def _crossing(drive: Drive, frame: float) -> tuple[float, float]:
+    """Place of the coach's middle in `frame`: a little nearer to the viewer than the target's."""
+    target = drive.course(drive.start, drive.pace)(frame)
+    return target.x, target.y + 18
+
+
+def _crossroads(drive: Drive, frame: float) -> Image:
+    picture = drive.backdrop()
+    x, y = _crossing(drive, frame)
+    slope = math.tan(CROSSING) * math.sin(ELEVATION) * (-1 if drive.rightward else 1)
+    top, bottom = -1.0, drive.height + 1.0
+    ends = (x + (top - y) / slope, top), (x + (bottom - y) / slope, bottom)
+    side_road(
+        picture, *ends, 7.5 * drive.scale / math.sin(CROSSING), stream(drive.seed, "crossing")
+    )
+    return picture

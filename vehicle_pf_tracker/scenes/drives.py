@@ -1,0 +1,273 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The scenes with one target, but for the highway: the bar of the APF paper, and the drives."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.scenes.compositing import Image, Sprite, stream
+from vehicle_pf_tracker.scenes.drive import LANE, RADIUS, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.models import Pace, Still, Straight
+from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene
+from vehicle_pf_tracker.scenes.scenery import bridge as make_bridge
+from vehicle_pf_tracker.scenes.scenery import house, pillar, plain, post, sign, tree
+from vehicle_pf_tracker.scenes.solids import ELEVATION, draw
+from vehicle_pf_tracker.scenes.vehicles import car, coach
+
+WIDTH, HEIGHT = 640, 480
+BAR_MARGIN = 20
+"""Free pixels between the vehicle and the image's sides in the first and the last frame."""
+
+_SOURCE = "Scharcanski 2011, section IV"
+
+
+@dataclass(frozen=True, slots=True)
+class BarParameters:
+    """Parameters of the artificial video."""
+
+    speed: float = parameter(
+        5.0, "faster vehicles need a wider search, and the video gets shorter",
+        minimum=0.5, maximum=40.0, unit="px/frame", source=_SOURCE,
+    )  # fmt: skip
+    width: float = parameter(
+        30.0, "wider bars hide the vehicle for longer; 0 leaves the bar out",
+        minimum=0.0, maximum=120.0, unit="px", source=_SOURCE,
+    )  # fmt: skip
+    vehicle_width: float = parameter(
+        40.0, "longer vehicles stay partly visible for longer",
+        minimum=8.0, maximum=100.0, unit="px",
+    )  # fmt: skip
+    vehicle_height: float = parameter(
+        30.0, "taller vehicles fill more of the image", minimum=8.0, maximum=100.0, unit="px"
+    )
+    noise: float = parameter(
+        2.0, "more makes histograms differ from frame to frame",
+        minimum=0.0, maximum=60.0, unit="levels of 255",
+    )  # fmt: skip
+    frame_rate: float = parameter(
+        15.0, "changes the stamps only: speed is per frame",
+        minimum=1.0, maximum=240.0, unit="frames/s", source=_SOURCE,
+    )  # fmt: skip
+
+
+def bar(parameters: BarParameters, seed: int) -> Scene:
+    """Make the scene: constant speed to the right at mid-height, the bar in the middle."""
+    size = parameters.vehicle_width, parameters.vehicle_height
+    vehicle = Actor(
+        draw(car((196, 44, 36)), *size),
+        Straight(Box(BAR_MARGIN, (HEIGHT - size[1]) / 2, *size), (parameters.speed, 0.0)),
+    )
+    run = WIDTH - 2 * BAR_MARGIN - parameters.vehicle_width
+    return Scene(
+        width=WIDTH,
+        height=HEIGHT,
+        frame_rate=parameters.frame_rate,
+        frame_count=int(run / parameters.speed) + 1,
+        backdrop=lambda: _backdrop(seed),
+        actors=(vehicle, *_bars(parameters.width)),
+        target=0,
+        camera=Camera(parameters.noise, seed),
+    )
+
+
+def _backdrop(seed: int) -> Image:
+    return plain((HEIGHT, WIDTH), (168, 170, 166), stream(seed, "backdrop"))
+
+
+def _bars(width: float) -> tuple[Actor, ...]:
+    """Make the bar, its left edge on a whole pixel; none for a width of 0."""
+    if width == 0:
+        return ()
+    box = Box(WIDTH // 2 - width // 2, 0.0, width, HEIGHT)
+    return (Actor(Sprite.plain((34.0, 34.0, 38.0)), Still(box)),)
+
+
+@dataclass(frozen=True, slots=True)
+class HidingParameters(DriveParameters):
+    """Parameters of scenes in which one obstacle hides the target."""
+
+    hidden: float = parameter(
+        15.0, "longer occlusions leave more to prediction",
+        minimum=1.0, maximum=40.0, unit="frames",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class BrakingParameters(DriveParameters):
+    """Parameters of a change of speed during an occlusion."""
+
+    change: float = parameter(
+        0.6, "speed after the occlusion over that before; above 1 accelerates",
+        minimum=0.4, maximum=1.8,
+    )  # fmt: skip
+    hidden: float = parameter(
+        16.0, "longer occlusions leave more to prediction",
+        minimum=4.0, maximum=40.0, unit="frames",
+    )  # fmt: skip
+
+
+def hiding_width(drive: Drive, frames: float) -> float:
+    """Width (px) of what hides the target wholly for about `frames` frames."""
+    return drive.target.size[0] + frames * drive.parameters.speed
+
+
+def bridge_at(drive: Drive, share: float, frames: float) -> list[Actor]:
+    """Lead a bridge over the road that hides the target for `frames` frames."""
+    width = hiding_width(drive, frames)
+    left = drive.x(drive.along(share)) - width / 2
+    return list(make_bridge(left, width, drive.height, stream(drive.seed, "bridge")))
+
+
+def sign_at(drive: Drive, share: float, frames: float, name: str = "sign") -> list[Actor]:
+    """Put up a road sign that hides the target for `frames` frames."""
+    middle, width = drive.x(drive.along(share)), hiding_width(drive, frames)
+    height = drive.target.size[1]
+    board = width, drive.row - height - 12, drive.row + 0.4 * height + 8
+    foot = drive.opposite.rows.stop + 22
+    return sign(middle, board, foot, stream(drive.seed, name))
+
+
+def posts_at(drive: Drive, shares: tuple[float, ...], width: float = 9.0) -> list[Actor]:
+    """Put up lamp posts, which hide a part of the target for a moment."""
+    foot = drive.opposite.rows.stop + 14
+    return [
+        actor for share in shares for actor in post(drive.x(drive.along(share)), width, -5, foot)
+    ]
+
+
+def trees_at(drive: Drive, shares: tuple[float, ...], density: float = 0.36) -> list[Actor]:
+    """Plant trees whose thin crowns hide a part of the target."""
+    rng = stream(drive.seed, "trees")
+    length, height = drive.target.size
+    actors: list[Actor] = []
+    for share in shares:
+        top = drive.row - rng.uniform(0.9, 1.2) * height
+        crown = rng.uniform(1.3, 1.8) * length, top, top + rng.uniform(75, 95)
+        foot = drive.opposite.rows.stop + rng.uniform(8, 30)
+        actors += tree(drive.x(drive.along(share)), crown, foot, density, rng)
+    return actors
+
+
+def bars(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: four pillars of rising width; the last two hide the target wholly."""
+    drive = Drive(parameters, seed)
+    rng = stream(seed, "pillars")
+    widths = 12.0, 0.7 * drive.target.size[0], hiding_width(drive, 4), hiding_width(drive, 10)
+    places = 0.15, 0.22, 0.335, 0.65
+    front = [
+        actor
+        for share, width in zip(places, widths, strict=True)
+        for actor in pillar(drive.x(drive.along(share)), width, drive.height, rng)
+    ]
+    return drive.scene(front)
+
+
+def bridge(parameters: HidingParameters, seed: int) -> Scene:
+    """Make the scene: a bridge across the road."""
+    drive = Drive(parameters, seed)
+    return drive.scene(bridge_at(drive, 0.5, parameters.hidden))
+
+
+def signs(parameters: HidingParameters, seed: int) -> Scene:
+    """Make the scene: lamp posts, and a large sign that hides the target."""
+    drive = Drive(parameters, seed)
+    front = [*posts_at(drive, (0.2, 0.82)), *sign_at(drive, 0.47, parameters.hidden)]
+    return drive.scene(front)
+
+
+def trees(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: trees along the road, each of which hides a part of the target."""
+    drive = Drive(parameters, seed)
+    return drive.scene(trees_at(drive, (0.25, 0.43, 0.6, 0.78)))
+
+
+COACH_LENGTH = 12.0
+"""Metres."""
+
+
+def coach_at(
+    drive: Drive, share: float, frames: float, length: float = COACH_LENGTH
+) -> list[Actor]:
+    """Let a coach overtake in the nearer lane and hide the target for about `frames` frames.
+
+    `length` is the coach's, in metres.
+    """
+    spare = length * drive.scale - drive.target.size[0]
+    speed = drive.parameters.speed + spare / frames
+    faces = coach((206, 204, 196), (34, 82, 128), length)
+    return drive.meeting(faces, drive.along(share), speed)
+
+
+def bus(parameters: HidingParameters, seed: int) -> Scene:
+    """Make the scene: a coach overtakes and hides the target."""
+    drive = Drive(parameters, seed)
+    return drive.scene(coach_at(drive, 0.45, parameters.hidden))
+
+
+def twin(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: a vehicle of the same make and colour overtakes slowly in the far lane."""
+    drive = Drive(parameters, seed)
+    other = drive.meeting(drive.faces, drive.along(0.5), 1.1 * parameters.speed, lane=LANE - 1)
+    return drive.scene(drive.opposite_traffic(), behind=other)
+
+
+def clear(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: nothing in the way, at a constant speed."""
+    return Drive(parameters, seed).scene()
+
+
+def braking(parameters: BrakingParameters, seed: int) -> Scene:
+    """Make the scene: the target changes its speed under a bridge."""
+    before, after = parameters.speed, parameters.speed * parameters.change
+    plain = Drive(parameters, seed)
+    frame = plain.frame_at(plain.along(0.5))
+    half = 0.35 * parameters.hidden
+    drive = Drive(
+        parameters, seed, Pace(((0, before), (frame - half, before), (frame + half, after)))
+    )
+    mean = (before + after) / 2 / before
+    return drive.scene(bridge_at(drive, 0.5, parameters.hidden * mean))
+
+
+def turn(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: the target turns into a side road, away from the viewer."""
+    return turning(parameters, seed).scene(behind=())
+
+
+def turn_occluded(parameters: DriveParameters, seed: int) -> Scene:
+    """Make the scene: the target turns into a side road behind a house."""
+    drive = turning(parameters, seed)
+    return drive.scene(house_at_corner(drive), behind=())
+
+
+def turning(parameters: DriveParameters, seed: int) -> Drive:
+    """Make a drive that turns into a side road a little before the middle of the image."""
+    corner = Drive(parameters, seed).along(0.42 + stream(seed, "corner").uniform(-0.02, 0.02))
+    return Drive(parameters, seed, corner=corner)
+
+
+def house_at_corner(drive: Drive) -> list[Actor]:
+    """Build a house on the near side that hides the turn of `drive`, which has a corner."""
+    assert drive.corner is not None
+    length, height = drive.target.size
+    near, far = drive.corner - 0.7 * length, drive.corner + RADIUS + 0.6 * length
+    left = min(drive.x(near), drive.x(far))
+    top = drive.row - RADIUS * math.sin(ELEVATION) - 1.2 * height
+    box = Box(left, top, far - near, drive.road.rows.stop + 50 - top)
+    return house(box, (196, 178, 150), stream(drive.seed, "house"))
