@@ -14,11 +14,7 @@
 
 """Measure what the dearest compressed images cost that are still decoded.
 
-<<<<<<< HEAD:laboratory/hostile_images.py
-    python laboratory/hostile_images.py
-=======
-    python -m benchmarks.hostile_images
->>>>>>> a4:benchmarks/hostile_images.py
+    python -m laboratory.hostile_images
 
 Each kind of file is made as large as it may be; every one is decoded in a process of its own.
 """

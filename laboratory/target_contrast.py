@@ -14,11 +14,7 @@
 
 """Contrast of true boxes and of boxes thrown into their images, for doubts about targets.
 
-<<<<<<< HEAD:laboratory/target_contrast.py
-python laboratory/target_contrast.py ../shared/sequences
-=======
-python -m benchmarks.target_contrast SEQUENCES
->>>>>>> a4:benchmarks/target_contrast.py
+python -m laboratory.target_contrast SEQUENCES
 """
 
 from __future__ import annotations
