@@ -28,7 +28,8 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
-from vehicle_pf_tracker.trackers.uncertainty import CALIBRATIONS, Calibration, Spread
+from vehicle_pf_tracker.trackers.uncertainty import Calibration, Spread
+from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
 COLUMNS = (
     "stamp", "error_x", "error_y", "xx", "xy", "yy", "width", "height", "vx", "vy", "period",

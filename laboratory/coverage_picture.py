@@ -30,7 +30,7 @@ from matplotlib.axes import Axes
 
 from laboratory.covariance_coverage import INSIDE, Runs
 from vehicle_pf_tracker.offline.output_files import replacing
-from vehicle_pf_tracker.trackers.uncertainty import CALIBRATIONS
+from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
 _SHOWN = {"fusion": "tab:blue", "apf": "tab:orange"}
 """Variants of the drive, and their colours."""

@@ -32,7 +32,7 @@ from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.localisation import Localisation
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.session import Session
-from vehicle_pf_tracker.trackers.uncertainty import CALIBRATIONS
+from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
 
 def test_runs_have_the_covariances_of_the_node(tmp_path):

@@ -19,13 +19,13 @@ from estimate_samples import estimate
 from vehicle_pf_tracker.trackers.estimate import START, Mode
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.uncertainty import (
-    CALIBRATIONS,
     Calibration,
     Spread,
     Uncertainty,
     calibration_of,
     cloud_covariance,
 )
+from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
 SECOND = 1_000_000_000
 NOTHING = Spread(0.0, 0.0, 0.0, 0.0)

@@ -170,7 +170,7 @@ class CameraFlow:
         small : SmallGrey
             The reduced frame.
         target : Box
-            In px of the whole frame; corners in and close to it take no part.
+            Target box, px of the whole frame; corners in and close to it take no part.
         """
         reduced, zoom = small.image, small.zoom
         last, self._last = self._last, reduced

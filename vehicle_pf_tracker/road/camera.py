@@ -61,7 +61,7 @@ class Lens:
     model : str
         One of `MODELS`, the names of CameraInfo.
     coefficients : tuple of float
-        In the order of CameraInfo.
+        Coefficients of the distortion, in the order of CameraInfo.
     """
 
     focal: tuple[float, float]

@@ -238,7 +238,7 @@ class Judged(Located, Protocol):
 
     @property
     def confidence(self) -> float:
-        """From 0 to 1."""
+        """Score of the class, 0 to 1."""
         ...
 
 

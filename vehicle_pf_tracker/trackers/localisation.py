@@ -32,7 +32,8 @@ from vehicle_pf_tracker.road.camera import Lens, Pose
 from vehicle_pf_tracker.road.motion import KMH, RoadMotion
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
-from vehicle_pf_tracker.trackers.uncertainty import CALIBRATIONS, Uncertainty, calibration_of
+from vehicle_pf_tracker.trackers.uncertainty import Uncertainty, calibration_of
+from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
 CORRELATION = 4.0
 """Frames that the error of a position lasts: what the filter of the speed takes for one new

@@ -251,7 +251,7 @@ def fit_motion(
     Parameters
     ----------
     times : (N,) array
-        In frames, ascending, the last of them 0.
+        Times in frames, ascending, the last of them 0.
     positions : (N, 2) array
         px.
     sizes : (N,) array

@@ -131,9 +131,9 @@ class Horizon:
         Parameters
         ----------
         assumed : float
-            That is assumed before vehicles tell, of the image's height.
+            Horizon assumed before vehicles show it, fraction of the image's height.
         followed : iterable of Growth
-            Of the vehicles that are followed.
+            Growth of each followed vehicle.
         size : (int, int)
             Width and height of the image.
         road : RoadPlane or None
@@ -152,11 +152,11 @@ class Horizon:
         Parameters
         ----------
         assumed : float
-            That is assumed before vehicles tell.
+            Horizon assumed before vehicles show it.
         followed : iterable of Growth
-            Of the vehicles that are followed.
+            Growth of each followed vehicle.
         height : int
-            Of the image, px.
+            Height of the image, px.
         """
         told = [*self._ended, *(one for each in followed if (one := each.told(height)))]
         if not told:

@@ -98,9 +98,9 @@ class PixelHold:
         Parameters
         ----------
         tracks : sequence of Track
-            Predicted into this frame.
+            Track predicted into this frame.
         colours : ColourBins
-            Of this frame.
+            Colours of this frame.
         normals : (P, 3) array
             Standard normal numbers that make the particles.
         """

@@ -62,7 +62,7 @@ class ColourBins:
         Parameters
         ----------
         edges : (4,) array
-            Of the box, px.
+            Edges of the box, px.
         covers : (K, 4) array
             Edges of boxes whose pixels are left out.
 
