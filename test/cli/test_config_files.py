@@ -18,8 +18,8 @@ from pathlib import Path
 
 import pytest
 
-from vehicle_pf_tracker.cli import params
-from vehicle_pf_tracker.cli.params import config_path
+from vehicle_pf_tracker.cli import config_files
+from vehicle_pf_tracker.cli.config_files import config_path
 from vehicle_pf_tracker.core.errors import InputError
 
 SHARE = Path("share", "vehicle_pf_tracker", "config")
@@ -29,8 +29,8 @@ SHARE = Path("share", "vehicle_pf_tracker", "config")
 def nowhere(monkeypatch, tmp_path):
     """Code without any install around it, in tmp_path/code."""
     code = tmp_path / "code" / "vehicle_pf_tracker" / "cli" / "config_files.py"
-    monkeypatch.setattr(params, "__file__", str(code))
-    monkeypatch.setattr(params, "ROOT", tmp_path / "code")
+    monkeypatch.setattr(config_files, "__file__", str(code))
+    monkeypatch.setattr(config_files, "ROOT", tmp_path / "code")
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     return tmp_path
 

@@ -36,7 +36,7 @@ EXECUTABLES = {
 }  # fmt: skip
 ASK = """
 import vehicle_pf_tracker
-from vehicle_pf_tracker.cli.params import config_path
+from vehicle_pf_tracker.cli.config_files import config_path
 print(vehicle_pf_tracker.__file__)
 print(config_path("trial"))
 """
