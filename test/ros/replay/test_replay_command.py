@@ -123,8 +123,9 @@ def test_a_mute_node_ends_with_status_1_and_one_line(start_process, tmp_path, be
     replay = start_process(*COMMAND, str(tmp_path / "bag"), *words)
     with spinning(bench):
         assert replay.wait() == 1
-    (line,) = replay.output.splitlines()
+    *_, line = replay.output.splitlines()  # a slow replay also tells its progress
     assert "/stub_tracker did not answer frame 2" in line
+    assert "Traceback" not in replay.output
 
 
 def test_no_target_is_a_usage_error(start_process, tmp_path, bench):
