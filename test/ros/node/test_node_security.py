@@ -29,6 +29,7 @@ from rclpy.parameter import Parameter
 from tracker_rig import SOME_FAST, TrackerNode, overrides
 
 from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.ros.messages import detections_type
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
 from vehicle_pf_tracker.trackers.registry import NODES, find_variant
 
