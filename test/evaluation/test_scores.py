@@ -21,7 +21,7 @@ from scoring_samples import PERIOD_NS, row, truth
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.scores import overlap, score_frames
+from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 
 sides = st.floats(0.5, 200)
@@ -39,18 +39,18 @@ def errors(rows):
 
 def test_overlap_by_hand():
     square = Box(0, 0, 10, 10)
-    assert overlap(square, square) == 1
-    assert overlap(square, Box(5, 0, 10, 10)) == pytest.approx(50 / 150)
-    assert overlap(square, Box(5, 5, 10, 10)) == pytest.approx(25 / 175)
-    assert overlap(square, Box(2, 2, 5, 5)) == pytest.approx(0.25)
-    assert overlap(square, Box(10, 0, 10, 10)) == overlap(square, Box(0, 30, 10, 10)) == 0
+    assert square.iou(square) == 1
+    assert square.iou(Box(5, 0, 10, 10)) == pytest.approx(50 / 150)
+    assert square.iou(Box(5, 5, 10, 10)) == pytest.approx(25 / 175)
+    assert square.iou(Box(2, 2, 5, 5)) == pytest.approx(0.25)
+    assert square.iou(Box(10, 0, 10, 10)) == square.iou(Box(0, 30, 10, 10)) == 0
 
 
 @given(boxes, boxes)
 def test_overlap_is_symmetric_and_a_share(one, other):
-    assert overlap(one, other) == pytest.approx(overlap(other, one), abs=1e-12)
-    assert 0 <= overlap(one, other) <= 1 + 1e-12
-    assert overlap(one, one) == pytest.approx(1)
+    assert one.iou(other) == pytest.approx(other.iou(one), abs=1e-12)
+    assert 0 <= one.iou(other) <= 1 + 1e-12
+    assert one.iou(one) == pytest.approx(1)
 
 
 def test_normalised_error_is_in_sizes_of_the_true_box():

@@ -69,6 +69,14 @@ class Box:
         right, bottom = self.x + self.width, self.y + self.height
         return (self.x, self.y), (right, self.y), (right, bottom), (self.x, bottom)
 
+    def iou(self, other: Box) -> float:
+        """Return the intersection over the union with another box, 0 to 1."""
+        width = min(self.x + self.width, other.x + other.width) - max(self.x, other.x)
+        height = min(self.y + self.height, other.y + other.height) - max(self.y, other.y)
+        shared = max(width, 0.0) * max(height, 0.0)
+        union = self.area + other.area - shared
+        return shared / union if union > 0 else 0.0
+
     def __str__(self) -> str:
         return f"{self.x:g},{self.y:g},{self.width:g},{self.height:g}"
 

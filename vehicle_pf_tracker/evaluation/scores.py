@@ -97,7 +97,7 @@ class FrameScore:
             return None
         if row.width is None or row.height is None:
             return None
-        return overlap(Box.around((row.x, row.y), row.width, row.height), self.truth.box)
+        return Box.around((row.x, row.y), row.width, row.height).iou(self.truth.box)
 
     @property
     def _offset(self) -> tuple[float, float] | None:
@@ -106,15 +106,6 @@ class FrameScore:
             return None
         centre = self.truth.box.centre
         return position[0] - centre[0], position[1] - centre[1]
-
-
-def overlap(one: Box, other: Box) -> float:
-    """Return the intersection over the union of two boxes, 0 to 1."""
-    width = min(one.x + one.width, other.x + other.width) - max(one.x, other.x)
-    height = min(one.y + one.height, other.y + other.height) - max(one.y, other.y)
-    shared = max(width, 0.0) * max(height, 0.0)
-    union = one.area + other.area - shared
-    return shared / union if union > 0 else 0.0
 
 
 @dataclass(frozen=True, slots=True)
