@@ -44,7 +44,7 @@ endif
 # Everything, with branch coverage; the slow tests try every way to install, colcon's too.
 test-all: .venv/installed .venv/colcon kernels
 	$(BIN)/coverage erase
-	$(MAKE) --no-print-directory --jobs=3 --keep-going $(PARTS) RUN="$(BIN)/coverage run -m pytest"
+	$(MAKE) --no-print-directory --jobs=2 --keep-going $(PARTS) RUN="$(BIN)/coverage run -m pytest"
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report --fail-under=$(COVERED)
 
