@@ -26,6 +26,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import CompressedImage
 from std_msgs.msg import Header
 
+from vehicle_pf_tracker.core.box import check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
@@ -33,6 +34,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.image_input import SerializedImage, read_image
+from vehicle_pf_tracker.ros.node.input_messages import check_frame_id
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
 
@@ -116,6 +118,48 @@ class NodeStream(ABC):
     @abstractmethod
     def take(self, message: SerializedImage | CompressedImage) -> None:
         """Take an image, which is answered with exactly one `~/mode`."""
+
+    @property
+    @abstractmethod
+    def size(self) -> tuple[int, int] | None:
+        """Width and height of the stream's images, px; None before the first."""
+
+    @abstractmethod
+    def reset(self) -> str:
+        """Go back to the configured target; return words about that for people.
+
+        Raises
+        ------
+        InputError
+            With the reason, where it is not possible.
+        """
+
+    @abstractmethod
+    def reconfigure(self, configuration: Configuration) -> None:
+        """Take new parameters between two images."""
+
+    def check(self, configuration: Configuration) -> None:
+        """Refuse a configuration with a new target that is outside the stream's images.
+
+        Raises
+        ------
+        InputError
+            With the reason.
+        """
+        box = configuration.session.target.box
+        if box is not None and box != self._configuration.session.target.box and self.size:
+            check_target(box, *self.size)
+
+    def check_frame_id(self, topic: str, header: Header) -> None:
+        """Refuse a position in another frame than that of the images, or of the node's own outputs.
+
+        Raises
+        ------
+        InputError
+            If it is.
+        """
+        suffix = self._configuration.node.output_frame_suffix
+        check_frame_id(topic, header, self.frame_id, suffix)
 
     @abstractmethod
     def feed(self, image: Frame | CodedImage, stamp_ns: int, extra: Any) -> None:

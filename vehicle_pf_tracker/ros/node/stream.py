@@ -167,11 +167,12 @@ class Stream(NodeStream):
 
     @property
     def facts(self) -> Mapping[str, object]:
-        """Choices that the parameters leave open: the seed and the kernels in use."""
-        if self._session is None:
-            return {"seed": self._configuration.tracker.seed, "kernels": self._loading.reason}
-        tracker = self._session.tracker
-        return {"seed": tracker.seed, "kernels": tracker.kernels.name}
+        """The variant, and choices that the parameters leave open: the seed and the kernels."""
+        seed, kernels = self._configuration.tracker.seed, self._loading.reason
+        if self._session is not None:
+            tracker = self._session.tracker
+            seed, kernels = tracker.seed, tracker.kernels.name
+        return {"variant": self._variant.name, "seed": seed, "kernels": kernels}
 
     @property
     def target_words(self) -> str:
@@ -216,7 +217,12 @@ class Stream(NodeStream):
         """
         self.asked = check_target(box, MAX_SIDE, MAX_SIDE)
 
-    def reset(self) -> None:
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Width and height of the stream's images, px; None before the first."""
+        return self._session.size if self._session else None
+
+    def reset(self) -> str:
         """Go back to the configured target, or to waiting for one.
 
         Raises
@@ -227,12 +233,17 @@ class Stream(NodeStream):
         """
         if not self.get_ready() or self._session is None:
             raise InputError(self._loading.reason)
-        size = self._session.size
+        box, size = self._configuration.session.target.box, self.size
         self.asked = self.estimate = None
         self._session.reset()
-        self._target_problem = self._misfit(self._configuration, size)
-        if self._target_problem:
-            raise InputError(f"{self._target_problem}; waiting for a target")
+        self._target_problem = ""
+        if box is not None and size is not None:
+            try:
+                check_target(box, *size)
+            except InputError as error:
+                self._target_problem = str(error)
+                raise InputError(f"{error}; waiting for a target") from None
+        return self.target_words
 
     def reconfigure(self, configuration: Configuration) -> None:
         """Take new parameters between two images, or when their kernels are loaded."""
@@ -260,31 +271,6 @@ class Stream(NodeStream):
         session.reconfigure(self._configuration.tracker, self._configuration.session)
         if session.tracker.seed != before:
             self.tell_drawn_seed(session.tracker.seed)
-
-    def check(self, configuration: Configuration) -> None:
-        """Refuse a configuration with a new target that is outside the stream's images.
-
-        Raises
-        ------
-        InputError
-            With the reason.
-        """
-        is_new = configuration.session.target != self._configuration.session.target
-        problem = self._misfit(configuration, self._session.size if self._session else None)
-        if is_new and problem:
-            raise InputError(problem)
-
-    @staticmethod
-    def _misfit(configuration: Configuration, size: tuple[int, int] | None) -> str:
-        """Return why the configured target does not fit images of this size; empty if it does."""
-        box = configuration.session.target.box
-        if box is None or size is None:
-            return ""
-        try:
-            check_target(box, *size)
-        except InputError as error:
-            return str(error)
-        return ""
 
     def _wait(self, header: Header, reason: str) -> None:
         """Answer an image in which nothing can be tracked, for this reason."""

@@ -38,6 +38,7 @@ from vehicle_pf_tracker.ros.node.outputs import in_pixels
 from vehicle_pf_tracker.ros.traffic.messages import read_serialized_detections, read_stamp, scalars
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
+from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
@@ -211,6 +212,7 @@ class TrafficStream(NodeStream):
             "detections of no image": waiting.unmatched,
         }  # fmt: skip
         return {
+            "variant": TRAFFIC.name,
             "seed": self.vehicles.session.tracker.seed,
             "detector": self._configuration.tracker.detector.kind,
             **self.vehicles.summary(),
@@ -277,6 +279,16 @@ class TrafficStream(NodeStream):
         """Forget the images that wait for detections."""
         if self._waiting is not None:
             self._waiting.clear()
+
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Width and height of the stream's images, px; None before the first."""
+        return self.vehicles.session.size
+
+    def reset(self) -> str:
+        """Forget all vehicles and counts; begin on the configured target."""
+        self.vehicles.reset()
+        return "all vehicles are forgotten"
 
     def reconfigure(self, configuration: Configuration) -> None:
         """Take new parameters between two images."""

@@ -26,7 +26,7 @@ from typing import Any
 import rclpy
 from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from std_msgs.msg import Header
 
@@ -34,14 +34,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, LOWEST_FPS, Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
-from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process
-from vehicle_pf_tracker.ros.transport import image_transport
-from vehicle_pf_tracker.ros.video_source.outputs import (
-    BackOff,
-    ImageOutputs,
-    Pace,
-    read_calibration,
-)
+from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_node
+from vehicle_pf_tracker.ros.video_source.outputs import ImageOutputs, Pace, read_calibration
 
 _NAME = "video_source"
 _LATE = 1.0
@@ -52,6 +46,9 @@ _IMAGE_BYTES = 1920 * 1080 * 3
 """Size of an image of which the segment holds four; one of 4K still fits once."""
 _LAST_WAIT = 2.0
 """Seconds that the thread gets to end; one that waits for a silent camera is left behind."""
+_FIRST_RETRY, _LAST_RETRY = 1.0, 30.0
+"""Seconds until a source that broke off is opened again: twice as long each time, up to the last.
+A camera that restarts is back within a minute, and one that is gone costs next to nothing."""
 _LOOK_EVERY = 0.1
 """Seconds between two looks whether the source has ended."""
 _USAGE = """\
@@ -141,7 +138,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         self._is_live = False
         self._stop = threading.Event()
         self._pace = Pace(self._now, self._stop)
-        self._back_off = BackOff(self._stop)
+        self._retry = _FIRST_RETRY
         self._shown = 0
         self._told: set[str] = set()
         self._broke_at: float | None = None
@@ -193,6 +190,8 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         except InputError as error:
             self._note_break(str(error))
             return True
+        if self._stop.is_set() or not self.context.ok():
+            return False
         if self._is_live:
             self._note_break(f"{self._source_name} sends no more images")
             return True
@@ -230,7 +229,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
             seconds = time.monotonic() - self._broke_at
             self.get_logger().info(f"images again after {seconds:.1f} s")
             self._broke_at = None
-        self._back_off.reset()
+        self._retry = _FIRST_RETRY
         late = (self._now() - stamp) / 1e9
         if late > _LATE and not self._is_live:
             self.get_logger().warning(
@@ -247,10 +246,11 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         if self._broke_at is None:
             self._broke_at = time.monotonic()
         self.get_logger().warning(
-            f"{why}; trying again after {self._back_off.seconds:.0f} s",
+            f"{why}; trying again after {self._retry:.0f} s",
             throttle_duration_sec=_SAY_AGAIN,
         )
-        self._back_off.wait()
+        self._stop.wait(self._retry)
+        self._retry = min(2 * self._retry, _LAST_RETRY)
 
     def _opened_again(self) -> Footage | None:
         """Open the source once more; None where it is not there."""
@@ -275,47 +275,29 @@ def run_video_source(arguments: Sequence[str]) -> int:
         Exit status: 0 ended by a signal or at the end of a file, 1 a source that cannot be read
         (printed on stderr), 2 usage.
     """
-    is_left_behind = False
 
     def serve(words: list[str]) -> int:
-        nonlocal is_left_behind
         if len(words) > 1 or any(word.startswith("-") for word in words):
             return answer_usage(_NAME, words, _USAGE)
-        status, is_left_behind = _serve(*words)
-        return status
+        return spin_node(lambda: VideoSourceNode(*words), _IMAGE_BYTES, _spin)
 
-    status = run_process(_NAME, arguments, serve)
-    if is_left_behind:
-        end_at_once(status)
-    return status
+    return run_process(_NAME, arguments, serve)
 
 
-def _serve(source: str = "") -> tuple[int, bool]:
-    """Return the exit status, and whether a thread was left behind."""
-    executor = SingleThreadedExecutor()
-    node = None
+def _spin(executor: SingleThreadedExecutor, node: VideoSourceNode) -> int:
+    """Run callbacks until the source has ended or a signal comes, then end the thread."""
     try:
-        with image_transport(_IMAGE_BYTES, rclpy.get_rmw_implementation_identifier()) as notices:
-            node = VideoSourceNode(source)
-        for notice in notices:
-            node.get_logger().warning(notice)
-        executor.add_node(node)
         while rclpy.ok() and not node.is_done:
             executor.spin_once(timeout_sec=_LOOK_EVERY)
-    except ExternalShutdownException:
-        pass
     except Exception:
         if rclpy.ok():
             raise  # otherwise a signal took the ground from under a call
-    finally:
-        executor.shutdown()
-    return _end(node) if node is not None else (0, False)
-
-
-def _end(node: VideoSourceNode) -> tuple[int, bool]:
-    """End the node, also beside a thread that waits: else its shared memory would stay."""
     has_ended = node.stop(_LAST_WAIT)
-    node.destroy_node()
+    status = 1 if node.problem else 0
     if node.problem:
         print(f"{_NAME}: {node.problem}", file=sys.stderr)
-    return (1 if node.problem else 0), not has_ended
+    if not has_ended:  # it waits for a silent camera; the node's shared memory would stay
+        node.destroy_node()
+        rclpy.try_shutdown()
+        end_at_once(status)
+    return status
