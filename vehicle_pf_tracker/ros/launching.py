@@ -29,7 +29,7 @@ import yaml
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml, read_yaml_file
+from vehicle_pf_tracker.parameters.files import check_yaml_file, flatten, read_yaml, read_yaml_file
 from vehicle_pf_tracker.parameters.table import unknown_name
 from vehicle_pf_tracker.ros.transport import profile
 from vehicle_pf_tracker.trackers.registry import find_node
@@ -144,7 +144,10 @@ def _camera(name: str, entry: dict[str, Any], folder: Path) -> Camera:
     values: dict[str, object] = {}
     if "params_file" in entry:
         values |= read_yaml(folder / str(entry["params_file"]), f"{variant}_tracker")
-    values |= _flat(entry.get("parameters") or {})
+    given = entry.get("parameters") or {}
+    if not isinstance(given, dict):
+        raise InputError("parameters are not names with values")
+    values |= flatten(given)
     if "transport" in entry:
         values["image_transport"] = entry["transport"]
     if "target" in entry:
@@ -161,13 +164,3 @@ def _target(numbers: Any) -> dict[str, object]:
     if not isinstance(numbers, list) or len(numbers) != len(_TARGET):
         raise InputError("target is not [x, y, width, height] in px")
     return {f"target.{key}": number for key, number in zip(_TARGET, numbers, strict=True)}
-
-
-def _flat(values: Any, prefix: str = "") -> dict[str, object]:
-    if not isinstance(values, dict):
-        raise InputError("parameters are not names with values")
-    flat: dict[str, object] = {}
-    for key, value in values.items():
-        name = f"{prefix}{key}"
-        flat |= _flat(value, f"{name}.") if isinstance(value, dict) else {name: value}
-    return flat

@@ -20,7 +20,6 @@ import itertools
 import os
 import signal
 import sys
-import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import FrameType
@@ -49,30 +48,12 @@ class _Interrupts:
         signal.signal(signal.SIGINT, self)
         signal.signal(signal.SIGTERM, self)
         if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as nohup sets it
-            _turn_hangup_into_termination()
+            # Within a second: every node has a timer that lets Python's handlers run.
+            signal.signal(signal.SIGHUP, lambda *_: os.kill(os.getpid(), signal.SIGTERM))
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         if not self.left_to_ros:
             raise KeyboardInterrupt
-
-
-def _turn_hangup_into_termination() -> None:
-    """Send SIGTERM on SIGHUP, from a thread: Python's handlers wait while rclpy waits for messages.
-
-    Blocking the signal instead would leave it deadly in threads that libraries have started before.
-    """
-    reader, writer = os.pipe()
-    os.set_blocking(writer, False)
-    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
-    signal.signal(signal.SIGHUP, lambda number, frame: None)
-    threading.Thread(target=_await_hangup, args=(reader,), name="SIGHUP", daemon=True).start()
-
-
-def _await_hangup(reader: int) -> None:
-    """Read the numbers of signals until SIGHUP is one of them."""
-    while os.read(reader, 1) != bytes([signal.SIGHUP]):
-        pass
-    os.kill(os.getpid(), signal.SIGTERM)
 
 
 def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]], int]) -> int:

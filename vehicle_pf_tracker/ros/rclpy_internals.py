@@ -38,7 +38,7 @@ UnknownROSArgsError: type[Exception] = getattr(_compiled, "UnknownROSArgsError",
 
 def missing(node: LifecycleNode) -> list[str]:
     """List the features that this rclpy lacks for `node`, a sentence each, with the fallback."""
-    if _state_machine(node) is not None:
+    if state_machine(node) is not None:
         return []
     return ["its state machine is hidden: failed transitions are reported without why"]
 
@@ -51,17 +51,18 @@ def change_state_service(node: LifecycleNode) -> Service | None:
 
 def state_label(node: LifecycleNode) -> str:
     """Return the label of the node's lifecycle state; empty where rclpy hides it."""
-    machine = _state_machine(node)
+    machine = state_machine(node)
     return str(machine.current_state[1]) if machine is not None else ""
 
 
 def destroy_state_machine(node: LifecycleNode) -> None:
     """Destroy the services of a destroyed node's state machine, which `destroy_node` leaves."""
-    destroy = getattr(_state_machine(node), "destroy_when_not_in_use", None)
+    destroy = getattr(state_machine(node), "destroy_when_not_in_use", None)
     if destroy is not None:
         destroy()
 
 
-def _state_machine(node: LifecycleNode) -> Any | None:
+def state_machine(node: LifecycleNode) -> Any | None:
+    """Return the node's state machine; None where rclpy hides it."""
     machine = getattr(node, "_state_machine", None)
     return machine if hasattr(machine, "current_state") else None

@@ -24,9 +24,9 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from geometry_msgs.msg import Point32, PointStamped, PolygonStamped
 from rcl_interfaces.srv import SetParametersAtomically
-from sensor_msgs.msg import RegionOfInterest
+from sensor_msgs.msg import Image, RegionOfInterest
 from std_srvs.srv import Trigger
-from tracker_rig import TARGET, Rig, on_target, overrides, road, values_of
+from tracker_rig import TARGET, Rig, header, on_target, overrides, road, values_of
 
 pytestmark = pytest.mark.ros
 
@@ -227,3 +227,20 @@ def test_reset_forgets_a_target_that_was_not_yet_used(waiting):
     targets.give(region(*TARGET))
     rig.bench.call(Trigger, f"{rig.name}/reset", Trigger.Request())
     assert rig.play(road(1)) == ["WAITING"]
+
+
+def test_a_target_is_neither_judged_by_a_stray_nor_lost_to_it(waiting):
+    rig, targets = waiting
+    frames = road(3)
+    rig.show_frame(frames[0], 0)
+    targets.give(polygon((100, 60), (120, 80)))
+    stray = Image(encoding="rgb8", width=4, height=4, step=12, data=bytes(48), header=header(1))
+    stray.header.frame_id = "elsewhere"
+    answer = rig.show(stray)
+    assert answer.status[0].message == "REJECTED"
+    assert "rejected unless the next image agrees with it" in values_of(answer)["reason"]
+    answer = rig.show_frame(frames[1], 1)
+    assert values_of(answer)["x"] == "110.0"
+    assert rig.show(stray).status[0].message == "REJECTED"
+    targets.give(polygon((20, 50), (44, 68), frame_id="camera"))  # that of the images
+    assert values_of(rig.show_frame(frames[2], 2))["x"] == "32.0"

@@ -21,7 +21,7 @@ every image again on their way into a message of Python.
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
@@ -175,34 +175,18 @@ class ImageInput:
 
     def _elsewhere(self) -> str:
         """Name topics that images are on, with the setting that would take them."""
-        topics = {name: set(types) for name, types in self._node.get_topic_names_and_types()}
-        other = image_topic(self._node, "compressed" if self._transport == "raw" else "raw")
-        if self._published(other):
-            transport = "compressed" if self._transport == "raw" else "raw"
+        transport = "compressed" if self._transport == "raw" else "raw"
+        other = image_topic(self._node, transport)
+        if self._node.count_publishers(other):
             return f", but {other} has images: set image_transport to {transport}"
         found = [
             name
-            for name, types in topics.items()
+            for name, types in self._node.get_topic_names_and_types()
             if _TYPE_NAMES[self._kind] in types
-            and self._is_foreign(name)
-            and not _is_overlay(name, topics)
+            and self._node.count_publishers(name)
+            and not name.endswith("/overlay")  # of this node, or of another tracker
         ]
         return f"; images are on {', '.join(found)}: remap image to one of them" if found else ""
-
-    def _published(self, topic: str) -> bool:
-        return bool(self._node.count_publishers(topic))
-
-    def _is_foreign(self, topic: str) -> bool:
-        """Return whether another node publishes on `topic`: not our own overlay."""
-        own = self._node.get_name(), self._node.get_namespace()
-        publishers = self._node.get_publishers_info_by_topic(topic)
-        return any((one.node_name, one.node_namespace) != own for one in publishers)
-
-
-def _is_overlay(topic: str, topics: Container[str]) -> bool:
-    """Return whether it is the overlay of a tracker node, whatever that is called."""
-    node, _, name = topic.rpartition("/")
-    return name == "overlay" and f"{node}/mode" in topics
 
 
 class SerializedImage(NamedTuple):

@@ -28,13 +28,11 @@ from functools import partial
 from typing import Any
 
 from lifecycle_msgs.srv import ChangeState
-from rclpy.clock import Clock as RosClock
-from rclpy.clock import ClockType
+from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
-from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import CompressedImage
 from std_srvs.srv import Trigger
 
@@ -166,7 +164,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
 
     def poll(self, interval: float, callback: Callable[[], None]) -> Timer:
         """Call back every `interval` s until clean-up; of real time: simulated may stand still."""
-        clock = RosClock(clock_type=ClockType.STEADY_TIME)
+        clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._polls.append(self.create_timer(interval, callback, clock=clock))
         return self._polls[-1]
 
@@ -176,7 +174,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
 
     @abstractmethod
     def prepare(self) -> None:
-        """Make stream, outputs and services but `~/reset`; `cleanup` releases them, also where this fails."""
+        """Make stream, outputs and services; `cleanup` releases them, also where this fails."""
 
     def configure(self) -> None:
         """Prepare for images."""
@@ -220,21 +218,6 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         """Log what is ignored, a line each."""
         for sentence in sentences:
             self.get_logger().warning(f"ignored: {sentence}")
-
-    def create_subscription(
-        self, kind: Any, topic: str, callback: Callable[..., Any], *args: Any, **options: Any
-    ) -> Any:
-        """Subscribe; that of rclpy to ``/clock`` passes over times that its clock cannot take."""
-        if kind is Clock:
-            callback = partial(self._take_clock, callback)
-        return super().create_subscription(kind, topic, callback, *args, **options)
-
-    def _take_clock(self, take: Callable[[Clock], object], message: Clock) -> None:
-        if message.clock.sec < 0:
-            words = f"/clock says {message.clock.sec} s, before time begins: passed over"
-            self.get_logger().error(words, throttle_duration_sec=5.0)
-        else:
-            take(message)
 
     def start(self) -> None:
         """Configure and activate.

@@ -35,7 +35,7 @@ from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import NOT_READY, WAITING
-from vehicle_pf_tracker.ros.node.camera_inputs import StreamLocalisation
+from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.image_input import SerializedImage
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
@@ -118,6 +118,8 @@ class Stream(NodeStream):
         Publishers of the estimates.
     health : Health
         Counts what happens.
+    cameras : CameraInputs
+        Where lens and pose of the camera come from.
 
     Attributes
     ----------
@@ -136,6 +138,7 @@ class Stream(NodeStream):
         configuration: Configuration,
         outputs: TrackerOutputs,
         health: Health,
+        cameras: CameraInputs,
     ) -> None:
         super().__init__(node, configuration, outputs, health)
         self._outputs = outputs
@@ -145,7 +148,7 @@ class Stream(NodeStream):
         self._loading = KernelLoading(configuration.tracker.kernels)
         self.asked: Box | None = None
         self._target_problem = ""
-        self.localisation = StreamLocalisation(variant.name, configuration.session.road)
+        self.localisation = StreamLocalisation(variant.name, configuration.session.road, cameras)
         self.estimate: Estimate | None = None
         if not self.get_ready():
             self.log.info(self._loading.reason)

@@ -24,13 +24,11 @@ from sensor_msgs.msg import RegionOfInterest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.road.camera import PoseTree
 from vehicle_pf_tracker.ros.messages import detection_type
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
 from vehicle_pf_tracker.ros.node.image_input import image_topic
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.input_messages import (
-    ImageLens,
     box_of_detection,
     box_of_point,
     box_of_polygon,
@@ -70,7 +68,7 @@ class TrackerNode(ImageNode):
     def __init__(self, variant: Variant, **options: Any) -> None:
         super().__init__(f"{variant.name}_tracker", **options)
         self._variant = variant
-        self._cameras = CameraInputs(self, self._take_lens, self._take_poses)
+        self._cameras = CameraInputs(self)
         self.begin(Configuration.of(variant))
 
     def prepare(self) -> None:
@@ -78,7 +76,8 @@ class TrackerNode(ImageNode):
         configuration = self.table.configuration
         outputs = TrackerOutputs(self, image_topic(self, configuration.node.image_transport))
         self._outputs = outputs
-        self.stream = Stream(self, self._variant, configuration, outputs, self.diagnostics.begin())
+        health = self.diagnostics.begin()
+        self.stream = Stream(self, self._variant, configuration, outputs, health, self._cameras)
         self._has_logged_ready = False
         self._ready_timer = self.poll(_POLL, self._await_kernels)
 
@@ -125,14 +124,6 @@ class TrackerNode(ImageNode):
             stream.set_target(read(stream))
 
         self.ask("target", start)
-
-    def _take_lens(self, found: ImageLens) -> None:
-        if self.stream is not None:
-            self.stream.localisation.take_lens(found)
-
-    def _take_poses(self, tree: PoseTree) -> None:
-        if self.stream is not None:
-            self.stream.localisation.take_poses(tree)
 
     def _await_kernels(self) -> None:
         """Log once that the node is ready: active, and with kernels."""

@@ -20,20 +20,21 @@ import sys
 import threading
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import rclpy
-from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
-from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
+from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs
 from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, LOWEST_FPS, Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
+from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
 from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_node
 from vehicle_pf_tracker.ros.video_source.outputs import ImageOutputs, Pace, read_calibration
 
@@ -55,49 +56,53 @@ _USAGE = """\
 usage: video_source SOURCE [--ros-args -p NAME:=VALUE -r image:=TOPIC ...]
 SOURCE is a video file, a folder of images, a camera's index or a stream's URL. Parameters: source,
 fps, loop, frame_id, compressed, jpeg_quality, camera_info_url."""
-_SPECS: dict[str, tuple[object, str]] = {
-    "source": ("", "A video file, a folder of images, a camera's index, a stream's URL"),
-    "fps": (0.0, "Frame rate of a folder or a video, 1/s; 0 takes what it states"),
-    "loop": (False, "Begin a video or a folder again at its end"),
-    "frame_id": ("camera", "Frame of the images' headers"),
-    "compressed": (False, "Publish JPEG images too, on image/compressed"),
-    "jpeg_quality": (95, "Of these, 1 to 100"),
-    "camera_info_url": ("", "Calibration YAML, a path or file:///URL; published as camera_info"),
-}
-_RANGES = {"jpeg_quality": {"integer_range": [IntegerRange(from_value=1, to_value=100, step=1)]}}
 
 
-def declare(node: Node) -> dict[str, Any]:
-    """Declare the parameters of `node` and return their values, by name.
+@dataclass(frozen=True)
+class Settings:
+    """Parameters of the node, all of them for its start only."""
+
+    source: str = parameter(
+        "", "A video file, a folder of images, a camera's index, a stream's URL", read_only=True
+    )
+    fps: float = parameter(
+        0.0, "Frame rate of a folder or a video; 0 takes what it states",
+        minimum=0.0, maximum=HIGHEST_FPS, unit="1/s", read_only=True,
+    )  # fmt: skip
+    loop: bool = parameter(False, "Begin a video or a folder again at its end", read_only=True)
+    frame_id: str = parameter("camera", "Frame of the images' headers", read_only=True)
+    compressed: bool = parameter(
+        False, "Publish JPEG images too, on image/compressed", read_only=True
+    )
+    jpeg_quality: int = parameter(
+        95, "Quality of the JPEG images", minimum=1, maximum=100, read_only=True
+    )
+    camera_info_url: str = parameter(
+        "", "Calibration YAML, a path or file:///URL; published as camera_info", read_only=True
+    )
+
+    def validate(self) -> None:
+        """Raise InputError for a frame rate that is none."""
+        if 0 < self.fps < LOWEST_FPS:
+            raise InputError(f"fps must be 0 or at least {LOWEST_FPS:g} 1/s, got {self.fps:g}")
+
+
+def declare(node: Node) -> Settings:
+    """Declare the parameters on `node`, which was made with automatic ones, and return them.
 
     Raises
     ------
     InputError
-        Naming the parameter that has a wrong value.
+        Naming every value that does not fit.
     """
-    values = {name: _declared(node, name) for name in _SPECS}
-    fps = values["fps"]
-    if not isinstance(fps, int | float) or (fps and not LOWEST_FPS <= fps <= HIGHEST_FPS):
-        raise InputError(
-            f"the parameter fps is neither 0 nor from {LOWEST_FPS:g} to {HIGHEST_FPS:g} images per "
-            f"second: {fps!r}"
-        )
-    return values
-
-
-def _declared(node: Node, name: str) -> Any:
-    default, description = _SPECS[name]
-    descriptor = ParameterDescriptor(
-        description=description,
-        read_only=True,
-        # A camera's index and a whole frame rate are integers on a command line.
-        dynamic_typing=name in {"source", "fps"},
-        **_RANGES.get(name, {}),
-    )
-    try:
-        return node.declare_parameter(name, default, descriptor).value
-    except (InvalidParameterTypeException, InvalidParameterValueException) as error:
-        raise InputError(f"the parameter {name} cannot have this value: {error}") from None
+    given = take_overrides(node)
+    if isinstance(index := given.get("source"), int):  # of a camera
+        given["source"] = str(index)
+    settings = from_mapping(Settings, given)
+    for name, spec in specs(Settings).items():
+        value = getattr(settings, name)
+        node.declare_parameter(name, value, describe(spec), ignore_override=True)
+    return settings
 
 
 class VideoSourceNode(Node):  # type: ignore[misc]
@@ -122,17 +127,16 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     """
 
     def __init__(self, source: str = "", **keywords: Any) -> None:
-        super().__init__(_NAME, **keywords)
+        super().__init__(_NAME, automatically_declare_parameters_from_overrides=True, **keywords)
         settings = declare(self)
-        self._source_name = source or str(settings["source"])
+        self._source_name = source or settings.source
         if not self._source_name:
             raise InputError("give a source: `video_source SOURCE`, or -p source:=SOURCE")
-        self._fps = float(settings["fps"]) or None  # 0 leaves the source's own
-        self._loops, self._frame_id = bool(settings["loop"]), str(settings["frame_id"])
-        url = settings["camera_info_url"]
+        self._settings = settings
+        url = settings.camera_info_url
         self._outputs = ImageOutputs(
             self,
-            jpeg_quality=settings["jpeg_quality"] if settings["compressed"] else None,
+            jpeg_quality=settings.jpeg_quality if settings.compressed else None,
             calibration=read_calibration(url) if url else None,
         )
         self._is_live = False
@@ -162,7 +166,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         name = self._source_name
         if is_recording(Path(name)):
             raise InputError(f"{name} is a recording; `bag_replay {name}` plays it")
-        return open_footage(name, fps=self._fps)
+        return open_footage(name, fps=self._settings.fps or None)
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
@@ -199,9 +203,9 @@ class VideoSourceNode(Node):  # type: ignore[misc]
             if notice not in self._told:
                 self._told.add(notice)
                 self.get_logger().warning(notice)
-        if not self._loops:
+        if not self._settings.loop:
             self.get_logger().info(f"the source has ended after {self._shown} images")
-        return self._loops
+        return self._settings.loop
 
     def _show_images(self, source: Footage) -> None:
         self._is_live = is_live(source)
@@ -215,7 +219,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         stamp = self._pace.stamp(picture.stamp_ns)
         if self._stop.is_set():
             return
-        header = Header(frame_id=self._frame_id)
+        header = Header(frame_id=self._settings.frame_id)
         header.stamp.sec, header.stamp.nanosec = divmod(stamp, 1_000_000_000)
         self._outputs.publish(header, picture.frame)
         if not self._shown:
@@ -239,7 +243,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
 
     def _note_break(self, why: str) -> None:
         """Wait before the next try, or raise where there is none."""
-        if not self._is_live and not self._loops:
+        if not self._is_live and not self._settings.loop:
             raise InputError(why)
         if self._stop.is_set() or not self.context.ok():
             return
