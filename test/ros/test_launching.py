@@ -27,11 +27,7 @@ from replay_rig import record
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml
-from vehicle_pf_tracker.ros.launching import (
-    parameter_file,
-    read_cameras,
-    write_profile,
-)
+from vehicle_pf_tracker.ros.launching import parameter_file, read_cameras, write_profile
 from vehicle_pf_tracker.ros.replay.publishing import recorded_images
 
 FILE = """

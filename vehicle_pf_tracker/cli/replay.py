@@ -172,7 +172,8 @@ def run(request: Request) -> int:
     """
     if request.loop and request.output:
         raise UsageError("-o cannot be combined with --loop, which never ends")
-    from vehicle_pf_tracker.ros.replay.replaying import NoTargetError, noted_interrupts, replay
+    from vehicle_pf_tracker.ros.replay.player import NoTargetError
+    from vehicle_pf_tracker.ros.replay.replaying import noted_interrupts, replay
 
     recording = Recording(request.recording, request.topic)
     told = recording.notices

@@ -24,16 +24,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from sensor_msgs.msg import CompressedImage, Image
-from tracker_rig import (
-    FIRST_NS,
-    PERIOD_NS,
-    TARGET,
-    Rig,
-    header,
-    on_target,
-    road,
-    values_of,
-)
+from tracker_rig import FIRST_NS, PERIOD_NS, TARGET, Rig, header, on_target, road, values_of
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.image.compressed_image import decode_compressed

@@ -23,10 +23,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from rcl_interfaces.msg import Parameter as ParameterMessage
-from rcl_interfaces.srv import (
-    SetParameters,
-    SetParametersAtomically,
-)
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.parameter import Parameter
 from tracker_rig import SOME_FAST, Rig, diagnostics_of, on_target, overrides, road, values_of

@@ -33,14 +33,14 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
-from sensor_msgs.msg import CompressedImage
+from sensor_msgs.msg import CompressedImage, Image
 from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
-from vehicle_pf_tracker.ros.node.image_input import ImageInput, read_serialized
+from vehicle_pf_tracker.ros.node.image_input import ImageInput
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, take_overrides, unknown_overrides
@@ -201,11 +201,10 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             self.destroy_timer(self._polls.pop())
         self._outputs = self.stream = None
 
-    def _on_image(self, message: bytes | CompressedImage, info: Mapping[str, Any]) -> None:
+    def _on_image(self, image: Image | CompressedImage, info: Mapping[str, Any]) -> None:
         """Note an image, and pass it to the stream; not one that a deactivation has overtaken."""
         if self.diagnostics.source is None or self.stream is None:
             return
-        image = read_serialized(message) if isinstance(message, bytes) else message
         age = self.get_clock().now().nanoseconds - stamp_ns(image.header)
         self.diagnostics.arrived(info, age * 1e-9)
         self.stream.take(image)

@@ -23,7 +23,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rclpy.node import Node
-from sensor_msgs.msg import CompressedImage
+from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import check_target
@@ -33,7 +33,7 @@ from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
-from vehicle_pf_tracker.ros.node.image_input import SerializedImage, read_image
+from vehicle_pf_tracker.ros.node.image_input import read_image
 from vehicle_pf_tracker.ros.node.input_messages import check_frame_id
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
@@ -116,7 +116,7 @@ class NodeStream(ABC):
         """Values for the node's report, by name: choices that the parameters leave open."""
 
     @abstractmethod
-    def take(self, message: SerializedImage | CompressedImage) -> None:
+    def take(self, message: Image | CompressedImage) -> None:
         """Take an image, which is answered with exactly one `~/mode`."""
 
     @property
@@ -175,7 +175,7 @@ class NodeStream(ABC):
     def answer(self, header: Header, frame: Frame) -> None:
         """Publish all that the session says of the image that it was fed last."""
 
-    def process(self, message: SerializedImage | CompressedImage, extra: Any = None) -> None:
+    def process(self, message: Image | CompressedImage, extra: Any = None) -> None:
         """Read an image, feed it and publish the answer; `extra` is passed on to `feed`."""
         header = message.header
         try:

@@ -24,7 +24,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rclpy.node import Node
-from sensor_msgs.msg import CompressedImage
+from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
@@ -37,7 +37,6 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import NOT_READY, WAITING
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
 from vehicle_pf_tracker.ros.node.diagnostics import Health
-from vehicle_pf_tracker.ros.node.image_input import SerializedImage
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
 from vehicle_pf_tracker.trackers.estimate import Estimate
@@ -188,7 +187,7 @@ class Stream(NodeStream):
         """The present box: that of the estimate, else the configured one."""
         return self.estimate.box if self.estimate else self._configuration.session.target.box
 
-    def take(self, message: SerializedImage | CompressedImage) -> None:
+    def take(self, message: Image | CompressedImage) -> None:
         """Answer an image with exactly one `~/mode`, and with an estimate where there is one."""
         if self.get_ready():
             self.process(message)

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from rclpy.node import Node
-from sensor_msgs.msg import CompressedImage
+from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -32,7 +32,6 @@ from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
-from vehicle_pf_tracker.ros.node.image_input import SerializedImage
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import in_pixels
 from vehicle_pf_tracker.ros.traffic.messages import read_serialized_detections, read_stamp, scalars
@@ -192,7 +191,7 @@ class TrafficStream(NodeStream):
     ) -> None:
         super().__init__(node, configuration, outputs, health)
         self._outputs = outputs
-        self._waiting: WaitingImages[SerializedImage | CompressedImage] | None = None
+        self._waiting: WaitingImages[Image | CompressedImage] | None = None
         if configuration.tracker.detector.kind == TOPIC:
             self._waiting = WaitingImages()
         self.vehicles = Vehicles(configuration)
@@ -224,7 +223,7 @@ class TrafficStream(NodeStream):
         """True while an image waits for its detections."""
         return bool(self._waiting)
 
-    def take(self, message: SerializedImage | CompressedImage) -> None:
+    def take(self, message: Image | CompressedImage) -> None:
         """Take an image, which is answered with exactly one `~/mode`, now or after its detector."""
         if self._waiting is None:
             self.process(message)
