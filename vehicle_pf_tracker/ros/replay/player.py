@@ -98,9 +98,8 @@ class Player:
             self._play(targets)
         except Interrupted:
             is_interrupted = True
-        notice = (
-            f"skipped {len(self._skipped)} messages; the first, {next(iter(self._skipped), '')}"
-        )
+        skipped = self._skipped
+        notices = (f"skipped {len(skipped)} messages; the first, {skipped[0]}",) if skipped else ()
         return ReplayReport(
             frames=self._frames,
             messages=self._messages,
