@@ -101,7 +101,12 @@ def _text(value: object) -> str:
 
 
 def mode_message(
-    header: Header, name: str, hardware_id: str, mode: str, values: Mapping[str, object]
+    header: Header,
+    name: str,
+    hardware_id: str,
+    mode: str,
+    values: Mapping[str, object],
+    level: bytes | None = None,
 ) -> DiagnosticArray:
     """Make the `~/mode` of one image.
 
@@ -115,8 +120,11 @@ def mode_message(
         A `Mode`, `WAITING` or `REJECTED`.
     values : mapping
         Scalars of the estimate, or the reason of a rejection.
+    level : bytes, optional
+        At least this level.
     """
-    one = status(LEVELS[mode], name, mode, hardware_id, {"mode": mode, **values})
+    highest = max(LEVELS[mode], level or LEVELS[mode])
+    one = status(highest, name, mode, hardware_id, {"mode": mode, **values})
     return DiagnosticArray(header=header, status=[one])
 
 

@@ -26,10 +26,11 @@ from rclpy.node import Node
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
-from vehicle_pf_tracker.core.box import check_target
+from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
@@ -194,6 +195,11 @@ class NodeStream(ABC):
         """Report that a target or a selection cannot be used; all vehicles are kept."""
         self.health.refuse_target(reason)
         self.errors.say(what, f"{what} refused: {reason}")
+
+    @staticmethod
+    def doubts(frame: Frame, box: Box) -> list[str]:
+        """Return what speaks against a target that was given, a sentence each."""
+        return [f"the target is doubtful: {why}" for why in doubts(frame, box)]
 
     def decline(self, header: Header, error: InputError) -> None:
         """Answer an image that cannot be used."""

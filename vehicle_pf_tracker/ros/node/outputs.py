@@ -127,10 +127,12 @@ class Outputs:
         if own.publish.velocity:
             self.send("velocity", velocity_message, header, estimate.velocity, frame_period)
 
-    def publish_mode(self, header: Header, mode: str, values: Mapping[str, object]) -> None:
-        """Publish the one `~/mode` of an image."""
+    def publish_mode(
+        self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None = None
+    ) -> None:
+        """Publish the one `~/mode` of an image; `level` is that of the mode unless it is higher."""
         name = f"{self.node_name}: target"
-        self.send("mode", mode_message, header, name, self.hardware_id, mode, values)
+        self.send("mode", mode_message, header, name, self.hardware_id, mode, values, level)
 
 
 def in_frame(header: Header, frame_id: str) -> Header:

@@ -23,6 +23,7 @@ import threading
 from collections.abc import Mapping
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
@@ -33,16 +34,21 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
+from vehicle_pf_tracker.image.stillness import PATIENCE, Stillness
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import NOT_READY, WAITING
+from vehicle_pf_tracker.ros.messages import NOT_READY, WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
-from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.estimate import START, Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TargetError
 
+_STILL = (
+    f"the target has not moved for {PATIENCE:g} s while other things did: it stands, or it is "
+    "no vehicle"
+)
 _THREAD = "loading kernels"
 _REASON = f"{NOT_READY}; the first start compiles them, for up to a minute"
 
@@ -147,6 +153,7 @@ class Stream(NodeStream):
         self._loading = KernelLoading(configuration.tracker.kernels)
         self.asked: Box | None = None
         self._target_problem = ""
+        self._stillness = Stillness()
         self.localisation = StreamLocalisation(variant.name, configuration.session.road, cameras)
         self.estimate: Estimate | None = None
         if not self.get_ready():
@@ -287,7 +294,7 @@ class Stream(NodeStream):
         assert session is not None
         if session.refusal:
             self.health.refuse_target(session.refusal)
-        events = self._events(session)
+        events, level = self._events(session), None
         if estimate is None and self._target_problem:
             events["reason"] = self._target_problem
         mode = estimate.mode.value if estimate is not None else WAITING
@@ -300,11 +307,31 @@ class Stream(NodeStream):
             words = self.localisation.words
             self.health.road = self.localisation.values
             events |= self.health.road
+            level = self._doubt(header, frame, estimate, events)
         if own.publish.overlay:
             self._outputs.publish_overlay(header, frame, mode, estimate, words)
         self.health.answered(mode, estimate.duration * 1e3 if estimate else None)
         scalars = estimate.scalars() if estimate else {}
-        self.publish_mode(header, mode, {**scalars, **events})
+        self.publish_mode(header, mode, {**scalars, **events}, level)
+
+    def _doubt(
+        self, header: Header, frame: Frame, estimate: Estimate, events: dict[str, object]
+    ) -> bytes | None:
+        """Ask what speaks against the target; return the level where that is a warning."""
+        still, words = self._stillness, []
+        if estimate.regime == START:
+            still.begin(estimate.box, stamp_ns(header))
+            words = self.doubts(frame, estimate.box)
+        was_suspect = still.is_suspect
+        still.look(frame, estimate.box, stamp_ns(header))
+        events["moved"] = still.moved
+        if still.is_suspect and not was_suspect:
+            words.append(_STILL)
+        for sentence in words:
+            self.log.warning(sentence)
+        if words:
+            events["event"] = "; ".join([*map(str, filter(None, [events.get("event")])), *words])
+        return DiagnosticStatus.WARN if still.is_suspect else None
 
     def _events(self, session: Session) -> dict[str, object]:
         words = "; ".join(session.events)

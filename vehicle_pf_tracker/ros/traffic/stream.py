@@ -317,6 +317,8 @@ class TrafficStream(NodeStream):
         self._warn_of_unusable(self._detections, frame)
         step_ms = (time.perf_counter() - self._began) * 1e3
         vehicles, own, events = self.vehicles, self._configuration.node, self._events
+        while vehicles.given:
+            events += self.doubts(frame, vehicles.given.pop())
         period = vehicles.session.tracker.frame_period
         estimates, selected = vehicles.estimates, vehicles.selected
         self._outputs.publish_vehicles(header, estimates, own, period)

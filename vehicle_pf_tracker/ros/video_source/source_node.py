@@ -221,10 +221,10 @@ class VideoSourceNode(Node):  # type: ignore[misc]
             return
         header = Header(frame_id=self._settings.frame_id)
         header.stamp.sec, header.stamp.nanosec = divmod(stamp, 1_000_000_000)
-        self._outputs.publish(header, picture.frame)
         if not self._shown:
             width, height = frame_size(picture.frame)
             self.get_logger().info(f"{width}x{height} px on {self._outputs.topic}")
+        self._outputs.publish(header, picture.frame)
         self._shown += 1
         self._note_image(stamp)
 
