@@ -49,7 +49,7 @@ from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
-from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
+from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.grid.tracking import time_systems
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
@@ -60,9 +60,8 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
 _GRID_ONLY = (
-    "params", "without_defaults", "baseline_model", "scheduler", "timing", "shifted_starts",
-    "start_frames", "restarts", "max_rmse", "topic", "video", "recordings", "trajectories",
-    "figures",
+    "params", "without_defaults", "baseline_model", "timing", "shifted_starts", "start_frames",
+    "restarts", "max_rmse", "topic", "recordings", "figures",
 )  # fmt: skip
 """Options of the grid that do not apply."""
 
@@ -188,11 +187,6 @@ class Request(RobustnessOptions, TrafficRequest, ReportParts, MaxDiffOption):
     """Request of `evaluate`."""
 
     stress: str | None = option(nargs="?", const="", help=argparse.SUPPRESS)
-    scheduler: str | None = option(
-        metavar="URL",
-        help="run on the Dask cluster of this scheduler, as tcp://host:8786; the workers read the "
-        "recordings at the same paths or URLs",
-    )  # fmt: skip
     topic: str | None = option(help="the image topic, where recordings have several")
     max_rmse: float | None = option(
         type=float, metavar="PX",
@@ -225,7 +219,7 @@ def run(request: Request) -> int:
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
     plan = _plan(request, sources)
     with telling("evaluate") as on_progress:
-        complete(plan, request.output, _runner(request), on_progress, tell_notice)
+        complete(plan, request.output, on_this_machine(request.workers), on_progress, tell_notice)
     if request.timing:
         with telling("timing") as on_progress:
             time_systems(plan, request.output, request.timing_frames, on_progress)
@@ -245,14 +239,6 @@ def _plan(request: Request, sources: Sequence[str]) -> Plan:
         request.max_diff,
         Robustness(request.shifted_starts, request.start_frames, request.restarts),
     )
-
-
-def _runner(request: Request) -> Runner:
-    if request.scheduler is None:
-        return on_this_machine(request.workers)
-    from vehicle_pf_tracker.evaluation.grid.running import on_cluster
-
-    return on_cluster(request.scheduler)
 
 
 def _judge(written: Report, limit: float | None) -> int:

@@ -52,7 +52,7 @@ class Source:
     name : str
         Name of the recording in all tables, and of its folders.
     path : str
-        Path or URL of the recording.
+        Path of the recording.
     topic : str
         The image topic.
     frames, width, height : int

@@ -239,7 +239,7 @@ def test_a_recording_is_decoded_once_for_all_its_cells_if_it_fits_into_memory(
     read, frames = [], Recording.frames
     monkeypatch.setattr(Recording, "frames", lambda *a: read.append(a[0].path.name) or frames(*a))
     monkeypatch.setattr(sources, "FRAMES_BYTES", most)
-    monkeypatch.setattr(sources, "SHELF", sources.Shelf())
+    monkeypatch.setattr(sources, "HELD", {})
     complete(plan, tmp_path / "out", here, silent)
     assert results(tmp_path / "out") == results(tmp_path / "kept")
     assert read == ["bridge"] * times + ["free"] * times
