@@ -50,7 +50,10 @@ COLCON = (
 )
 NOBLE = (  # what Ubuntu 24.04 has from apt; its Python is 3.12
     SETUPTOOLS,
-    f"{ROOT}[test,evaluation]",
+    f"{ROOT}[test]",
+    "matplotlib",
+    "scipy",
+    "jinja2",
     "numpy==1.26.4",
     "opencv-python-headless==4.6.0.66",
     "PyYAML==6.0.1",
