@@ -78,7 +78,6 @@ PROGRAMS = {
     ),
     "laboratory.fusion_scene_pictures": Program(f"{{out}} --only {PICTURE}", (f"{PICTURE}.webp",)),
     "laboratory.fusion_scenes": Program("--scenes bridge --seeds 1 -o {out}/a.md", ("a.md",)),
-    "laboratory.hostile_images": Program("--side 64", printed="| PNG, interlaced | 64x36 |"),
     "benchmarks.large_targets": Program("pf --size 64 48 --frames 2", printed="| `pf` |"),
     "benchmarks.node_memory": Program(
         "--only OpenCV --images 4", printed="| `apf`, OpenCV's kernels |", needs=("rclpy",)
