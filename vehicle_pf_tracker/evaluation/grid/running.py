@@ -25,15 +25,14 @@ from typing import Any, TypeAlias
 
 from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
-from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, GridCell
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.tracking import CellResult, run_cell
 from vehicle_pf_tracker.evaluation.result_store import scoring_digest
 from vehicle_pf_tracker.offline.output_files import flush_folder, make_folder, write_json
 from vehicle_pf_tracker.offline.processes import OnProgress, Progress, Turn, run_in_processes
-from vehicle_pf_tracker.offline.run_folder import METRICS, RUN, RunFolder, damage, seal
+from vehicle_pf_tracker.offline.run_folder import RUN, RunFolder, damage, seal
 
-RESTARTS = "restarts.json"
 _PARTIAL = ".partial"
 
 
@@ -74,15 +73,6 @@ class CellStore:
         path = cell.folder(self._folder)
         return path.is_dir() and not (path / FAILED).is_file() and bool(damage(path))
 
-    def drop_others(self, cells: Iterable[GridCell]) -> None:
-        """Remove robustness runs that are not among `cells`: the report shows all it finds."""
-        wanted = {cell.folder(self._folder) for cell in cells}
-        with output_errors(self._folder):
-            for name in (METRICS, FAILED):
-                for path in list((self._folder / BESIDE).glob(f"**/{name}")):
-                    if path.parent not in wanted:
-                        shutil.rmtree(path.parent)
-
     def add(self, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
         """Store the outcome of a cell, replacing that of an earlier run."""
         target = cell.folder(self._folder)
@@ -107,8 +97,6 @@ class CellStore:
         results = RunFolder(path)
         results.write_run(outcome.rows, run)
         results.write_metrics(outcome.metrics.to_json())
-        if outcome.restarts is not None:
-            write_json(path / RESTARTS, outcome.restarts)
         seal(path)
 
 
@@ -150,9 +138,7 @@ def complete(
     """
     store = CellStore(folder)
     plan.write(folder)
-    cells = plan.cells()
-    store.drop_others(cells)
-    missing = [cell for cell in cells if not store.has(cell)]
+    missing = [cell for cell in plan.cells() if not store.has(cell)]
     damaged = [cell.label for cell in missing if store.is_damaged(cell)]
     if damaged:
         notify(_damage_notice(damaged))
