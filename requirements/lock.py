@@ -14,8 +14,8 @@
 
 """Write the lock files anew: `python requirements/lock.py python3.10 python3.11 python3.12 ...`.
 
-`--only baselines` before the interpreters writes that lock alone; `--hashes` and no interpreters
-keep all versions and write the hashes anew.
+`--only NAME` before the interpreters writes that lock alone, baselines or docs; `--hashes` and no
+interpreters keep all versions and write the hashes anew.
 
 For every interpreter and every lock file, pip resolves the extras of setup.py in a throw-away
 environment. A version that all interpreters share is written once; where they differ, each line
@@ -48,6 +48,7 @@ COLCON = (
     "colcon-ros",
     "colcon-test-result",
 )
+DOCS = (*BASE, "mkdocs-material", "mkdocstrings[python]", "build", "twine")
 NOBLE = (  # what Ubuntu 24.04 has from apt; its Python is 3.12
     SETUPTOOLS,
     f"{ROOT}[test]",
@@ -78,7 +79,7 @@ for found in distributions():
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", choices=["baselines"])
+    parser.add_argument("--only", choices=["baselines", "docs"])
     parser.add_argument("--hashes", action="store_true")
     parser.add_argument("interpreters", nargs="*")
     args = parser.parse_args()
@@ -90,10 +91,7 @@ def main() -> None:
     locks: dict[str, dict[str, set[str]]] = {}
     for interpreter in args.interpreters:
         version = run(interpreter, "-c", "import sys; print('%d.%d' % sys.version_info[:2])")[0]
-        baselines = resolve(interpreter, BASELINES)
-        pins = {"baselines": {pin for pin in baselines if not pin.startswith(OVERWRITES_CONTRIB)}}
-        if args.only is None:
-            pins |= own_pins(interpreter, version)
+        pins = pins_with(interpreter, version, args.only)
         for lock, found in pins.items():
             locks.setdefault(lock, {})[version] = found
     for lock, by_version in locks.items():
@@ -101,16 +99,22 @@ def main() -> None:
         (HERE / f"{lock}.txt").write_text(hashed(header, merged(by_version)))
 
 
-def own_pins(interpreter: str, version: str) -> dict[str, set[str]]:
-    """Return the pins of every lock that this package itself is installed with."""
+def pins_with(interpreter: str, version: str, only: str | None) -> dict[str, set[str]]:
+    """Return the pins of every lock, or of the one that is named."""
+    pins = {}
+    if only != "docs":
+        found = resolve(interpreter, BASELINES)
+        pins["baselines"] = {pin for pin in found if not pin.startswith(OVERWRITES_CONTRIB)}
+    if only == "baselines":
+        return pins
     base = resolve(interpreter, BASE)
-    pins = {
-        "locked": base,
-        "ros-jazzy": resolve(interpreter, ROS) - base,
-        "colcon": resolve(interpreter, COLCON) - base,
-    }
-    if version in {"3.10", "3.11", "3.12"}:  # NumPy 1.26 has no wheels for later ones
-        pins["noble"] = resolve(interpreter, NOBLE)
+    pins["docs"] = resolve(interpreter, DOCS) - base
+    if only is None:
+        pins["locked"] = base
+        pins["ros-jazzy"] = resolve(interpreter, ROS) - base
+        pins["colcon"] = resolve(interpreter, COLCON) - base
+        if version in {"3.10", "3.11", "3.12"}:  # NumPy 1.26 has no wheels for later ones
+            pins["noble"] = resolve(interpreter, NOBLE)
     return pins
 
 

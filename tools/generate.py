@@ -15,8 +15,8 @@
 """Files that follow from the registry and the parameter tables: `make config` writes them.
 
 These are config/ (parameter files and the SROS 2 policy), docs/parameters.md, the picture of the
-rooms in docs/development.md, and the tables of variants between the markers in README.md,
-docs/choosing.md and docs/variants.md.
+rooms in docs/development.md, and the tables of variants between the markers in docs/choosing.md
+and docs/variants.md.
 """
 
 from __future__ import annotations
@@ -40,7 +40,6 @@ _NAME: Column = lambda variant: f"`{variant.name}`"  # noqa: E731 - a column is 
 _SUMMARY: Column = lambda variant: variant.summary  # noqa: E731
 
 TABLES: Mapping[str, Mapping[str, Column]] = {
-    "README.md": {"variant": _NAME, "method": _SUMMARY},
     "docs/choosing.md": {"variant": _NAME, "choose it for": lambda variant: variant.suits},
     "docs/variants.md": {
         "variant": _NAME,
