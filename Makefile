@@ -27,8 +27,7 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 demo: .venv/installed
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
 
-# Three parts side by side on two cores: the tests through ROS mostly wait, and the others compute. In
-# processes of their own, since rclpy and Dask in one have crashed.
+# Three parts side by side on two cores: the tests through ROS mostly wait, and the others compute.
 PARTS := test-ros test-offline test-footage
 RUN := $(BIN)/python -m pytest -m "not slow"
 

@@ -33,7 +33,6 @@ TRAFFIC = ["scipy>=1.11"]  # assignment of detections to vehicles
 NUMBA = ["numba>=0.60"]
 VIDEO = ["av>=14"]
 ONNX = ["onnxruntime>=1.17"]
-CLUSTER = ["distributed>=2024.5", "fsspec>=2024.5"]
 TUNE = ["optuna>=4.0", *EVALUATION]
 TEST = ["pytest>=7", "hypothesis>=6.100"]
 LINT = ["ruff>=0.17,<0.18", "mypy>=2.4,<3", "types-PyYAML"]
@@ -91,11 +90,10 @@ setup(
         "numba": NUMBA,
         "video": VIDEO,
         "onnx": ONNX,
-        "cluster": CLUSTER,
         "tune": TUNE,
         "test": TEST,
         "lint": LINT,
-        "dev": TEST + LINT + COVERAGE + TRAFFIC + NUMBA + VIDEO + ONNX + CLUSTER + TUNE + READERS,
+        "dev": TEST + LINT + COVERAGE + TRAFFIC + NUMBA + VIDEO + ONNX + TUNE + READERS,
     },
     entry_points={
         "console_scripts": [

@@ -59,9 +59,6 @@ PROGRAMS = {
     "benchmarks.bench": Program(
         "--toy {out}", ("bench.json", "performance.md"), "step/apf/csrt", ("baselines", "rclpy")
     ),
-    "benchmarks.cold_start": Program(
-        "pf --repeats 1 --kinds warm empty", printed="| `pf` | empty | 1 |", needs=("rclpy",)
-    ),
     "laboratory.fusion_ablation": Program(
         f"{BATTERY} --changes no_colour", ("ablation.md", "ablation.jsonl"), "| no colour |"
     ),
@@ -78,11 +75,6 @@ PROGRAMS = {
     ),
     "laboratory.fusion_scene_pictures": Program(f"{{out}} --only {PICTURE}", (f"{PICTURE}.webp",)),
     "laboratory.fusion_scenes": Program("--scenes bridge --seeds 1 -o {out}/a.md", ("a.md",)),
-    "laboratory.hostile_images": Program("--side 64", printed="| PNG, interlaced | 64x36 |"),
-    "benchmarks.large_targets": Program("pf --size 64 48 --frames 2", printed="| `pf` |"),
-    "benchmarks.node_memory": Program(
-        "--only OpenCV --images 4", printed="| `apf`, OpenCV's kernels |", needs=("rclpy",)
-    ),
     "laboratory.road_speed": Program(
         "--seeds 1 --speeds 130 --variant apf -o {out}/a.md", ("a.md",), "| all | pairs |"
     ),

@@ -81,7 +81,7 @@ def _table(table: Iterable[ParameterSpec], variants: Iterable[str] | None = None
 
 def _row(spec: ParameterSpec) -> tuple[str, ...]:
     default = str(spec.default).lower() if spec.kind is bool else str(spec.default)
-    values = ", ".join(spec.choices) or spec.bounds
+    values = ", ".join(spec.choices) or spec.bounds_text
     effect = "start-up only" if spec.read_only else spec.effect
     cells = (f"`{spec.name}`", default, values, spec.unit, spec.doc, spec.source, effect)
     return tuple(cell.replace("|", "\\|") for cell in cells)

@@ -35,7 +35,6 @@ def test_the_plan(folder):
     assert [entry.kind for entry in evaluation.systems] == ["pf", "ms", "apf", "baseline:csrt"]
     assert evaluation.systems[0].overrides == {"num_particles": 40}
     assert evaluation.seeds == SEEDS
-    assert evaluation.timings() is None
 
 
 def test_cells_have_rows_or_a_reason(folder):

@@ -55,7 +55,7 @@ class ToyParameters(ColourParameters):
     """Parameters of `toy`."""
 
     trust: float = parameter(
-        0.8, "Higher: spreads less.", minimum=0.0, maximum=0.9, tuned=(0.2, 0.8)
+        0.8, "Higher: spreads less.", bounds=(0.0, 0.9), tuned=(0.2, 0.8)
     )
 
 

@@ -35,7 +35,7 @@ def test_the_document_names_every_parameter_of_every_variant():
             assert len(rows) == 1, (name, one)
             default = str(spec.default).lower() if spec.kind is bool else str(spec.default)
             assert f"| {default} |" in rows[0]
-            assert spec.bounds in rows[0]
+            assert spec.bounds_text in rows[0]
             assert spec.unit.replace("|", "\\|") in rows[0]
             assert spec.doc.replace("|", "\\|") in rows[0]
 

@@ -278,7 +278,7 @@ def alternatives(spec):
     if spec.choices:
         words = [word for word in spec.choices if word != spec.default]
         return [word for word in words if word != "numba" or find_spec("numba")]
-    low, high = max(spec.minimum, -1e3), min(spec.maximum, 400)
+    low, high = max(spec.bounds[0], -1e3), min(spec.bounds[1], 400)
     return [spec.kind(value) for value in (low, (low + high) / 2, high) if value != spec.default]
 
 

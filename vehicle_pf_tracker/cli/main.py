@@ -50,8 +50,6 @@ EXTRAS: Mapping[str, str] = MappingProxyType(
         "numba": "numba",
         "av": "video",
         "onnxruntime": "onnx",
-        "distributed": "cluster",
-        "fsspec": "cluster",
         "optuna": "tune",
     }
 )

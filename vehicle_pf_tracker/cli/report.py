@@ -51,7 +51,6 @@ class ReportParts(VerbRequest):
         "--no-images", action="store_false",
         help="leave the stills of the recordings out of report.html",
     )  # fmt: skip
-    video: bool = switch(help="write videos with the boxes to DIR/videos")
     recordings: bool = switch(
         help="write the recordings with truth and all estimates to DIR/estimates, for Foxglove"
     )
@@ -60,9 +59,6 @@ class ReportParts(VerbRequest):
         help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
         "pdf, svg or png, several with commas",
     )  # fmt: skip
-    trajectories: bool = switch(
-        help="write truth and estimates as TUM files to DIR/trajectories, for evo"
-    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,9 +83,7 @@ def write(folder: Path, request: ReportParts) -> Report:
     """Write the report of `folder` with the parts that are asked for."""
     from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
 
-    options = ReportOptions(
-        request.images, request.video, request.recordings, request.trajectories, request.figures
-    )
+    options = ReportOptions(request.images, request.recordings, request.figures)
     with stages("report") as on_stage:
         report = write_report(folder, options, tell_notice, on_stage)
     print(f"the report is {report.paths[0]}")

@@ -169,7 +169,7 @@ def _listing() -> Iterator[str]:
 
 def _settings(parameters: type[Any]) -> Iterator[str]:
     for spec in specs(parameters).values():
-        facts = ", ".join(filter(None, (spec.unit, spec.bounds, " | ".join(spec.choices))))
+        facts = ", ".join(filter(None, (spec.unit, spec.bounds_text, " | ".join(spec.choices))))
         yield f"  {spec.name}={spec.default} [{facts}]: {spec.doc}"
 
 

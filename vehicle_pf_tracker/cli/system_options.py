@@ -190,7 +190,7 @@ class EvaluationRequest(WorkersOption):
 
     sources: Sequence[str] = positional(
         nargs="+", metavar="REC",
-        help="rosbag2 folder or MCAP file with truth, a folder of such, or a URL of one",
+        help="rosbag2 folder or MCAP file with truth, or a folder of such",
     )  # fmt: skip
     output: Path = option(
         "-o", type=Path, required=True, metavar="DIR",

@@ -20,8 +20,6 @@
     recordings/<recording>/truth.csv
     cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json, run.json and digests.json; or
     cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
-    timings.json                                         of a serial pass, where it was asked for
-    robustness/<kind>/<recording>/<system>/seed-<n>/     where it was asked for
 """
 
 from __future__ import annotations
@@ -52,7 +50,7 @@ class Source:
     name : str
         Name of the recording in all tables, and of its folders.
     path : str
-        Path or URL of the recording.
+        Path of the recording.
     topic : str
         The image topic.
     frames, width, height : int
@@ -141,7 +139,6 @@ def _row(path: Path, number: int, line: Mapping[str, str]) -> tuple[int, Truth]:
 FORMAT = 2
 """Format of the folder; folders of another format are refused."""
 PLAN, FAILED = "evaluation.json", "failed.json"
-TIMINGS = "timings.json"
 TRUTH = "truth.csv"
 
 
@@ -254,15 +251,10 @@ class EvaluationFolder:
         rows = tuple(read_estimates(folder / ESTIMATES))
         return Cell(recording, system, seed, rows, read_document(folder / RUN), "")
 
-    def timings(self) -> Mapping[str, Any] | None:
-        """Return `timings.json`; None where the speed was not measured."""
-        path = self.path / TIMINGS
-        return read_document(path) if path.is_file() else None
 
-
-def cell_folder(folder: Path, recording: str, system: str, seed: int, cells: str = "cells") -> Path:
+def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:
     """Return the folder of one cell of the evaluation in `folder`."""
-    return folder / cells / recording / safe_name(system) / f"seed-{seed}"
+    return folder / "cells" / recording / safe_name(system) / f"seed-{seed}"
 
 
 def safe_name(label: str) -> str:

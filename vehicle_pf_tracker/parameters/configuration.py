@@ -60,8 +60,7 @@ class NodeParameters:
         1,
         "Images that may wait: 1 always takes the newest of a live camera, 10 and more keeps "
         "every image of a recording.",
-        minimum=1,
-        maximum=10_000,
+        bounds=(1, 10_000),
         unit="images",
         read_only=True,
     )
@@ -81,17 +80,21 @@ class NodeParameters:
 _LARGEST = 1e5
 """Bound of target coordinates in px: three times the largest side of an image (32767 px)."""
 
-_target_number = functools.partial(parameter, 0.0, maximum=_LARGEST, unit="px", effect="starts")
+_target_number = functools.partial(parameter, 0.0, unit="px", effect="starts")
 
 
 @dataclass(frozen=True, slots=True)
 class TargetParameters:
     """The box to start on."""
 
-    x: float = _target_number("Left edge of the target.", minimum=-_LARGEST)
-    y: float = _target_number("Top edge of the target.", minimum=-_LARGEST)
-    width: float = _target_number("Width of the target; 0 waits for a target.", minimum=0.0)
-    height: float = _target_number("Height of the target; 0 waits for a target.", minimum=0.0)
+    x: float = _target_number("Left edge of the target.", bounds=(-_LARGEST, _LARGEST))
+    y: float = _target_number("Top edge of the target.", bounds=(-_LARGEST, _LARGEST))
+    width: float = _target_number(
+        "Width of the target; 0 waits for a target.", bounds=(0.0, _LARGEST)
+    )
+    height: float = _target_number(
+        "Height of the target; 0 waits for a target.", bounds=(0.0, _LARGEST)
+    )
 
     @property
     def box(self) -> Box | None:

@@ -70,22 +70,19 @@ class RoadParameters:
     margin: float = parameter(
         0.1,
         "Larger: positions are also given farther outside the hull of the pairs.",
-        minimum=0.0,
-        maximum=10.0,
+        bounds=(0.0, 10.0),
         unit="share of its size",
     )
     coarsest: float = parameter(
         1.0,
         "Larger: positions are also given farther away, where a pixel is so long on the road.",
-        minimum=0.001,
-        maximum=1000.0,
+        bounds=(0.001, 1000.0),
         unit="m",
     )
     acceleration: float = parameter(
         0.5,
         "Larger: the speed follows braking faster, and is less steady.",
-        minimum=0.01,
-        maximum=100.0,
+        bounds=(0.01, 100.0),
         unit="m/s per second",
     )
 

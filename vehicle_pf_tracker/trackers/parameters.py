@@ -35,13 +35,13 @@ def share(
 ) -> Any:
     """Make a parameter from 0 to 1."""
     return parameter(
-        default, doc, minimum=0.0, maximum=1.0, unit=unit, source=source, effect=effect, tuned=tuned
+        default, doc, bounds=(0.0, 1.0), unit=unit, source=source, effect=effect, tuned=tuned
     )
 
 
 def particles_parameter(default: int, doc: str, *, source: str = "") -> Any:
     """Make the number of particles."""
-    return parameter(default, doc, minimum=1, maximum=100_000, source=source)
+    return parameter(default, doc, bounds=(1, 100_000), source=source)
 
 
 def frame_rate_parameter() -> Any:
@@ -50,15 +50,14 @@ def frame_rate_parameter() -> Any:
         0.0,
         "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
         "intervals.",
-        minimum=0.0,
-        maximum=1000.0,
+        bounds=(0.0, 1000.0),
         unit="1/s",
     )
 
 
 def side_parameter(doc: str) -> Any:
     """Make a side of the window, in px."""
-    return parameter(0.0, doc, minimum=0.0, maximum=4096.0, unit="px", effect="relearns")
+    return parameter(0.0, doc, bounds=(0.0, 4096.0), unit="px", effect="relearns")
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,16 +115,14 @@ class CommonParameters:
     seed: int = parameter(
         0,
         "Same seed, frames and parameters give the same estimates; -1 draws one and reports it.",
-        minimum=-1,
-        maximum=2**31 - 1,
+        bounds=(-1, 2**31 - 1),
         effect="restarts",
     )
     frame_rate: float = frame_rate_parameter()
     lost_after: float = parameter(
         5.0,
         "Longer: the mode stays OCCLUDED longer before it becomes LOST.",
-        minimum=0.0,
-        maximum=86_400.0,
+        bounds=(0.0, 86_400.0),
         unit="s",
     )
     kernels: str = parameter(

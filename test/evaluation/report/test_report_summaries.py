@@ -16,7 +16,6 @@ import csv
 import io
 import json
 import statistics
-from dataclasses import replace
 
 import pytest
 from evaluation_samples import ALONE, HIDDEN, SEEDS, VARIANTS
@@ -120,41 +119,15 @@ def test_markdown_has_a_table_for_each_recording_and_every_failed_cell(evaluatio
     assert text.count("| baseline:csrt |") == len(HIDDEN) * len(SEEDS)
 
 
-def test_latex_escapes_what_it_must(aggregates):
+def test_latex_escapes_what_it_must_and_marks_the_best(aggregates):
     text = writing.summary_tex(aggregates)
     assert text.count(r"\\") == 1 + len(VARIANTS)
-    assert r"\begin{tabular}{lrrrrrr}" in text
+    assert r"\begin{tabular}{lrrrrr}" in text
     assert "_" not in text.replace(r"\_", "") and "–" not in text
-
-
-def printed(text, system):
-    """Return the cells of a system in the LaTeX table."""
-    (line,) = [line for line in text.splitlines() if line.startswith(f"{system} & ")]
-    return line.removesuffix(r" \\").split(" & ")[1:]
-
-
-def with_means(aggregates, key, means):
-    """Return `aggregates` with these means of a metric by system."""
-    overall = {
-        label: {**found, key: found[key] and replace(found[key], mean=means[label])}
-        for label, found in aggregates.overall.items()
-    }
-    return replace(aggregates, overall=overall)
-
-
-@pytest.mark.parametrize(
-    ("means", "cells"),
-    [
-        ((9.04, 3.2, 5.0), ("9.0", r"\textbf{3.2}", r"\underline{5.0}")),
-        ((3.21, 3.2, 5.0), (r"\textbf{3.2}", r"\textbf{3.2}", "5.0")),
-        ((5.04, 3.2, 5.0), (r"\underline{5.0}", r"\textbf{3.2}", r"\underline{5.0}")),
-        ((3.0, 3.0, 3.0), ("3.0", "3.0", "3.0")),
-    ],
-)
-def test_latex_marks_the_best_and_the_second_as_printed(aggregates, means, cells):
-    changed = with_means(aggregates, "rmse_px", dict(zip(VARIANTS, means, strict=True)))
-    text = writing.summary_tex(changed)
-    assert tuple(printed(text, system)[3] for system in VARIANTS) == cells
+    lines = {line.split(" & ")[0]: line for line in text.splitlines()}
+    for label, cells in overall_table(aggregates, ["success_auc"]).rows.items():
+        (best,) = [cell.best for cell in cells]
+        assert (rf"& \textbf{{{cells[0].text}}} &" in lines[label]) == best
 
 
 def test_the_title_names_the_folder_once(evaluation, aggregates):

@@ -16,8 +16,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -33,43 +34,13 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     write_truth,
 )
 from vehicle_pf_tracker.evaluation.grid.cells import (
-    RESTARTS,
-    USUAL,
     GridCell,
-    Start,
     System,
     VariantSystem,
     seeds_of,
-    shifted_starts,
-    start_frames,
 )
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.run_folder import versions
-
-
-@dataclass(frozen=True, slots=True)
-class Robustness:
-    """The robustness runs, beside the grid.
-
-    Attributes
-    ----------
-    shifted_starts : bool
-        True for runs from the twelve shifted and scaled boxes of OTB.
-    start_frames : int
-        Number of runs from other frames.
-    restarts : bool
-        True for runs that are started anew after each failure, as in VOT.
-    """
-
-    shifted_starts: bool = False
-    start_frames: int = 0
-    restarts: bool = False
-
-    def starts(self, truths: Sequence[Truth]) -> list[Start]:
-        """Return the starts on a recording with `truths`."""
-        starts = shifted_starts() if self.shifted_starts else []
-        starts += start_frames(truths, self.start_frames)
-        return starts + ([Start(RESTARTS)] if self.restarts else [])
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +59,6 @@ class Plan:
         Command line that repeats the evaluation.
     max_diff : float
         Largest difference of stamps that belong together, in s.
-    robustness : Robustness
-        The robustness runs.
 
     Raises
     ------
@@ -102,7 +71,6 @@ class Plan:
     seeds: Sequence[int]
     command: list[str]
     max_diff: float = MAX_DIFF
-    robustness: Robustness = field(default_factory=Robustness)
 
     def __post_init__(self) -> None:
         taken: set[str] = set()
@@ -113,29 +81,14 @@ class Plan:
             taken.add(name)
 
     def cells(self) -> list[GridCell]:
-        """Return all cells: the grid first, recording by recording, then what is run beside it."""
-        grid = [cell for source in self.recordings for cell in self._cells(source, [USUAL])]
-        beside = [
-            cell
-            for source, truths in self.recordings.items()
-            for cell in self._cells(source, self.robustness.starts(self._in_order(truths)))
-        ]
-        return grid + beside
-
-    def _cells(self, source: Source, starts: Sequence[Start]) -> Iterator[GridCell]:
+        """Return all cells, recording by recording."""
         # Baselines are slow: begun last, they would be waited for.
         ordered = sorted(self.systems, key=lambda system: isinstance(system, VariantSystem))
-        for start in starts:
-            for system in ordered:
-                # Other starts are variation enough; failures are counted over all seeds.
-                is_varied = start.kind in {"", RESTARTS}
-                seeds = seeds_of(system, self.seeds if is_varied else self.seeds[:1])
-                for seed in seeds:
-                    yield GridCell(source, system, seed, self.max_diff, start)
-
-    @staticmethod
-    def _in_order(truths: Mapping[int, Truth]) -> list[Truth]:
-        return sorted(truths.values(), key=lambda truth: truth.stamp_ns)
+        return [
+            GridCell(source, system, seed, self.max_diff)
+            for source, system in itertools.product(self.recordings, ordered)
+            for seed in seeds_of(system, self.seeds)
+        ]
 
     def write(self, folder: Path) -> None:
         """Write `evaluation.json` and the truth of every recording.
@@ -161,10 +114,5 @@ class Plan:
             ],
             "seeds": list(self.seeds),
             "versions": versions(),
-            "options": {
-                "max_diff": self.max_diff,
-                "shifted_starts": self.robustness.shifted_starts,
-                "start_frames": self.robustness.start_frames,
-                "restarts": self.robustness.restarts,
-            },
+            "options": {"max_diff": self.max_diff},
         }

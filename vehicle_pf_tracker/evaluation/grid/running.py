@@ -12,36 +12,27 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Run the cells that an evaluation lacks, and keep each as soon as its result is there.
-
-They run on this machine, or on a Dask cluster whose workers can read the recordings.
-"""
+"""Run the cells that an evaluation lacks, and keep each as soon as its result is there."""
 
 from __future__ import annotations
 
-import asyncio
-import logging
 import os
 import shutil
-import socket
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent import futures
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
-from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, GridCell
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.tracking import CellResult, run_cell
 from vehicle_pf_tracker.evaluation.result_store import scoring_digest
 from vehicle_pf_tracker.offline.output_files import flush_folder, make_folder, write_json
 from vehicle_pf_tracker.offline.processes import OnProgress, Progress, Turn, run_in_processes
-from vehicle_pf_tracker.offline.run_folder import METRICS, RUN, RunFolder, damage, seal
+from vehicle_pf_tracker.offline.run_folder import RUN, RunFolder, damage, seal
 
-RESTARTS = "restarts.json"
 _PARTIAL = ".partial"
 
 
@@ -82,15 +73,6 @@ class CellStore:
         path = cell.folder(self._folder)
         return path.is_dir() and not (path / FAILED).is_file() and bool(damage(path))
 
-    def drop_others(self, cells: Iterable[GridCell]) -> None:
-        """Remove robustness runs that are not among `cells`: the report shows all it finds."""
-        wanted = {cell.folder(self._folder) for cell in cells}
-        with output_errors(self._folder):
-            for name in (METRICS, FAILED):
-                for path in list((self._folder / BESIDE).glob(f"**/{name}")):
-                    if path.parent not in wanted:
-                        shutil.rmtree(path.parent)
-
     def add(self, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
         """Store the outcome of a cell, replacing that of an earlier run."""
         target = cell.folder(self._folder)
@@ -115,8 +97,6 @@ class CellStore:
         results = RunFolder(path)
         results.write_run(outcome.rows, run)
         results.write_metrics(outcome.metrics.to_json())
-        if outcome.restarts is not None:
-            write_json(path / RESTARTS, outcome.restarts)
         seal(path)
 
 
@@ -158,9 +138,7 @@ def complete(
     """
     store = CellStore(folder)
     plan.write(folder)
-    cells = plan.cells()
-    store.drop_others(cells)
-    missing = [cell for cell in cells if not store.has(cell)]
+    missing = [cell for cell in plan.cells() if not store.has(cell)]
     damaged = [cell.label for cell in missing if store.is_damaged(cell)]
     if damaged:
         notify(_damage_notice(damaged))
@@ -181,83 +159,3 @@ def _damage_notice(labels: Sequence[str]) -> str:
     more = len(labels) - _MOST_NAMED
     named = ", ".join(labels[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
     return f"stored results that were changed or damaged are run again: {named}"
-
-
-def on_cluster(address: str, seconds: float = 10.0) -> Runner:
-    """Return what runs cells on the cluster of a scheduler.
-
-    A cell whose worker dies is run again on another one. Each result is given once.
-
-    Parameters
-    ----------
-    address : str
-        Address of the scheduler, as ``tcp://host:8786``.
-    seconds : float
-        Time to wait for the scheduler, s.
-
-    Raises
-    ------
-    InputError
-        From the runner, if the scheduler cannot be reached, has no worker, or is lost on the way.
-    """
-    return partial(_run, address, seconds)
-
-
-def run_checked(cell: GridCell, key: str) -> CellResult:
-    """Run a cell on a worker whose code and libraries are those that it was planned with."""
-    if cell.key() == key:
-        return run_cell(cell)
-    return CellResult(
-        reason=f"the worker on {socket.gethostname()} has other code or other versions of Python, "
-        "NumPy, OpenCV or numba than the machine that evaluates; install the same everywhere"
-    )
-
-
-def _run(
-    address: str, seconds: float, cells: Sequence[GridCell]
-) -> Iterator[Turn[GridCell, CellResult]]:
-    if not cells:
-        return
-    client = _connected(address, seconds)
-    try:
-        yield from _results(client, cells)
-    except (OSError, futures.CancelledError, asyncio.CancelledError) as error:
-        raise InputError(
-            f"the Dask scheduler at {address} was lost on the way; start it and its workers again, "
-            "and run the same command: the results so far are kept"
-        ) from error
-    finally:
-        client.close()
-
-
-def _connected(address: str, seconds: float) -> Any:
-    try:
-        from distributed import Client  # noqa: PLC0415 - an extra
-    except ModuleNotFoundError:
-        raise InputError(
-            "a Dask cluster needs the extra [cluster]: `pip install 'vehicle_pf_tracker[cluster]'`"
-        ) from None
-    # Its log would print a traceback beside our sentence when the scheduler is lost.
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
-    try:
-        client = Client(address, timeout=seconds, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:  # a TimeoutError is an OSError
-        raise InputError(f"cannot reach a Dask scheduler at {address}") from error
-    if not client.scheduler_info(n_workers=-1)["workers"]:
-        client.close()
-        raise InputError(f"the Dask scheduler at {address} has no workers; start `dask worker`")
-    return client
-
-
-def _results(client: Any, cells: Sequence[GridCell]) -> Iterator[Turn[GridCell, CellResult]]:
-    from distributed import as_completed  # noqa: PLC0415 - an extra
-
-    by_key = {f"{cell.label}-{cell.key()}".replace(" ", "-"): cell for cell in cells}
-    submitted = [client.submit(run_checked, cell, cell.key(), key=k) for k, cell in by_key.items()]
-    waiting = as_completed(submitted, loop=client.loop)
-    submitted.clear()  # so that each result can go once it is here
-    for future in waiting:
-        error = future.exception()
-        reason = f"the cluster gave it up: {' '.join(str(error).split())}"
-        outcome = future.result() if error is None else CellResult(reason=reason)
-        yield Turn((by_key[future.key], outcome), ())

@@ -22,6 +22,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -31,7 +32,6 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.grid.sources import local_copy
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
@@ -244,7 +244,7 @@ def numbered_frames(entry: Source) -> Iterator[tuple[int, Frame]]:
     InputError
         If the recording is gone, or its images are not those of the evaluation.
     """
-    recording = Recording(local_copy(entry.path), entry.topic)
+    recording = Recording(Path(entry.path), entry.topic)
     for number, stamped in enumerate(recording.frames(), start=1):
         if stamped.frame is None:
             continue

@@ -108,8 +108,7 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         name: {"svg": maker.make(drawn), "caption": drawn.caption}
         for name, drawn in draw_all(evaluation, aggregates, slots, PAGE).items()
     }
-    folder, order = evaluation.folder, aggregates.order
-    timings = folder.timings()
+    folder = evaluation.folder
     return render(
         "report.html",
         title=title(evaluation),
@@ -126,9 +125,6 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         recordings=[
             _section(evaluation, aggregates, entry, images) for entry in evaluation.recordings
         ],
-        robustness=page_tables.robustness_tables(folder, order),
-        speed=page_tables.speed_table(timings, order),
-        timings=timings,
         systems=evaluation.systems,
         sources=evaluation.recordings,
         seeds=folder.seeds,

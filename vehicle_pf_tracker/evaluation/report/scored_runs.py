@@ -14,13 +14,13 @@
 
 """Cells of an evaluation, scored against the truth.
 
-They are exported for other tools: as TUM trajectories for evo, as recordings for Foxglove.
+They are exported as recordings for other tools, such as Foxglove and evo.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,9 +36,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     EvaluationFolder,
     Source,
     SystemEntry,
-    safe_name,
 )
-from vehicle_pf_tracker.evaluation.grid.sources import local_copy
 from vehicle_pf_tracker.evaluation.metrics import (
     Curve,
     Metrics,
@@ -50,7 +48,6 @@ from vehicle_pf_tracker.evaluation.metrics import (
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import write_with_estimates
-from vehicle_pf_tracker.offline.output_files import make_folder, write_text
 from vehicle_pf_tracker.recordings.messages import as_token
 from vehicle_pf_tracker.recordings.reader import Recording
 
@@ -212,58 +209,6 @@ def _box(frame: FrameScore) -> Box | None:
     return Box.around((row.x, row.y), row.width or 0.0, row.height or 0.0)
 
 
-TRAJECTORIES = "trajectories"
-
-
-def write_trajectories(evaluation: ScoredEvaluation) -> list[Path]:
-    """Write the truth of each recording and each run's scored estimates where there is truth.
-
-    Raises
-    ------
-    InputError
-        If they cannot be written.
-    """
-    written = []
-    for entry in evaluation.recordings:
-        truths = evaluation.truths[entry.name]
-        if not truths:
-            continue
-        folder = make_folder(_folder(evaluation.folder, entry.name))
-        written.append(_write(folder / "truth.tum", _true_points(truths)))
-        for run in evaluation.of(entry.name):
-            name = f"{safe_name(run.system)}_seed-{run.seed}.tum"
-            written.append(_write(folder / name, _points(run, truths)))
-    return written
-
-
-def _folder(evaluation: EvaluationFolder, recording: str) -> Path:
-    return evaluation.path / TRAJECTORIES / recording
-
-
-Point = tuple[int, float, float]
-"""Stamp in ns, x and y in px."""
-
-
-def _true_points(truths: Mapping[int, Truth]) -> list[Point]:
-    return [(truth.stamp_ns, *truth.box.centre) for truth in truths.values()]
-
-
-def _points(run: ScoredRun, truths: Mapping[int, Truth]) -> list[Point]:
-    return [
-        (truths[number].stamp_ns, *box.centre)
-        for number, box in enumerate(run.boxes, start=1)
-        if box is not None and number in truths
-    ]
-
-
-def _write(path: Path, points: Iterable[Point]) -> Path:
-    lines = (
-        f"{stamp // 10**9}.{stamp % 10**9:09d} {x!r} {y!r} 0 0 0 0 1\n" for stamp, x, y in points
-    )
-    write_text(path, "".join(lines))
-    return path
-
-
 ESTIMATE_RECORDINGS = "estimates"
 
 
@@ -283,7 +228,7 @@ def write_estimate_recordings(
         on_stage(f"the recording {entry.name} with estimates")
         path = evaluation.folder.path / ESTIMATE_RECORDINGS / entry.name
         try:
-            recording = Recording(local_copy(entry.path), entry.topic)
+            recording = Recording(Path(entry.path), entry.topic)
             runs = _rows(evaluation, entry.name)
             write_with_estimates(path, recording, runs, overwrite=True)
             written.append(path)

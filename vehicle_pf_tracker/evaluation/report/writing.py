@@ -35,12 +35,9 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     STEP,
     SUCCESS,
     Aggregates,
-    Column,
     Summaries,
     aggregate,
     findings,
-    interval_text,
-    mean_text,
     power,
 )
 from vehicle_pf_tracker.evaluation.report.figures import PAPER, draw_all
@@ -54,10 +51,7 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
     score_folder,
     write_estimate_recordings,
-    write_trajectories,
 )
-from vehicle_pf_tracker.evaluation.report.video import write_videos
-from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import csv_text, markdown
 from vehicle_pf_tracker.offline.output_files import make_folder, replacing, write_json, write_text
 
@@ -65,7 +59,8 @@ ALL_RECORDINGS = "(all)"
 """Stands for the name of a recording where values are means over all of them."""
 _PAPER = (SUCCESS, PRECISION, RMSE, RECOVERED, STEP)
 _LATEX = str.maketrans(
-    {c: f"\\{c}" for c in "&%$#_{}"} | {"~": r"\textasciitilde{}", "\\": r"\textbackslash{}"}
+    {c: f"\\{c}" for c in "&%$#_{}"}
+    | {"\u00a0": "~", "~": r"\textasciitilde{}", "\\": r"\textbackslash{}"}
 )
 
 
@@ -112,50 +107,23 @@ def summary_csv(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
 
 
 def summary_tex(aggregates: Aggregates) -> str:
-    """Return the main means as a LaTeX table: the best bold, the second underlined."""
-    marks = {column.key: _marks(aggregates, column) for column in _PAPER}
-    rows = []
-    for label, summaries in aggregates.overall.items():
-        interval = interval_text(summaries.get(SUCCESS.key), SUCCESS).replace(" to ", "--")
-        first, *others = (_marked(summaries[column.key], column, marks[column.key])
-                          for column in _PAPER)  # fmt: skip
-        rows.append([label, first, interval or NO_VALUE, *others])
-    header = ["system", SUCCESS.title, "interval", *(column.title for column in _PAPER[1:])]
-    return "".join(
-        [
-            "% Means over recordings, with the 95 % interval of the first metric. The best are\n"
-            "% bold, the second are underlined. Needs the package booktabs.\n"
-            rf"\begin{{tabular}}{{l{'r' * len(header[1:])}}}",
-            "\n\\toprule\n",
-            _tex_line(header),
-            "\\midrule\n",
-            *map(_tex_line, rows),
-            "\\bottomrule\n\\end{tabular}\n",
-        ]
+    """Return the main means as a LaTeX table; the best are bold."""
+    table = overall_table(aggregates, [column.key for column in _PAPER])
+    header, _ = table.texts()
+    rows = [
+        [_tex(label), *(rf"\textbf{{{_tex(c.text)}}}" if c.best else _tex(c.text) for c in cells)]
+        for label, cells in table.rows.items()
+    ]
+    head, *body = (" & ".join(row) + " \\\\\n" for row in [map(_tex, header), *rows])
+    return (
+        "% Means over recordings; the best are bold. Needs the package booktabs.\n"
+        f"\\begin{{tabular}}{{l{'r' * len(table.headers)}}}\n\\toprule\n"
+        f"{head}\\midrule\n{''.join(body)}\\bottomrule\n\\end{{tabular}}\n"
     )
 
 
-def _tex_line(cells: Sequence[str]) -> str:
-    escaped = (cell if cell.startswith("\\") else cell.translate(_LATEX) for cell in cells)
-    return " & ".join(escaped).replace(NO_VALUE, "--") + " \\\\\n"
-
-
-def _marks(aggregates: Aggregates, column: Column) -> dict[float, str]:
-    """Return LaTeX's commands for the best and the second-best mean, as they are printed."""
-    found = [summaries[column.key] for summaries in aggregates.overall.values()]
-    values = [round(summary.mean, column.decimals) for summary in found if summary is not None]
-    order = sorted(set(values), reverse=bool(column.higher_is_better))
-    if len(order) < 2:
-        return {}
-    # Two that share the first place leave no second.
-    commands = (r"\textbf", r"\underline") if values.count(order[0]) == 1 else (r"\textbf",)
-    return dict(zip(order, commands, strict=False))
-
-
-def _marked(summary: Summary | None, column: Column, marks: Mapping[float, str]) -> str:
-    text = mean_text(summary, column)
-    command = "" if summary is None else marks.get(round(summary.mean, column.decimals), "")
-    return f"{command}{{{text}}}" if command else text
+def _tex(text: str) -> str:
+    return text.translate(_LATEX).replace(NO_VALUE, "--")
 
 
 def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Any]:
@@ -249,20 +217,14 @@ class ReportOptions:
     ----------
     images : bool
         True for stills of the recordings in the page.
-    video : bool
-        True for a video of each recording with boxes, in ``videos/``.
     recordings : bool
         True for recordings with truth and all estimates, in ``estimates/``.
-    trajectories : bool
-        True for TUM files of the truth and of all runs, in ``trajectories/``.
     figures : tuple of str
         Formats of the figures' files, of `FORMATS`, in ``figures/``.
     """
 
     images: bool = True
-    video: bool = False
     recordings: bool = False
-    trajectories: bool = False
     figures: tuple[str, ...] = ()
 
 
@@ -311,12 +273,8 @@ def write_report(
     if options.figures:
         on_stage("drawing the figures")
         written += write_figures(evaluation, aggregates, styled(aggregates), options.figures)
-    if options.trajectories:
-        written += write_trajectories(evaluation)
     if options.recordings:
         written += write_estimate_recordings(evaluation, notify, on_stage)
-    if options.video:
-        written += write_videos(evaluation, styled(aggregates), notify, on_stage)
     return Report(written, evaluation, aggregates)
 
 

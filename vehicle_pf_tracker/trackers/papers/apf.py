@@ -65,8 +65,7 @@ class ApfMotionParameters:
     sigma_w: float = parameter(
         6.0,
         "About the vehicle's speed: less loses fast vehicles, more follows similar vehicles.",
-        minimum=0.01,
-        maximum=1000.0,
+        bounds=(0.01, 1000.0),
         unit="px/frame",
         source="P1 eq. 7, interpretation 11",
         tuned=True,
@@ -74,8 +73,7 @@ class ApfMotionParameters:
     sigma_n: float = parameter(
         0.0,
         "Larger: occluded particles spread further across the motion; 0 takes sigma_w.",
-        minimum=0.0,
-        maximum=1000.0,
+        bounds=(0.0, 1000.0),
         unit="px/frame",
         source="P1 eq. 10",
     )
@@ -83,8 +81,7 @@ class ApfMotionParameters:
         0.0,
         "Larger: occluded particles drift faster along the motion; 0 takes sigma_w. "
         "Counts with drift_from_velocity off.",
-        minimum=0.0,
-        maximum=1000.0,
+        bounds=(0.0, 1000.0),
         unit="px/frame",
         source="P1 eq. 9",
     )
@@ -113,8 +110,7 @@ class ApfReferenceParameters:
     steady_above: float = parameter(
         0.95,
         "Higher: with the relative rule, the reference follows in fewer and better frames only.",
-        minimum=0.0,
-        maximum=2.0,
+        bounds=(0.0, 2.0),
         unit="of Pi's clear level",
         source=RELATIVE,
     )
@@ -158,8 +154,7 @@ class ApfVelocityParameters:
     window: int = parameter(
         16,
         "Longer: a steadier direction that follows turns later; 0 takes all estimates.",
-        minimum=0,
-        maximum=10_000,
+        bounds=(0, 10_000),
         unit="frames",
         source="P1 section III-B, interpretation 5",
         tuned=True,
@@ -168,8 +163,7 @@ class ApfVelocityParameters:
         12,
         "Longer: more of the estimates that an occlusion drags along before it is noticed are kept "
         "out of the drift. Counts with the relative rule, which notices later.",
-        minimum=0,
-        maximum=1000,
+        bounds=(0, 1000),
         unit="frames",
         source=RELATIVE,
     )

@@ -42,8 +42,7 @@ class ClearLevelParameters:
     enter: float = parameter(
         6.0,
         "Higher: deeper falls of the similarity are needed to switch to the occlusion regime.",
-        minimum=0.0,
-        maximum=100.0,
+        bounds=(0.0, 100.0),
         unit="mean deviations below the level",
         source=RELATIVE,
         tuned=True,
@@ -51,8 +50,7 @@ class ClearLevelParameters:
     leave: float = parameter(
         4.0,
         "Higher: the regular regime returns while less of the vehicle is visible.",
-        minimum=0.0,
-        maximum=100.0,
+        bounds=(0.0, 100.0),
         unit="mean deviations below the level",
         source=RELATIVE,
     )

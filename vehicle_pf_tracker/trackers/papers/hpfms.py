@@ -82,8 +82,7 @@ class TransitionParameters:
     speed_share: float = parameter(
         1.0,
         "Higher: fast vehicles are searched for further away; 0 spreads by sigma alone.",
-        minimum=0.0,
-        maximum=10.0,
+        bounds=(0.0, 10.0),
         unit="of the speed",
         source="Maggio 2005 section 3",
         tuned=True,
@@ -91,8 +90,7 @@ class TransitionParameters:
     widest: float = parameter(
         2.0,
         "Higher: the spread grows more after an estimate of low similarity; 1: never.",
-        minimum=1.0,
-        maximum=20.0,
+        bounds=(1.0, 20.0),
         unit="times",
         source="Maggio 2005 section 3",
     )
@@ -110,8 +108,7 @@ class HpfmsParameters(ColourParameters):
     iterations: int = parameter(
         3,
         "More: particles come closer to a maximum, and nearer to each other.",
-        minimum=0,
-        maximum=100,
+        bounds=(0, 100),
         source="Maggio 2005 section 2",
         tuned=True,
     )

@@ -35,8 +35,7 @@ class LikelihoodParameters:
     sigma_v: float = parameter(
         0.1,
         "Smaller: weights fall faster as a particle's histogram departs from the reference.",
-        minimum=1e-3,
-        maximum=100.0,
+        bounds=(1e-3, 100.0),
         source="P1 eq. 25, interpretation 1 (printed: 1.5)",
         tuned=True,
     )
@@ -82,8 +81,7 @@ def histogram_bits_parameter(*, tuned: bool = False) -> Any:
     return parameter(
         3,
         "More: finer colours, more easily upset by light and noise.",
-        minimum=1,
-        maximum=5,
+        bounds=(1, 5),
         unit="bits/channel",
         source="P1 section III-C",
         effect="relearns",

@@ -57,8 +57,7 @@ class DispersionParameters:
     radius: float = parameter(
         14.0,
         "Larger: follows faster changes of speed, and more similar vehicles.",
-        minimum=0.01,
-        maximum=1000.0,
+        bounds=(0.01, 1000.0),
         unit="px/frame",
         source="P2 section IV, DR",
         tuned=True,
@@ -73,8 +72,7 @@ class DispersionParameters:
     uncertain_factor: float = parameter(
         2.0,
         "Larger: searches further around the start and around predictions.",
-        minimum=1.0,
-        maximum=100.0,
+        bounds=(1.0, 100.0),
         unit="radii",
         source="P2 section IV",
     )
@@ -82,24 +80,21 @@ class DispersionParameters:
         1.0,
         "Longer: the wider search around the start lasts until the speed is known, which a radius "
         "of about the speed needs; 1 is the first step alone, as printed.",
-        minimum=1.0,
-        maximum=1000.0,
+        bounds=(1.0, 1000.0),
         unit="frames",
         source="P2 section IV, DR0, interpretation 30",
     )
     growth: float = parameter(
         1.0,
         "Larger: the search around predictions widens faster during an occlusion.",
-        minimum=0.0,
-        maximum=100.0,
+        bounds=(0.0, 100.0),
         unit="px/frame",
         source="P2 section IV, interpretation 19 (no value printed)",
     )
     largest: float = parameter(
         60.0,
         "Larger: the search may widen further, at more time per frame.",
-        minimum=0.0,
-        maximum=10_000.0,
+        bounds=(0.0, 10_000.0),
         unit="px",
         source="interpretation 19",
     )
@@ -132,8 +127,7 @@ class EdgeParameters:
     threshold: float = parameter(
         0.3,
         "Higher: only the strongest edges count (printed: 0.8).",
-        minimum=0.01,
-        maximum=1.0,
+        bounds=(0.01, 1.0),
         unit="share of the window's strongest gradient",
         source="P2 section III-C, interpretation 14",
         effect="relearns",
@@ -143,8 +137,7 @@ class EdgeParameters:
         40.0,
         "Higher: noise and faint edges count less; 0 counts them in windows with nothing else, as "
         "printed. A step of one grey level makes a gradient of 4.",
-        minimum=0.0,
-        maximum=1500.0,
+        bounds=(0.0, 1500.0),
         unit="grey levels",
         source="P2 section III-C, interpretation 14",
         effect="relearns",
@@ -184,8 +177,7 @@ class FeatureFilterParameters(ParticleParameters):
     velocity_window: int = parameter(
         5,
         "Longer: a steadier speed that follows turns later; 1 takes the last move, as printed.",
-        minimum=1,
-        maximum=10_000,
+        bounds=(1, 10_000),
         unit="frames",
         source="P2 eq. 5, interpretation 12",
         tuned=True,

@@ -46,16 +46,14 @@ class MsParameters(CommonParameters):
     iterations: int = parameter(
         15,
         "More: vehicles that moved further are still reached, where steps stay long.",
-        minimum=1,
-        maximum=100,
+        bounds=(1, 100),
         source="Comaniciu 2003 section 4.2 (at most 20)",
         tuned=True,
     )
     shortest_step: float = parameter(
         1.0,
         "Lower: more steps until the position counts as found.",
-        minimum=0.01,
-        maximum=100.0,
+        bounds=(0.01, 100.0),
         unit="px",
         source="Comaniciu 2003 section 4.2 (epsilon)",
         tuned=True,

@@ -60,8 +60,7 @@ class ColourParameters(ParticleParameters):
     sigma: float = parameter(
         8.0,
         "About the vehicle's speed: less loses fast vehicles, more follows similar vehicles.",
-        minimum=0.01,
-        maximum=1000.0,
+        bounds=(0.01, 1000.0),
         unit="px/frame",
         source="P1 eq. 7",
         tuned=True,

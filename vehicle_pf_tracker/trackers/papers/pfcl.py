@@ -44,24 +44,21 @@ class LineParameters:
     sigma_v: float = parameter(
         0.35,
         "Smaller: weights fall faster as a particle's lines depart from the reference.",
-        minimum=1e-3,
-        maximum=100.0,
+        bounds=(1e-3, 100.0),
         source="Xiong 2004 (no value printed)",
         tuned=True,
     )
     bins: int = parameter(
         8,
         "More: finer directions, more easily upset by noise.",
-        minimum=1,
-        maximum=90,
+        bounds=(1, 90),
         unit="bins over 180 degrees",
         effect="relearns",
     )
     edge_threshold: float = parameter(
         150.0,
         "Higher: only edges of more contrast make lines.",
-        minimum=1.0,
-        maximum=2000.0,
+        bounds=(1.0, 2000.0),
         unit="levels of 255",
         effect="relearns",
         tuned=True,
@@ -69,8 +66,7 @@ class LineParameters:
     shortest: int = parameter(
         6,
         "Higher: short lines, and the noise among them, are left out.",
-        minimum=2,
-        maximum=1000,
+        bounds=(2, 1000),
         unit="px",
         effect="relearns",
     )

@@ -57,8 +57,7 @@ class RepeatedResamplingParameters(ColourParameters):
     sigma: float = parameter(
         14.0,
         "About 1.75 times the speed: less loses fast vehicles, more follows similar vehicles.",
-        minimum=0.01,
-        maximum=1000.0,
+        bounds=(0.01, 1000.0),
         unit="px/frame",
         source="P3 Table I step 5, interpretation 23",
         tuned=True,
@@ -66,8 +65,7 @@ class RepeatedResamplingParameters(ColourParameters):
     jitter: float = parameter(
         0.5,
         "Larger: regenerated particles lie further from the ones they are copies of.",
-        minimum=0.0,
-        maximum=10.0,
+        bounds=(0.0, 10.0),
         unit="share of sigma",
         source="P3 Table I step 16, interpretation 23",
         tuned=True,
@@ -83,8 +81,7 @@ class RepeatedResamplingParameters(ColourParameters):
     most_passes: int = parameter(
         20,
         "Lower: a frame takes less time at most.",
-        minimum=0,
-        maximum=1000,
+        bounds=(0, 1000),
         unit="passes/frame",
         source="P3 section VI",
     )
@@ -226,8 +223,7 @@ class OcclusionTestParameters:
     jitter: float = parameter(
         0.25,
         "Larger: searches further around the best particle.",
-        minimum=0.0,
-        maximum=10.0,
+        bounds=(0.0, 10.0),
         unit="share of sigma",
         source="P3 Table II step 17, interpretation 23",
     )
@@ -240,8 +236,7 @@ class AdaptiveParameters(RepeatedResamplingParameters):
     low_weight: float = parameter(
         1.0,
         "Higher: more particles are replaced in each pass.",
-        minimum=0.0,
-        maximum=100.0,
+        bounds=(0.0, 100.0),
         unit="of the mean weight 1/N",
         source="P3 Table II step 19, interpretation 23",
         tuned=True,

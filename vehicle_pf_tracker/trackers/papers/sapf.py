@@ -100,24 +100,21 @@ class AnnealingParameters:
     layers: int = parameter(
         4,
         "More: the search narrows in smaller steps, at the time of num_particles each.",
-        minimum=1,
-        maximum=50,
+        bounds=(1, 50),
         source="Deutscher 2000 section 3",
         tuned=True,
     )
     survival: float = parameter(
         0.5,
         "Lower: each layer keeps fewer particles, and settles on a maximum sooner.",
-        minimum=0.01,
-        maximum=1.0,
+        bounds=(0.01, 1.0),
         unit="share of the particles",
         source="Deutscher 2000 section 3 (alpha)",
     )
     decay: float = parameter(
         0.6,
         "Lower: later layers spread their particles less.",
-        minimum=0.01,
-        maximum=1.0,
+        bounds=(0.01, 1.0),
         unit="of the layer before",
         source="in place of Deutscher's tie, see tied",
         tuned=True,
@@ -131,8 +128,7 @@ class AnnealingParameters:
     largest_rate: float = parameter(
         1.0,
         "Higher: layers may weight more sharply than the likelihood, to let fewer survive.",
-        minimum=0.01,
-        maximum=1e6,
+        bounds=(0.01, 1e6),
         source="Deutscher 2000 section 3 (beta)",
     )
 

@@ -31,24 +31,21 @@ class RoadMotionParameters:
         -0.2,
         "Row of the horizon, 0 the upper border and 1 the lower one; negative: above the image. "
         "Far below zero: vehicles keep their size and speed in px.",
-        minimum=-100.0,
-        maximum=0.9,
+        bounds=(-100.0, 0.9),
         unit="of the image's height",
         tuned=(-0.5, 0.3),
     )
     acceleration: float = parameter(
         2.0,
         "Larger: follows brakes and turns faster; a hidden vehicle is found over a wider place.",
-        minimum=0.01,
-        maximum=50.0,
+        bounds=(0.01, 50.0),
         unit="m/s^2",
         tuned=(0.7, 5.0),
     )
     top_speed: float = parameter(
         25.0,
         "Larger: a new vehicle is looked for further away in its second frame.",
-        minimum=0.1,
-        maximum=100.0,
+        bounds=(0.1, 100.0),
         unit="m/s",
     )
 
@@ -60,24 +57,21 @@ class DetectionParameters:
     edge_noise: float = parameter(
         0.05,
         "Larger: boxes are smoothed more.",
-        minimum=0.001,
-        maximum=0.5,
+        bounds=(0.001, 0.5),
         unit="of the size",
         tuned=(0.02, 0.1),
     )
     covered: float = parameter(
         2.5,
         "Smaller: an edge that jumps inward is sooner taken to be covered and not measured.",
-        minimum=0.5,
-        maximum=20.0,
+        bounds=(0.5, 20.0),
         unit="standard deviations",
         tuned=(1.5, 4.0),
     )
     colour_cost: float = parameter(
         8.0,
         "Higher: colours count more in deciding which detection is which vehicle; 0: not at all.",
-        minimum=0.0,
-        maximum=100.0,
+        bounds=(0.0, 100.0),
         tuned=(0.0, 20.0),
     )
 
@@ -89,24 +83,21 @@ class BirthParameters:
     matches: int = parameter(
         3,
         "More: a new vehicle is reported later, and fewer false ones are.",
-        minimum=1,
-        maximum=100,
+        bounds=(1, 100),
         unit="detections",
         tuned=(2, 6),
     )
     evidence: float = parameter(
         3.0,
         "Higher: a new vehicle is reported later, and fewer false ones are.",
-        minimum=0.0,
-        maximum=8.0,
+        bounds=(0.0, 8.0),
         unit="log odds",
         tuned=(1.0, 6.0),
     )
     displacement: float = parameter(
         0.4,
         "Larger: unless its scores speak for it, a vehicle is reported after a longer way.",
-        minimum=0.0,
-        maximum=10.0,
+        bounds=(0.0, 10.0),
         unit="of the width",
         tuned=(0.1, 1.0),
     )
@@ -146,23 +137,20 @@ class DetectorParameters:
     min_score: float = parameter(
         0.1,
         "Higher: fewer false alarms, more vehicles missed; the tracker itself weighs scores.",
-        minimum=0.0,
-        maximum=1.0,
+        bounds=(0.0, 1.0),
         read_only=True,
     )
     overlap: float = parameter(
         0.65,
         "Higher: more of the boxes that overlap are kept, as intersection over union.",
-        minimum=0.05,
-        maximum=1.0,
+        bounds=(0.05, 1.0),
         read_only=True,
     )
     input_size: int = parameter(
         640,
         "Longer side of the network's input where the file leaves it open; larger finds smaller "
         "vehicles, and takes longer.",
-        minimum=32,
-        maximum=4096,
+        bounds=(32, 4096),
         unit="px",
         read_only=True,
     )
@@ -170,15 +158,13 @@ class DetectorParameters:
         0.5,
         "Longer: an image waits longer for its detections from a topic, and a detector that has "
         "stopped delays everything for longer.",
-        minimum=0.0,
-        maximum=60.0,
+        bounds=(0.0, 60.0),
         unit="s",
     )
     every: int = parameter(
         1,
         "Above 1: the detector of a topic answers every k-th image, and the others do not wait.",
-        minimum=1,
-        maximum=1000,
+        bounds=(1, 1000),
         unit="images",
     )
 
@@ -195,28 +181,24 @@ class TrafficParameters:
     seed: int = parameter(
         0,
         "Seed of everything random; -1: another one in each run, which is reported.",
-        minimum=-1,
-        maximum=2**31 - 1,
+        bounds=(-1, 2**31 - 1),
         effect="restarts",
     )
     num_particles: int = parameter(
         50,
         "More: steadier where pixels alone hold a vehicle, at more time per frame.",
-        minimum=10,
-        maximum=10_000,
+        bounds=(10, 10_000),
     )
     lost_after: float = parameter(
         2.0,
         "Longer: a hidden vehicle is predicted for longer before it is LOST.",
-        minimum=0.0,
-        maximum=60.0,
+        bounds=(0.0, 60.0),
         unit="s",
     )
     forgotten_after: float = parameter(
         3.0,
         "Longer: a LOST vehicle keeps its number for longer, should it reappear.",
-        minimum=0.0,
-        maximum=600.0,
+        bounds=(0.0, 600.0),
         unit="s",
     )
     pixels: bool = parameter(True, "Off: a vehicle that is not detected is only predicted.")
