@@ -75,7 +75,6 @@ PROGRAMS = {
     ),
     "laboratory.fusion_scene_pictures": Program(f"{{out}} --only {PICTURE}", (f"{PICTURE}.webp",)),
     "laboratory.fusion_scenes": Program("--scenes bridge --seeds 1 -o {out}/a.md", ("a.md",)),
-    "laboratory.hostile_images": Program("--side 64", printed="| PNG, interlaced | 64x36 |"),
     "laboratory.road_speed": Program(
         "--seeds 1 --speeds 130 --variant apf -o {out}/a.md", ("a.md",), "| all | pairs |"
     ),

@@ -23,10 +23,8 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image import (
-    correlation_filter,
     gradient_cells,
     mean_shift,
-    shared_motion,
     spectra,
 )
 from vehicle_pf_tracker.image.colour import JointColour
@@ -63,14 +61,7 @@ class Kernels:
     name = "opencv"
 
     gradient_cells = staticmethod(gradient_cells.gradient_cells)
-    take_filter_step = staticmethod(spectra.take_filter_step)
     correlated = staticmethod(spectra.correlated)
-    shifted = staticmethod(spectra.shifted)
-    climbed = staticmethod(correlation_filter.climbed)
-    shared_similarity = staticmethod(shared_motion.shared_similarity)
-    staying = staticmethod(shared_motion.staying)
-    shared_stretch = staticmethod(shared_motion.shared_stretch)
-    carried_share = staticmethod(shared_motion.carried_share)
 
     def __init__(self, notices: Sequence[str] = ()) -> None:
         self.notices = notices

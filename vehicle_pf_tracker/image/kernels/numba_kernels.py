@@ -24,7 +24,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.kernels import numba_jit, numba_shared_motion, numba_spectra
+from vehicle_pf_tracker.image.kernels import numba_jit
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.kernels.numba_edges import count_directions
 from vehicle_pf_tracker.image.kernels.numba_gradient_cells import gradient_cells
@@ -47,6 +47,7 @@ from vehicle_pf_tracker.image.kernels.numba_mean_shift import (
     ellipse,
     shift_kernels,
 )
+from vehicle_pf_tracker.image.kernels.numba_spectra import correlated
 from vehicle_pf_tracker.image.kernels.numba_windows import (
     Counts,
     Pixels,
@@ -78,14 +79,7 @@ class NumbaKernels(Kernels):
     name = "numba"
 
     gradient_cells = staticmethod(gradient_cells)
-    take_filter_step = staticmethod(numba_spectra.take_filter_step)
-    correlated = staticmethod(numba_spectra.correlated)
-    shifted = staticmethod(numba_spectra.shifted)
-    climbed = staticmethod(numba_spectra.climbed)
-    shared_similarity = staticmethod(numba_shared_motion.shared_similarity)
-    staying = staticmethod(numba_shared_motion.staying)
-    shared_stretch = staticmethod(numba_shared_motion.shared_stretch)
-    carried_share = staticmethod(numba_shared_motion.carried_share)
+    correlated = staticmethod(correlated)
 
     def __init__(self) -> None:
         super().__init__(numba_jit.notices())
