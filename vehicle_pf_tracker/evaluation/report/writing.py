@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, astuple, dataclass
+from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -152,22 +152,6 @@ def _plain(summaries: Summaries) -> dict[str, dict[str, Any] | None]:
     return {key: None if found is None else asdict(found) for key, found in summaries.items()}
 
 
-@dataclass(frozen=True, slots=True)
-class ReportOptions:
-    """Parts of a report besides the page and the summaries.
-
-    Attributes
-    ----------
-    images : bool
-        True for stills of the recordings in the page.
-    recordings : bool
-        True for recordings with truth and all estimates, in ``estimates/``.
-    """
-
-    images: bool = True
-    recordings: bool = False
-
-
 class Report(NamedTuple):
     """A report that was written: its files, the page first, and the results it shows."""
 
@@ -178,7 +162,9 @@ class Report(NamedTuple):
 
 def write_report(
     folder: Path,
-    options: ReportOptions | None = None,
+    *,
+    images: bool = True,
+    recordings: bool = False,
     notify: Callable[[str], object] = lambda _: None,
     on_stage: Callable[[str], object] = lambda _: None,
 ) -> Report:
@@ -190,8 +176,10 @@ def write_report(
     ----------
     folder : Path
         Folder of an evaluation.
-    options : ReportOptions or None
-        Parts to write; None writes the page and the summaries.
+    images : bool
+        True for stills of the recordings in the page.
+    recordings : bool
+        True for recordings with truth and all estimates, in ``estimates/``.
     notify : callable
         Called with a sentence for each file that could not be made.
     on_stage : callable
@@ -202,15 +190,14 @@ def write_report(
     InputError
         If it is not an evaluation folder, or cannot be written to.
     """
-    options = options or ReportOptions()
     on_stage("scoring the runs")
     evaluation = score_folder(EvaluationFolder(folder))
     aggregates = aggregate(evaluation)
     page = folder / "report.html"
     on_stage("drawing the page")
-    write_text(page, make_page(evaluation, aggregates, images=options.images))
+    write_text(page, make_page(evaluation, aggregates, images=images))
     written = [page, *_write_summaries(folder, evaluation, aggregates)]
-    if options.recordings:
+    if recordings:
         written += write_estimate_recordings(evaluation, notify, on_stage)
     return Report(written, evaluation, aggregates)
 
