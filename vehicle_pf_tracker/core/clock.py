@@ -23,6 +23,7 @@ Association of truth and estimates: by stamp, nearest first, one to one.
 from __future__ import annotations
 
 import bisect
+import heapq
 import math
 import statistics
 from collections.abc import Sequence
@@ -147,21 +148,20 @@ def associate(first_ns: Sequence[int], second_ns: Sequence[int], max_diff: float
         If `max_diff` is negative or not finite.
     """
     limit = max_diff_ns(max_diff)
-    order = sorted(range(len(second_ns)), key=second_ns.__getitem__)
-    stamps = [second_ns[j] for j in order]
-    near = [
-        (abs(stamps[place] - stamp), i, place)
-        for i, stamp in enumerate(first_ns)
-        for place in range(
-            bisect.bisect_left(stamps, stamp - limit), bisect.bisect_right(stamps, stamp + limit)
-        )
-    ]
-    pairs: dict[int, int] = {}
+    free = sorted((stamp, index) for index, stamp in enumerate(second_ns))
     taken: set[int] = set()
-    for _, i, place in sorted(near):
-        if i not in pairs and place not in taken:
-            pairs[i] = order[place]
-            taken.add(place)
+    offers = [offer for i, stamp in enumerate(first_ns) for offer in _offers(free, stamp, i, limit)]
+    heapq.heapify(offers)
+    pairs: dict[int, int] = {}
+    while offers:
+        _, i, j = heapq.heappop(offers)
+        if j in taken:  # so offer what is nearest among the rest
+            for offer in _offers(free, first_ns[i], i, limit):
+                heapq.heappush(offers, offer)
+            continue
+        pairs[i] = j
+        taken.add(j)
+        del free[bisect.bisect_left(free, (second_ns[j], j))]
     return dict(sorted(pairs.items()))
 
 
@@ -170,3 +170,17 @@ def max_diff_ns(max_diff: float) -> int:
     if not math.isfinite(max_diff) or max_diff < 0:
         raise InputError(f"the largest difference of stamps must be seconds >= 0, not {max_diff}")
     return round(max_diff * 1e9)
+
+
+def _offers(
+    free: Sequence[tuple[int, int]], stamp: int, i: int, limit: int
+) -> list[tuple[int, int, int]]:
+    """Return (difference in ns, `i`, j) for the nearest free j, as a list of one or none."""
+    right = bisect.bisect_left(free, (stamp, -1))
+    sides = [right] if right < len(free) else []
+    if right > 0:  # of repeated stamps the first
+        sides.append(bisect.bisect_left(free, (free[right - 1][0], -1)))
+    near = [(abs(free[side][0] - stamp), side) for side in sides]
+    return [
+        (distance, i, free[side][1]) for distance, side in sorted(near)[:1] if distance <= limit
+    ]
