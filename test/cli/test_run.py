@@ -118,17 +118,6 @@ def test_the_target_of_the_command_line_goes_before_that_of_the_file(run, bag):
     assert run(bag, *words, "--target", TARGET)[2]["target"] == [8.0, 24.0, 16.0, 12.0]
 
 
-def test_the_path_through_occlusions_is_written_on_request_and_not_scored(run, bag, tmp_path):
-    plain = run(bag)[1]
-    header = (tmp_path / "out" / "estimates.csv").read_text().splitlines()[0]
-    assert header.endswith("step_ms")
-    rows, metrics, _ = run(bag, "--interpolate-occlusions")
-    header, first, *_ = (tmp_path / "out" / "estimates.csv").read_text().splitlines()
-    assert header.endswith("step_ms,x_interpolated,y_interpolated")
-    assert first.endswith(f",{rows[0].x},{rows[0].y}")
-    assert metrics["rmse_px"] == plain["rmse_px"]
-
-
 def test_a_road_adds_its_columns(tmp_path):
     recording = record(tmp_path / "rec")
     pairs = "0,0=0,0; 96,0=9.6,0; 96,64=9.6,6.4; 0,64=0,6.4"

@@ -159,8 +159,8 @@ def test_doubtful_targets_are_followed_with_a_notice(run, tmp_path, capsys):
     recording = record(tmp_path / "bag", truths=())
     assert run(recording, "--target", "8,24,3,2", "--target", "big:0,0,90,60") == 0
     error = capsys.readouterr().err
-    assert "the target 1 is doubtful: it is only 3 x 2 px large" in error
-    assert "the target big is doubtful: it covers 88% of the image" in error
+    assert "the target 8,24,3,2 is doubtful: it is only 3 x 2 px large" in error
+    assert "the target 0,0,90,60 is doubtful: it covers 88% of the image" in error
 
 
 def test_a_run_leaves_nothing_of_the_one_before(run, video, tmp_path):
