@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
 _GRID_ONLY = (
-    "params", "without_defaults", "baseline_model", "max_rmse", "topic", "recordings", "figures",
+    "params", "without_defaults", "baseline_model", "max_rmse", "topic", "recordings",
 )  # fmt: skip
 """Options of the grid that do not apply."""
 

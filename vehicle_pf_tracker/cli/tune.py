@@ -208,10 +208,10 @@ def _compare(
     )
     with telling("compare") as on_progress:
         complete(plan, folder, on_this_machine(request.workers), on_progress)
-    write_report(folder)
+    report = write_report(folder)
     held_out = [source.name for source, _ in recordings if source not in what.sources]
     metrics = dict.fromkeys([what.objective.metric, "rmse_px"])
-    return compare(plan, folder, held_out, list(metrics))
+    return compare(report.evaluation, held_out, list(metrics))
 
 
 def _write_best(

@@ -71,15 +71,12 @@ class TableCell:
         True if no other in its column is better.
     note : str
         Note shown on demand.
-    heat : float
-        Tint, -1 to 1: its strength and direction.
     """
 
     text: str
     value: float | None = None
     best: bool = False
     note: str = ""
-    heat: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

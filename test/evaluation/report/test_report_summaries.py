@@ -75,7 +75,6 @@ def test_the_best_mean_rank_comes_first(aggregates):
     assert ranks == sorted(ranks)
     assert aggregates.order == tuple(r.system for r in aggregates.rankings["success_auc"].ranks)
     assert set(aggregates.order) == set(VARIANTS)  # the baseline has no result
-    assert len(aggregates.pairs) == 3
 
 
 def test_recoveries_are_counted_over_all_runs(aggregates, evaluation):
@@ -105,7 +104,6 @@ def test_json_is_json_and_has_everything(evaluation, aggregates):
     assert document["overall"]["pf"]["rmse_px"]["count"] == len(HIDDEN)
     assert set(document["recordings"]) == set(HIDDEN)
     assert document["rankings"]["rmse_px"]["recordings"] == len(HIDDEN)
-    assert len(document["pairs"]["success_auc"]) == 3
     assert len(document["failed"]) == len(HIDDEN) * len(SEEDS)
 
 

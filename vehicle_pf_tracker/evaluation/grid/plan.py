@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -107,7 +107,7 @@ class Plan:
         return {
             "format": FORMAT,
             "command": self.command,
-            "recordings": [source.to_json() for source in self.recordings],
+            "recordings": [asdict(source) for source in self.recordings],
             "systems": [
                 {**system.to_json(), "seeds": list(seeds_of(system, self.seeds))}
                 for system in self.systems

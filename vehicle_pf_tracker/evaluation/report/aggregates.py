@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -23,14 +24,9 @@ from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.statistics import (
     FEWEST_RECORDINGS,
-    PairedTest,
     Ranking,
-    RunKey,
     Summary,
-    compare_pairs,
     rank_systems,
-    recording_means,
-    smallest_adjusted_p,
     summarise,
 )
 
@@ -201,8 +197,6 @@ class Aggregates:
         Summaries over the means of the recordings, so that long ones do not outweigh short ones.
     rankings : mapping of str to Ranking
         Rankings by the key of a ranked column.
-    pairs : tuple of PairedTest
-        Tests of all pairs, by the first ranked column.
     recoveries : mapping of str to (int, int)
         Total occlusions recovered from and judged, of all runs of a system.
     """
@@ -211,7 +205,6 @@ class Aggregates:
     by_recording: Mapping[tuple[str, str], Summaries]
     overall: Mapping[str, Summaries]
     rankings: Mapping[str, Ranking]
-    pairs: tuple[PairedTest, ...]
     recoveries: Mapping[str, tuple[int, int]]
 
 
@@ -223,7 +216,10 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
         for label, some in runs.items()
     }
     means = {
-        label: {key: recording_means(found) for key, found in columns.items()}
+        label: {
+            key: {recording: statistics.fmean(some) for recording, some in found.items()}
+            for key, found in columns.items()
+        }
         for label, columns in values.items()
     }
     rankings = {
@@ -243,8 +239,7 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
         order=order,
         by_recording={
             (entry.name, label): {
-                key: summarise([found[run] for run in found if run.recording == entry.name])
-                for key, found in columns.items()
+                key: summarise(found.get(entry.name, [])) for key, found in columns.items()
             }
             for entry in evaluation.recordings
             for label, columns in values.items()
@@ -255,18 +250,17 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
             for label in order
         },
         rankings=rankings,
-        pairs=tuple(compare_pairs({label: values[label][main] for label in order})),
         recoveries={label: _recoveries(runs[label]) for label in order},
     )
 
 
-def _values(runs: Sequence[ScoredRun], column: Column) -> dict[RunKey, float]:
-    """Return a metric of runs, where they have it."""
-    return {
-        RunKey(run.recording, run.seed): value
-        for run in runs
-        if (value := column.value(run.metrics)) is not None
-    }
+def _values(runs: Sequence[ScoredRun], column: Column) -> dict[str, list[float]]:
+    """Return a metric of the runs that have it, by recording."""
+    found: dict[str, list[float]] = {}
+    for run in runs:
+        if (value := column.value(run.metrics)) is not None:
+            found.setdefault(run.recording, []).append(value)
+    return found
 
 
 def _recoveries(runs: Sequence[ScoredRun]) -> tuple[int, int]:
@@ -280,30 +274,6 @@ def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
     sentences += [_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED)]
     sentences.append(_failed(evaluation))
     return [sentence for sentence in sentences if sentence]
-
-
-def power(aggregates: Aggregates) -> str:
-    """Say what the paired tests can find at best."""
-    tests = [test for test in aggregates.pairs if test.difference is not None]
-    if not tests:
-        return ""
-    recordings = max(test.difference.count for test in tests if test.difference)
-    if recordings < FEWEST_RECORDINGS:
-        return (
-            f"With {counted(recordings, 'recording')} there are too few samples for any test: "
-            f"at least {FEWEST_RECORDINGS} are needed, whatever the number of seeds."
-        )
-    least = smallest_adjusted_p(recordings, len(tests))
-    text = (
-        f"With {counted(recordings, 'recording')} and {counted(len(tests), 'pair')} no adjusted "
-        f"p value can be below {least:.2g}"
-    )
-    if least < 0.05:
-        return f"{text}."
-    return (
-        f"{text}, so that too few recordings are there for any pair to differ significantly: "
-        "add recordings, or compare fewer systems."
-    )
 
 
 def _leader(aggregates: Aggregates) -> list[str]:
