@@ -40,7 +40,7 @@ from vehicle_pf_tracker.cli.console import (
 )
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
-from vehicle_pf_tracker.core.errors import InputError, check_address_space, suggestion
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 EXTRAS: Mapping[str, str] = MappingProxyType(
     {
@@ -147,7 +147,6 @@ def bag_replay(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(words: list[str]) -> int:
-    check_address_space()
     try:
         args = make_parser(words).parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
