@@ -31,7 +31,6 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     STEP,
     SUCCESS,
     Aggregates,
-    Summaries,
     aggregate,
     findings,
 )
@@ -79,18 +78,13 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     return "\n".join(parts)
 
 
-def summary_csv(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
+def summary_csv(aggregates: Aggregates) -> str:
     """Return every mean with its spread and interval, a line each, with every digit."""
-    everything = [(ALL_RECORDINGS, label, found) for label, found in aggregates.overall.items()]
-    everything += [
-        (name, label, found)
-        for entry in evaluation.recordings
-        for (name, label), found in aggregates.by_recording.items()
-        if name == entry.name
-    ]
+    places = {ALL_RECORDINGS: aggregates.overall, **aggregates.recordings}
     rows = [
         [recording, system, column.key, column.unit, *astuple(found)]
-        for recording, system, summaries in everything
+        for recording, by_system in places.items()
+        for system, summaries in by_system.items()
         for column in COLUMNS
         if (found := summaries.get(column.key)) is not None
     ]
@@ -131,25 +125,10 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
             }
             for column in COLUMNS
         },
-        "order": list(aggregates.order),
-        "overall": {label: _plain(found) for label, found in aggregates.overall.items()},
-        "recordings": {
-            entry.name: {
-                label: _plain(found)
-                for (name, label), found in aggregates.by_recording.items()
-                if name == entry.name
-            }
-            for entry in evaluation.recordings
-        },
-        "rankings": {key: asdict(ranking) for key, ranking in aggregates.rankings.items()},
         "findings": findings(evaluation, aggregates),
-        "recoveries": {label: list(found) for label, found in aggregates.recoveries.items()},
         "failed": [asdict(cell) for cell in evaluation.failed],
+        **asdict(aggregates),
     }
-
-
-def _plain(summaries: Summaries) -> dict[str, dict[str, Any] | None]:
-    return {key: None if found is None else asdict(found) for key, found in summaries.items()}
 
 
 class Report(NamedTuple):
@@ -207,7 +186,7 @@ def _write_summaries(
 ) -> list[Path]:
     texts = {
         "summary.md": summary_markdown(evaluation, aggregates),
-        "summary.csv": summary_csv(evaluation, aggregates),
+        "summary.csv": summary_csv(aggregates),
         "summary.tex": summary_tex(aggregates),
     }
     for name, text in texts.items():
