@@ -16,19 +16,18 @@
 
 from __future__ import annotations
 
-import os
+import functools
 import shutil
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import astuple, dataclass, field
 from datetime import datetime, timezone
-from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.outputs import output_errors
+from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, GridCell, Plan, VariantSystem
@@ -134,80 +133,13 @@ def _run_baseline(
     }
 
 
-_PARTIAL = ".partial"
-
-
-class CellStore:
-    """Stores cells in an evaluation folder.
-
-    A cell is written beside its folder and then moved there. What a killed run left half written is
-    removed.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of the evaluation.
-
-    Raises
-    ------
-    InputError
-        If nothing can be written there; also from `add`.
-    """
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = make_folder(folder)
-        self._scoring = scoring_digest()
-        with output_errors(folder):
-            for left in folder.glob(f"**/*{_PARTIAL}"):
-                shutil.rmtree(left, ignore_errors=True)
-
-    def has(self, cell: GridCell) -> bool:
-        """Return whether a valid result of the cell is stored; one that failed is tried again."""
-        path = cell.folder(self._folder)
-        if damage(path):
-            return False
-        run = read_document(path / RUN)
-        return run.get("key") == cell.key() and run.get("scored_by") == self._scoring
-
-    def is_damaged(self, cell: GridCell) -> bool:
-        """Return whether something is stored for the cell that is not as it was written."""
-        path = cell.folder(self._folder)
-        return path.is_dir() and not (path / FAILED).is_file() and bool(damage(path))
-
-    def add(self, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
-        """Store the outcome of a cell, replacing that of an earlier run."""
-        target = cell.folder(self._folder)
-        partial = target.with_name(f".{target.name}.{os.getpid()}{_PARTIAL}")
-        with output_errors(partial):
-            shutil.rmtree(partial, ignore_errors=True)
-            self._write(partial, cell, outcome, command)
-            shutil.rmtree(target, ignore_errors=True)
-            partial.rename(target)
-            flush_folder(target.parent)
-
-    def _write(self, path: Path, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
-        if outcome.metrics is None:
-            write_json(make_folder(path) / FAILED, {"reason": outcome.reason})
-            return
-        run: dict[str, Any] = {
-            **outcome.run,
-            "command": command,
-            "key": cell.key(),
-            "scored_by": self._scoring,
-        }
-        results = RunFolder(path)
-        results.write_run(outcome.rows, run)
-        results.write_metrics(outcome.metrics.to_json())
-        seal(path)
-
-
 Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[Turn[GridCell, CellResult]]]
 """Runs cells, in any order, and reports each that begins or ends."""
 
 
 def on_this_machine(workers: int) -> Runner:
     """Return what runs cells in `workers` processes; results do not depend on how many."""
-    return partial(run_in_processes, run_cell, workers=workers)
+    return functools.partial(run_in_processes, run_cell, workers=workers)
 
 
 def complete(
@@ -237,19 +169,49 @@ def complete(
     InputError
         If the folder cannot be written, or a process is ended from outside.
     """
-    store = CellStore(folder)
+    with output_errors(folder):
+        for left in make_folder(folder).glob("**/.seed-*"):  # half written by a run that was killed
+            shutil.rmtree(left, ignore_errors=True)
     plan.write(folder)
-    missing = [cell for cell in plan.cells() if not store.has(cell)]
-    damaged = [cell.label for cell in missing if store.is_damaged(cell)]
+    missing = [cell for cell in plan.cells() if not _is_stored(cell, cell.folder(folder))]
+    damaged = [cell.label for cell in missing if _is_damaged(cell.folder(folder))]
     if damaged:
         notify(_damage_notice(damaged))
     done = 0
     for turn in runner(missing):
         if turn.ended is not None:
-            store.add(*turn.ended, plan.command)
+            cell, outcome = turn.ended
+            _store(cell, outcome, cell.folder(folder), plan.command)
             done += 1
         on_progress(Progress(done, len(missing), tuple(cell.label for cell in turn.running)))
     return len(missing)
+
+
+def _is_stored(cell: GridCell, folder: Path) -> bool:
+    """Return whether the folder has a valid result of the cell; one that failed is tried again."""
+    if damage(folder):
+        return False
+    run = read_document(folder / RUN)
+    return run.get("key") == cell.key() and run.get("scored_by") == scoring_digest()
+
+
+def _is_damaged(folder: Path) -> bool:
+    """Return whether the folder holds a result that is not as it was written."""
+    return folder.is_dir() and not (folder / FAILED).is_file() and bool(damage(folder))
+
+
+def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]) -> None:
+    """Store the outcome of a cell, replacing that of an earlier run."""
+    with output_errors(folder), whole_folder(folder) as partial:
+        if outcome.metrics is None:
+            write_json(partial / FAILED, {"reason": outcome.reason})
+        else:
+            keys = {"command": command, "key": cell.key(), "scored_by": scoring_digest()}
+            results = RunFolder(partial)
+            results.write_run(outcome.rows, {**outcome.run, **keys})
+            results.write_metrics(outcome.metrics.to_json())
+            seal(partial)
+    flush_folder(folder.parent)
 
 
 _MOST_NAMED = 5
