@@ -32,7 +32,7 @@ from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.plots import OUTLINE
 from vehicle_pf_tracker.evaluation.scores import Scores
-from vehicle_pf_tracker.offline.estimates import interpolate_occlusions
+from vehicle_pf_tracker.trackers.estimate import Mode
 
 _Judge: TypeAlias = Callable[[str, Sequence[Result], Sequence[Scores]], ex.Finding]
 
@@ -98,7 +98,7 @@ def _draw(axes: Axes, frame: Frame, scored: Scores, until: int) -> None:
     axes.imshow(frame.mean(axis=2), cmap="gray", vmin=0, vmax=255, extent=(0, width, height, 0))
     rows = [f.row for f in scored.frames[:until]]
     path = [row.position for row in rows if row.position is not None]
-    line = [point for point in interpolate_occlusions(rows) if point is not None]
+    line = [row.position for row in rows if row.mode == Mode.TRACKING and row.position is not None]
     # Black on white and white on black, so that both are seen on any ground.
     axes.plot(*zip(*line, strict=True), color="white", lw=3.6)
     axes.plot(
@@ -134,8 +134,7 @@ def _verdict(
             claim("in the clear, the regular mode is used", _regular),
             claim("occlusion mode is entered during total occlusions", _occluded),
         ),
-        f"{video3.SETTING} {len(size.seeds)} seeds; the picture shows the first, and "
-        "`run --interpolate-occlusions` writes such a path for any recording.",
+        f"{video3.SETTING} {len(size.seeds)} seeds; the picture shows the first.",
     )
 
 

@@ -14,7 +14,7 @@
 
 """Write the lock files anew: `python requirements/lock.py python3.10 python3.11 python3.12 ...`.
 
-`--only NAME` before the interpreters writes that lock alone, baselines or docs; `--hashes` and no
+`--only NAME` before the interpreters writes that lock alone (docs needs none); `--hashes` and no
 interpreters keep all versions and write the hashes anew.
 
 For every interpreter and every lock file, pip resolves the extras of setup.py in a throw-away
@@ -48,7 +48,7 @@ COLCON = (
     "colcon-ros",
     "colcon-test-result",
 )
-DOCS = (*BASE, "mkdocs-material", "mkdocstrings[python]", "build", "twine")
+DOCS = ("mkdocs-material", "mkdocstrings[python]", "build", "twine")
 NOBLE = (  # what Ubuntu 24.04 has from apt; its Python is 3.12
     SETUPTOOLS,
     f"{ROOT}[test]",
@@ -88,10 +88,21 @@ def main() -> None:
             header, *pins = pins_of(path)
             path.write_text(hashed(header, pins))
         return
+    if args.only != "docs":
+        lock_by_interpreters(args.interpreters, args.only)
+    if args.only != "baselines":
+        lock_docs()
+
+
+def lock_by_interpreters(interpreters: list[str], only: str | None) -> None:
+    """Write every lock but docs, or the one that is named."""
     locks: dict[str, dict[str, set[str]]] = {}
-    for interpreter in args.interpreters:
+    for interpreter in interpreters:
         version = run(interpreter, "-c", "import sys; print('%d.%d' % sys.version_info[:2])")[0]
-        pins = pins_with(interpreter, version, args.only)
+        baselines = resolve(interpreter, BASELINES)
+        pins = {"baselines": {pin for pin in baselines if not pin.startswith(OVERWRITES_CONTRIB)}}
+        if only is None:
+            pins |= own_pins(interpreter, version)
         for lock, found in pins.items():
             locks.setdefault(lock, {})[version] = found
     for lock, by_version in locks.items():
@@ -99,22 +110,25 @@ def main() -> None:
         (HERE / f"{lock}.txt").write_text(hashed(header, merged(by_version)))
 
 
-def pins_with(interpreter: str, version: str, only: str | None) -> dict[str, set[str]]:
-    """Return the pins of every lock, or of the one that is named."""
-    pins = {}
-    if only != "docs":
-        found = resolve(interpreter, BASELINES)
-        pins["baselines"] = {pin for pin in found if not pin.startswith(OVERWRITES_CONTRIB)}
-    if only == "baselines":
-        return pins
+def lock_docs() -> None:
+    """Write the lock of what is installed beside locked.txt, resolved for all Pythons at once."""
+    base = pins_of(HERE / "locked.txt")[1:]
+    found = compiled([*base, *DOCS], "--no-annotate")
+    known = {key_of(pin) for pin in base}
+    pins = [pin for pin in found if key_of(pin) not in known]
+    (HERE / "docs.txt").write_text(hashed("# Written by requirements/lock.py.", pins))
+
+
+def own_pins(interpreter: str, version: str) -> dict[str, set[str]]:
+    """Return the pins of every lock that this package itself is installed with."""
     base = resolve(interpreter, BASE)
-    pins["docs"] = resolve(interpreter, DOCS) - base
-    if only is None:
-        pins["locked"] = base
-        pins["ros-jazzy"] = resolve(interpreter, ROS) - base
-        pins["colcon"] = resolve(interpreter, COLCON) - base
-        if version in {"3.10", "3.11", "3.12"}:  # NumPy 1.26 has no wheels for later ones
-            pins["noble"] = resolve(interpreter, NOBLE)
+    pins = {
+        "locked": base,
+        "ros-jazzy": resolve(interpreter, ROS) - base,
+        "colcon": resolve(interpreter, COLCON) - base,
+    }
+    if version in {"3.10", "3.11", "3.12"}:  # NumPy 1.26 has no wheels for later ones
+        pins["noble"] = resolve(interpreter, NOBLE)
     return pins
 
 
@@ -147,16 +161,21 @@ def pins_of(path: Path) -> list[str]:
     return [line for line in lines if not line.startswith("    --hash")]
 
 
-def hashed(header: str, pins: list[str]) -> str:
-    """Write a lock: each pin with the hashes of every file of its version."""
+def compiled(requirements: list[str], *options: str) -> list[str]:
+    """Let uv write requirements for every Python that is supported."""
     with tempfile.TemporaryDirectory() as folder:
         run(sys.executable, "-m", "venv", folder)
         run(str(Path(folder, "bin", "pip")), "install", "--quiet", "uv")
         wanted = Path(folder, "pins.in")
-        wanted.write_text("\n".join(pins) + "\n")
-        options = "--quiet --no-deps --universal --generate-hashes --no-header --no-annotate"
+        wanted.write_text("\n".join(requirements) + "\n")
         uv = (str(Path(folder, "bin", "uv")), "pip", "compile", "--python-version", "3.10")
-        found = hashes_by_pin(run(*uv, *options.split(), str(wanted)))
+        return run(*uv, "--quiet", "--universal", "--no-header", *options, str(wanted))
+
+
+def hashed(header: str, pins: list[str]) -> str:
+    """Write a lock: each pin with the hashes of every file of its version."""
+    lines = compiled(pins, "--no-deps", "--generate-hashes", "--no-annotate")
+    found = hashes_by_pin(lines)
     entries = (" \\\n    ".join([pin, *sorted(found[key_of(pin)])]) for pin in pins)
     return "\n".join([header, *entries]) + "\n"
 

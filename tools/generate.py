@@ -26,8 +26,9 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from tools import rooms
+from tools.parameters_page import parameters_page
 from tools.sros2_policy import policy
-from vehicle_pf_tracker.cli.params import all_markdown, default_yaml
+from vehicle_pf_tracker.cli.params import default_yaml
 from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -58,7 +59,7 @@ def generated_files(root: Path = ROOT) -> dict[Path, str]:
     variants, nodes = VARIANTS.values(), NODES.values()
     files = {root / "config" / f"{one.name}.yaml": default_yaml(one) for one in nodes}
     files[root / "config" / "sros2_policy.xml"] = policy(nodes)
-    files[root / "docs" / "parameters.md"] = all_markdown()
+    files[root / "docs" / "parameters.md"] = parameters_page()
     for page, columns in TABLES.items():
         text = (root / page).read_text(encoding="utf-8")
         files[root / page] = replace_table(text, markdown_table(columns, variants))

@@ -177,7 +177,9 @@ def test_a_cut_part_of_a_split_recording_is_named(wholes, tmp_path):
 @given(share=st.floats(0.25, 0.999))  # behind the first truth
 def test_the_truth_of_a_cut_recording_is_whole_up_to_the_cut(record, tmp_path, share):
     folder = tmp_path / "bag"
-    (file,) = (folder if folder.exists() else record(8, compression="none")).glob("*.mcap")
+    (file,) = (folder if folder.exists() else record(8, compression=CompressionType.NONE)).glob(
+        "*.mcap"
+    )
     path = tmp_path / "cut.mcap"
     path.write_bytes(file.read_bytes()[: int(share * file.stat().st_size)])
     recording = Recording(path)
@@ -289,7 +291,7 @@ def test_a_recording_whose_every_chunk_is_damaged_is_an_input_error(record, tmp_
 
 
 def test_images_that_only_the_index_knows_are_an_input_error(record, tmp_path):
-    whole = bytearray(next(record(compression="none").glob("*.mcap")).read_bytes())
+    whole = bytearray(next(record(compression=CompressionType.NONE).glob("*.mcap")).read_bytes())
     (block,) = Recording(tmp_path / "bag").files[0].blocks
     whole[block.offset] = 0x7F  # a record of an unknown kind, which MCAP says to skip
     path = tmp_path / "damaged.mcap"

@@ -19,7 +19,6 @@ With `--traffic`, trackers of many vehicles on folders as MOTChallenge has them.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,7 +44,7 @@ from vehicle_pf_tracker.cli.requests import (
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.grid.plan import Plan
+from vehicle_pf_tracker.evaluation.grid.cells import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
@@ -56,7 +55,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
 _GRID_ONLY = (
-    "params", "without_defaults", "baseline_model", "max_rmse", "topic", "recordings", "figures",
+    "params", "without_defaults", "baseline_model", "max_rmse", "topic", "recordings",
 )  # fmt: skip
 """Options of the grid that do not apply."""
 
@@ -154,17 +153,12 @@ def _parameters(request: TrafficRequest) -> TrafficParameters:
 
 _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")
 """Metrics of the table on the terminal, few enough for its width."""
-_STRESS_MOVED = (
-    "the stress battery is no option of evaluate: in a clone of the repository, run "
-    "`python -m laboratory stress REC… -o DIR`"
-)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Request(TrafficRequest, ReportParts, MaxDiffOption):
     """Request of `evaluate`."""
 
-    stress: str | None = option(nargs="?", const="", help=argparse.SUPPRESS)
     topic: str | None = option(help="the image topic, where recordings have several")
     max_rmse: float | None = option(
         type=float, metavar="PX",
@@ -175,8 +169,6 @@ class Request(TrafficRequest, ReportParts, MaxDiffOption):
 def run(request: Request) -> int:
     """Run the missing cells, write the report, and print the table."""
     check(request)
-    if request.stress is not None:
-        raise UsageError(_STRESS_MOVED)
     sources = request.sources if request.traffic else find_recordings(request.sources)
     try:
         with claimed([Products(request.output)], sources, overwrite=True):

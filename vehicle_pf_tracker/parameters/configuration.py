@@ -51,24 +51,18 @@ class NodeParameters:
     """Transport, start-up and outputs of a node."""
 
     image_transport: str = parameter(
-        "raw",
-        "Which images to subscribe to: image, or image/compressed (JPEG or PNG).",
-        choices=("raw", "compressed"),
-        read_only=True,
-    )
+        "raw", "Which images to subscribe to: image, or image/compressed (JPEG or PNG).",
+        choices=("raw", "compressed"), read_only=True,
+    )  # fmt: skip
     queue_depth: int = parameter(
-        1,
-        "Images that may wait: 1 always takes the newest of a live camera, 10 and more keeps "
+        1, "Images that may wait: 1 always takes the newest of a live camera, 10 and more keeps "
         "every image of a recording.",
-        bounds=(1, 10_000),
-        unit="images",
-        read_only=True,
-    )
+        bounds=(1, 10_000), unit="images", read_only=True,
+    )  # fmt: skip
     autostart: bool = parameter(
-        True,
-        "Configure and activate at start-up; off waits for a lifecycle manager.",
+        True, "Configure and activate at start-up; off waits for a lifecycle manager.",
         read_only=True,
-    )
+    )  # fmt: skip
     output_frame_suffix: str = parameter(
         "",
         "Appended to the images' frame_id in outputs that are in pixels (`_px`, for instance), so "

@@ -77,10 +77,9 @@ class EvidenceParameters:
     """Thresholds of the evidence, relative to its clear level."""
 
     occluded_below: float = share(
-        0.7,
-        "Lower: deeper occlusions are needed before the mode leaves TRACKING.",
+        0.7, "Lower: deeper occlusions are needed before the mode leaves TRACKING.",
         unit="share of the clear level",
-    )
+    )  # fmt: skip
     clear_above: float = share(
         0.8,
         "Higher: more of the vehicle must be visible again before the mode returns to TRACKING.",
@@ -91,10 +90,8 @@ class EvidenceParameters:
         "Similarity below which there is no evidence, whatever the clear level is.",
     )
     level_rate: float = share(
-        0.05,
-        "Higher: the clear level follows the similarity faster.",
-        unit="per frame",
-    )
+        0.05, "Higher: the clear level follows the similarity faster.", unit="per frame",
+    )  # fmt: skip
 
     def validate(self) -> None:
         """Check that the two thresholds are in order."""
@@ -113,18 +110,14 @@ class CommonParameters:
     """Parameters of every variant."""
 
     seed: int = parameter(
-        0,
-        "Same seed, frames and parameters give the same estimates; -1 draws one and reports it.",
-        bounds=(-1, 2**31 - 1),
-        effect="restarts",
-    )
+        0, "Same seed, frames and parameters give the same estimates; -1 draws one and reports it.",
+        bounds=(-1, 2**31 - 1), effect="restarts",
+    )  # fmt: skip
     frame_rate: float = frame_rate_parameter()
     lost_after: float = parameter(
-        5.0,
-        "Longer: the mode stays OCCLUDED longer before it becomes LOST.",
-        bounds=(0.0, 86_400.0),
-        unit="s",
-    )
+        5.0, "Longer: the mode stays OCCLUDED longer before it becomes LOST.",
+        bounds=(0.0, 86_400.0), unit="s",
+    )  # fmt: skip
     kernels: str = parameter(
         "auto",
         "Code that measures windows: numba is several times faster, opencv always available; "

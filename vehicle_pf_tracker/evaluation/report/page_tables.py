@@ -34,10 +34,9 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     listing,
     mean_and_spread_text,
     mean_text,
-    p_value_text,
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
-from vehicle_pf_tracker.evaluation.statistics import ALPHA, PairedTest, Summary
+from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import Header, Table, TableCell
 
 
@@ -58,11 +57,8 @@ def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -
 
 def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Column]) -> Table:
     """Show metrics of one recording, as means and spreads over the seeds."""
-    table = {
-        label: summaries
-        for label in aggregates.order
-        if (summaries := aggregates.by_recording.get((recording, label))) is not None
-    }
+    found = aggregates.recordings[recording]
+    table = {label: found[label] for label in aggregates.order if label in found}
     return _metrics_table(
         table, columns, lambda _, summary, column: mean_and_spread_text(summary, column)
     )
@@ -88,30 +84,6 @@ def ranks_table(aggregates: Aggregates) -> Table:
             row.append(TableCell(place, rank.place, differ and rank.place == 1, note))
             row.append(TableCell(f"{rank.mean_rank:.2f}", rank.mean_rank))
     return Table(headers, rows)
-
-
-def pairs_table(aggregates: Aggregates) -> Table:
-    """Show the mean difference of each pair: the row's system less the column's."""
-    found: dict[tuple[str, str], TableCell] = {}
-    known = [abs(test.difference.mean) for test in aggregates.pairs if test.difference]
-    largest = max(known, default=0.0) or 1.0
-    for test in aggregates.pairs:
-        found[test.first, test.second] = _pair_cell(test, 1, largest)
-        found[test.second, test.first] = _pair_cell(test, -1, largest)
-    order, itself = aggregates.order, TableCell("")
-    rows = {label: [found.get((label, other), itself) for other in order] for label in order}
-    return Table([Header(label) for label in order], rows)
-
-
-def _pair_cell(test: PairedTest, sign: int, largest: float) -> TableCell:
-    if test.difference is None:
-        return TableCell(NO_VALUE)
-    value = sign * test.difference.mean
-    alone = test.p_value is not None and test.p_value < ALPHA
-    mark = "**" if test.significant else "*" if alone else ""
-    p_values = f"p {p_value_text(test.p_value)}, adjusted {p_value_text(test.adjusted_p)}"
-    text = f"{value:+.{RANKED[0].decimals}f}{mark}"
-    return TableCell(text, value, test.significant, p_values, value / largest)
 
 
 def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]]) -> Table | None:

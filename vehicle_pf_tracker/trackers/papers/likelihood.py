@@ -33,17 +33,13 @@ class LikelihoodParameters:
     """Decrease of the weights with the distance of the histograms."""
 
     sigma_v: float = parameter(
-        0.1,
-        "Smaller: weights fall faster as a particle's histogram departs from the reference.",
-        bounds=(1e-3, 100.0),
-        source="P1 eq. 25, interpretation 1 (printed: 1.5)",
-        tuned=True,
-    )
+        0.1, "Smaller: weights fall faster as a particle's histogram departs from the reference.",
+        bounds=(1e-3, 100.0), source="P1 eq. 25, interpretation 1 (printed: 1.5)", tuned=True,
+    )  # fmt: skip
     squared_distance: bool = parameter(
-        True,
-        "False takes the distance unsquared, as printed; the weights are then almost flat.",
+        True, "False takes the distance unsquared, as printed; the weights are then almost flat.",
         source="P1 eq. 25, interpretation 1",
-    )
+    )  # fmt: skip
 
 
 def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Weights:
