@@ -150,15 +150,6 @@ def test_strided_views_give_what_their_copies_give(numba, spread):
             assert np.array_equal(similarity, copied)
 
 
-def test_one_pixel_windows_ask_for_the_pixels_own_bin(numba):
-    frame = np.zeros((3, 4, 3), np.uint8)
-    frame[1, 2] = 255
-    reference = Reference(np.eye(512)[511])
-    pixels = np.array([[2.5, 1.5], [1.5, 1.5], [2.9, 1.9], [40.0, 1.5]])
-    similarity = numba.similarity(JointColour(3), frame, pixels, Window(0, 0), reference)
-    assert similarity.tolist() == [1.0, 0.0, 1.0, 0.0]
-
-
 def test_a_window_larger_than_the_table_of_roots_is_compared_alike(numba):
     frame, window = scene(5, (400, 500), "smooth"), Window(240, 190)
     positions = np.random.default_rng(6).normal((250, 200), 5, (6, 2))

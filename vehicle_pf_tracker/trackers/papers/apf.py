@@ -173,10 +173,8 @@ class ApfParameters(ParticleParameters):
         """Newest displacements that the drift leaves out, in frames."""
         return self.velocity.delay if self.occlusion.rule == "relative" else 0
 
-    def effective(self) -> ApfParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        if not self.as_printed:
-            return self
+    def printed(self) -> ApfParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
         return replace(
             self,
             histogram_bits=3,
