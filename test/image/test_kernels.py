@@ -87,16 +87,12 @@ def clouds(draw, frame):
 @pytest.mark.parametrize("feature", FEATURES.values(), ids=list(FEATURES))
 @settings(max_examples=60)
 @given(data=st.data(), frame=scenes, window=windows)
-def test_counts_are_equal_and_similarities_agree(numba, feature, data, frame, window):
+def test_similarities_agree(numba, feature, data, frame, window):
     positions = data.draw(clouds(frame))
     histogram = feature.histograms(frame, data.draw(clouds(frame))[:1], window)[0]
     if data.draw(st.booleans()):
         histogram = histogram * (np.arange(feature.bins) % 3 > 0)
     reference = Reference(histogram)
-    ours = numba.counts(feature, frame, positions, window, reference.active)
-    theirs = OPENCV.counts(feature, frame, positions, window, reference.active)
-    assert np.array_equal(ours.bins, theirs.bins)
-    assert np.array_equal(ours.totals, theirs.totals)
     similarities = numba.similarity(feature, frame, positions, window, reference)
     expected = OPENCV.similarity(feature, frame, positions, window, reference)
     assert np.abs(similarities - expected).max() < 1e-6

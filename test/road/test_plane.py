@@ -100,3 +100,9 @@ def test_a_hull_holds_its_points(seed, count):
     middle = points.mean(axis=0)
     assert all(is_inside(hull, middle + (point - middle) * (1 - 1e-9)) for point in points)
     assert set(map(tuple, hull)) <= set(map(tuple, points))
+
+
+@given(st.floats(-10, 10), st.floats(13, 80))
+def test_round_trip_through_lens_and_plane(x, y):
+    plane = camera_plane(BENT)
+    assert plane.to_road(plane.to_image(np.array([x, y]))) == pytest.approx([x, y], abs=1e-6)

@@ -104,7 +104,7 @@ def test_interpretation_15_the_reference_is_the_first_histogram_and_the_last_one
         for kind, began, reference in zip(
             tracker.features.values(), first, tracker.references, strict=True
         ):
-            last = tracker.kernels.histograms(kind, street.frame(4), at, tracker.window)[0]
+            last = kind.histograms(street.frame(4), at, tracker.window)[0]
             assert reference.histogram == pytest.approx(weight * began + (1 - weight) * last)
 
 

@@ -240,7 +240,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         cloud = Cloud(particles, *weights)
         position = cloud.mean()  # step 13
         at = np.asarray([position])
-        histogram = self.kernels.histograms(feature, frame, at, window)[0]  # step 14
+        histogram = feature.histograms(frame, at, window)[0]  # step 14
         evidence = hellinger_similarity(histogram, self.reference.histogram)
         self._compare_and_learn(settings, histogram, evidence)  # steps 15 and 16
         self._follow(settings, position, elapsed, regular=regular)
