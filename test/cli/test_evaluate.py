@@ -18,7 +18,7 @@ import pytest
 from small_recordings import frame_folder, record
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation.grid.tracking import run_cell
+from vehicle_pf_tracker.evaluation.grid.running import run_cell
 from vehicle_pf_tracker.offline.processes import Turn
 
 
