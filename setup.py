@@ -72,6 +72,7 @@ setup(
     package_data={
         NAME: ["py.typed"],
         f"{NAME}.cli": ["pick.html", "pick.js"],
+        f"{NAME}.recordings": ["ImageAnnotations.msg"],
         f"{NAME}.evaluation.report": ["templates/*"],
     },
     data_files=[

@@ -31,6 +31,7 @@ from benchmarks.bench.case import Case
 from benchmarks.bench.effort import FULL, QUICK, TOY, Effort
 from benchmarks.bench.environment import describe
 from benchmarks.bench.results import Results
+from benchmarks.bench.slower_steps import slower_steps
 from vehicle_pf_tracker.core.errors import InputError
 
 OUTPUT = Path("results/bench/bench.json")
@@ -56,9 +57,18 @@ def main() -> int:
     performance_page.write_targets(results, args.output.parent)
     print(f"wrote {args.output}")
     if args.docs is not None:
-        performance_page.write(results, args.docs)
-        print(f"wrote {args.docs / performance_page.PAGE}")
+        _write_page(results, args.docs)
     return 0
+
+
+def _write_page(results: Results, folder: Path) -> None:
+    """Write the page after a comparison with the figures that it replaces."""
+    page = folder / performance_page.PAGE
+    last = page.read_text(encoding="utf-8") if page.exists() else ""
+    for sentence in slower_steps(results, last):
+        print(f"bench: {sentence}", file=sys.stderr)
+    performance_page.write(results, folder)
+    print(f"wrote {page}")
 
 
 def _measure(
@@ -124,7 +134,8 @@ def _arguments() -> argparse.Namespace:
         "--docs",
         type=Path,
         metavar="DIR",
-        help=f"also write {performance_page.PAGE} and its figures into this folder",
+        help=f"also write {performance_page.PAGE} and its figures into this folder, and name steps "
+        "that became slower than its figures",
     )
     args = parser.parse_args()
     if args.toy is not None:

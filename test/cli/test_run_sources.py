@@ -215,10 +215,10 @@ def test_a_video_that_finds_no_space_is_an_error_and_is_not_left(tmp_path, monke
     with (
         little_space(),
         pytest.raises(InputError, match=f"cannot write {path}"),
-        pictures.video_writer(path, (160, 120), 25.0) as writer,
+        pictures.video_writer(path, (160, 120), 25.0) as write,
     ):
         for frame in noise:
-            writer.write(frame)
+            write(frame)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -19,7 +19,7 @@ import pytest
 from small_recordings import record
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation.grid.tracking import run_cell
+from vehicle_pf_tracker.evaluation.grid.running import run_cell
 from vehicle_pf_tracker.offline.processes import Turn
 
 pytest.importorskip("optuna", reason="the extra [tune] is not installed")

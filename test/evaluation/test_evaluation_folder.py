@@ -31,7 +31,7 @@ def folder(made_evaluation):
 
 def test_the_plan(folder):
     evaluation = EvaluationFolder(folder)
-    assert [entry.name for entry in evaluation.recordings] == ["under_a_bridge", "free"]
+    assert [entry.name for entry in evaluation.recordings] == ["bridge", "free"]
     assert [entry.kind for entry in evaluation.systems] == ["pf", "ms", "apf", "baseline:csrt"]
     assert evaluation.systems[0].overrides == {"num_particles": 40}
     assert evaluation.seeds == SEEDS
@@ -48,7 +48,7 @@ def test_cells_have_rows_or_a_reason(folder):
 
 def test_truth_by_frame(folder):
     evaluation = EvaluationFolder(folder)
-    truth = evaluation.truth("under_a_bridge")
+    truth = evaluation.truth("bridge")
     assert list(truth) == list(range(1, FRAMES + 1))
     assert [n for n, t in truth.items() if t.occlusion.name == "TOTAL"] == list(range(9, 15))
     assert evaluation.truth("elsewhere") == {}

@@ -29,11 +29,10 @@ from vehicle_pf_tracker.cli.console import (
     OnFrames,
     counting,
     show,
-    shown_progress,
     tell_notice,
     tell_notices,
 )
-from vehicle_pf_tracker.cli.replay import ReplayWords
+from vehicle_pf_tracker.cli.replay import shown_replay
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option
 from vehicle_pf_tracker.cli.synth import record_scene
 from vehicle_pf_tracker.core.errors import InputError
@@ -112,7 +111,7 @@ def track_through_ros(recording: Recording) -> dict[str, Sequence[EstimateRow]]:
     nodes = {f"/{name}_tracker": name for name in CONTESTANTS}
     options = ReplayOptions(lockstep=True, nodes=tuple(nodes), timeout=_PATIENCE)
     with ExitStack() as stack:
-        on_progress = stack.enter_context(shown_progress(ReplayWords()))
+        on_progress = stack.enter_context(shown_replay())
         fixed = {"seed": SHOWN_SEED, "queue_depth": 10}
         trackers = [
             stack.enter_context(tracker_process(name, {**own, **fixed}, recording.image_topic))

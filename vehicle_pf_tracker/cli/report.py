@@ -61,10 +61,15 @@ def run(request: Request) -> int:
 
 def write(folder: Path, request: ReportParts) -> Report:
     """Write the report of `folder` with the parts that are asked for."""
-    from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
+    from vehicle_pf_tracker.evaluation.report import write_report
 
-    options = ReportOptions(request.images, request.recordings)
     with stages("report") as on_stage:
-        report = write_report(folder, options, tell_notice, on_stage)
+        report = write_report(
+            folder,
+            images=request.images,
+            recordings=request.recordings,
+            notify=tell_notice,
+            on_stage=on_stage,
+        )
     print(f"the report is {report.paths[0]}")
     return report

@@ -335,14 +335,11 @@ def _number(value: float | None, spread: float | None) -> str:
 
 def verdict(lines: Sequence[ComparedMetric], objective: Objective) -> str:
     """State in a sentence whether the gain holds on held-out recordings."""
-    change = {
-        line.part: line.change
+    sign = 1 if objective.maximise else -1
+    gains = {
+        line.part: None if line.change is None else sign * line.change
         for line in lines
         if line.metric == objective.metric and line.recording.startswith("mean of ")
-    }
-    gains = {
-        part: None if value is None else value * (1 if objective.maximise else -1)
-        for part, value in change.items()
     }
     tuned, held_out = gains.get(TUNED), gains.get(HELD_OUT)
     if tuned is None or tuned <= 0:

@@ -16,7 +16,8 @@ import json
 from dataclasses import replace
 
 import pytest
-from grid_samples import (
+from evaluation_samples import (
+    FRAMES,
     HIDDEN,
     here,
     make_plan,
@@ -57,10 +58,10 @@ def test_every_cell_is_in_the_folder_as_run_writes_it(plan, out):
     assert [entry["deterministic"] for entry in folder.plan["systems"]] == [False, True]
     assert [entry["seeds"] for entry in folder.plan["systems"]] == [[0, 1], [0]]
     for recording in HIDDEN:
-        assert len(folder.truth(recording)) == 24
+        assert len(folder.truth(recording)) == FRAMES
         for name, seed in (("pf", 0), ("pf", 1), ("ms", 0)):
             cell = folder.cell(recording, name, seed)
-            assert len(cell.rows) == 24
+            assert len(cell.rows) == FRAMES
             assert cell.run["seed"] == seed
             assert cell.run["variant"] == name
     metrics = json.loads((out / "cells" / "free" / "pf" / "seed-1" / "metrics.json").read_text())

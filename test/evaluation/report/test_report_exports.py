@@ -22,10 +22,8 @@ from evaluation_samples import HIDDEN, SEEDS, VARIANTS
 from rosbags.rosbag2 import Reader
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
+from vehicle_pf_tracker.evaluation.report import write_report
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, topic_name
-
-OPTIONS = ReportOptions(images=False, recordings=True)
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +31,7 @@ def exported(made_evaluation, tmp_path_factory):
     folder = tmp_path_factory.mktemp("exported") / "evaluation"
     shutil.copytree(made_evaluation, folder)
     told = []
-    write_report(folder, OPTIONS, told.append)
+    write_report(folder, images=False, recordings=True, notify=told.append)
     assert told == []
     return folder
 
@@ -81,12 +79,10 @@ def test_topics_are_names_that_ros_takes(system, name):
     assert topic_name(system, 3) == name
 
 
-def test_recordings_that_are_gone_are_told(made_evaluation, tmp_path):
-    folder = tmp_path / "evaluation"
-    shutil.copytree(made_evaluation, folder)
-    plan = (folder / "evaluation.json").read_text()
+def test_recordings_that_are_gone_are_told(made_evaluation, evaluation_copy, tmp_path):
+    plan = (evaluation_copy / "evaluation.json").read_text()
     beside = str(made_evaluation.parent)
-    (folder / "evaluation.json").write_text(plan.replace(beside, str(tmp_path / "gone")))
+    (evaluation_copy / "evaluation.json").write_text(plan.replace(beside, str(tmp_path / "gone")))
     told = []
-    write_report(folder, OPTIONS, told.append)
+    write_report(evaluation_copy, images=False, recordings=True, notify=told.append)
     assert sum("with estimates" in sentence for sentence in told) == len(HIDDEN)

@@ -103,11 +103,11 @@ def test_boxes_far_outside_do_no_harm():
 
 def test_each_system_is_shown_where_it_was_worst(made_evaluation):
     evaluation = score_folder(EvaluationFolder(made_evaluation))
-    runs = {label: typical(evaluation.of("under_a_bridge", label)) for label in ("pf", "ms")}
-    strips = plan_strips(evaluation.truths["under_a_bridge"], runs, {"pf": 0})
+    runs = {label: typical(evaluation.of("bridge", label)) for label in ("pf", "ms")}
+    strips = plan_strips(evaluation.truths["bridge"], runs, {"pf": 0})
     around, worst = strips.values()
     assert all(len(shot.marks) == 1 for shot in around)  # ms has no style
-    hidden = {index + 1 for index in HIDDEN["under_a_bridge"]}
+    hidden = {index + 1 for index in HIDDEN["bridge"]}
     for shot, run in zip(worst, runs.values(), strict=True):
         visible = [e for n, e in enumerate(run.errors, start=1) if n not in hidden]
         assert shot.frame not in hidden

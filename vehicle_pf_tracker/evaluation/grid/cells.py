@@ -12,17 +12,31 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Cells of the grid: the system under comparison, the recording and the seed."""
+"""The plan of a grid: its systems under comparison, recordings and seeds, and so its cells."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.evaluation.evaluation_folder import Source, cell_folder
+from vehicle_pf_tracker.core.clock import MAX_DIFF
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation.evaluation_folder import (
+    FORMAT,
+    PLAN,
+    TRUTH,
+    Source,
+    cell_folder,
+    safe_name,
+    write_truth,
+)
 from vehicle_pf_tracker.evaluation.result_store import result_key, variant_modules
+from vehicle_pf_tracker.offline.output_files import make_folder, write_json
+from vehicle_pf_tracker.offline.run_folder import versions
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs
 from vehicle_pf_tracker.trackers.parameters import ParticleParameters
@@ -223,3 +237,78 @@ class GridCell:
         if isinstance(self.system, VariantSystem):
             return _SHARED | _OURS | variant_modules(find_variant(self.system.variant))
         return _SHARED | _BASELINES
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Recordings, systems and seeds of an evaluation.
+
+    Attributes
+    ----------
+    recordings : mapping of Source to truth
+        Recordings, with the truth by the number of the frame.
+    systems : sequence of System
+        Systems with distinct labels.
+    seeds : sequence of int
+        Seeds of the systems with randomness; deterministic ones run with the first.
+    command : list of str
+        Command line that repeats the evaluation.
+    max_diff : float
+        Largest difference of stamps that belong together, in s.
+
+    Raises
+    ------
+    InputError
+        If two systems would share a folder.
+    """
+
+    recordings: Mapping[Source, Mapping[int, Truth]]
+    systems: Sequence[System]
+    seeds: Sequence[int]
+    command: list[str]
+    max_diff: float = MAX_DIFF
+
+    def __post_init__(self) -> None:
+        taken: set[str] = set()
+        for system in self.systems:
+            name = safe_name(system.label)
+            if name in taken:
+                raise InputError(f"several systems would be called {system.label}; name them apart")
+            taken.add(name)
+
+    def cells(self) -> list[GridCell]:
+        """Return all cells, recording by recording."""
+        # Baselines are slow: begun last, they would be waited for.
+        ordered = sorted(self.systems, key=lambda system: isinstance(system, VariantSystem))
+        return [
+            GridCell(source, system, seed, self.max_diff)
+            for source, system in itertools.product(self.recordings, ordered)
+            for seed in seeds_of(system, self.seeds)
+        ]
+
+    def write(self, folder: Path) -> None:
+        """Write `evaluation.json` and the truth of every recording.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        for source, truths in self.recordings.items():
+            write_truth(make_folder(folder / "recordings" / source.name) / TRUTH, truths)
+        write_json(folder / PLAN, self.to_json())
+
+    def to_json(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        return {
+            "format": FORMAT,
+            "command": self.command,
+            "recordings": [asdict(source) for source in self.recordings],
+            "systems": [
+                {**system.to_json(), "seeds": list(seeds_of(system, self.seeds))}
+                for system in self.systems
+            ],
+            "seeds": list(self.seeds),
+            "versions": versions(),
+            "options": {"max_diff": self.max_diff},
+        }

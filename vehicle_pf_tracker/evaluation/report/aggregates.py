@@ -191,8 +191,8 @@ class Aggregates:
     ----------
     order : tuple of str
         Labels of the systems that have a run, the best first.
-    by_recording : mapping of (recording, system) to Summaries
-        Summaries over seeds.
+    recordings : mapping of str to mapping of str to Summaries
+        Summaries over seeds, by recording and system.
     overall : mapping of system to Summaries
         Summaries over the means of the recordings, so that long ones do not outweigh short ones.
     rankings : mapping of str to Ranking
@@ -202,7 +202,7 @@ class Aggregates:
     """
 
     order: tuple[str, ...]
-    by_recording: Mapping[tuple[str, str], Summaries]
+    recordings: Mapping[str, Mapping[str, Summaries]]
     overall: Mapping[str, Summaries]
     rankings: Mapping[str, Ranking]
     recoveries: Mapping[str, tuple[int, int]]
@@ -237,13 +237,13 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     order = (*ranked, *(label for label in runs if label not in ranked))
     return Aggregates(
         order=order,
-        by_recording={
-            (entry.name, label): {
-                key: summarise(found.get(entry.name, [])) for key, found in columns.items()
+        recordings={
+            entry.name: {
+                label: {key: summarise(some.get(entry.name, [])) for key, some in columns.items()}
+                for label, columns in values.items()
+                if evaluation.of(entry.name, label)
             }
             for entry in evaluation.recordings
-            for label, columns in values.items()
-            if evaluation.of(entry.name, label)
         },
         overall={
             label: {key: summarise(list(found.values())) for key, found in means[label].items()}
@@ -270,10 +270,13 @@ def _recoveries(runs: Sequence[ScoredRun]) -> tuple[int, int]:
 
 def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
     """State the leader, the systems statistically tied with it, and missing results."""
-    sentences = [*_leader(aggregates)]
-    sentences += [_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED)]
-    sentences.append(_failed(evaluation))
-    return [sentence for sentence in sentences if sentence]
+    best = (_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED))
+    failed = len(evaluation.failed)
+    cells = counted(len(evaluation.runs) + failed, "cell")
+    result = f"All {cells} of the grid have a result."
+    if failed:
+        result = f"{failed} of {cells} have no result; see Failed cells."
+    return [*_leader(aggregates), *filter(None, best), result]
 
 
 def _leader(aggregates: Aggregates) -> list[str]:
@@ -315,10 +318,3 @@ def _best(aggregates: Aggregates, column: Column) -> str:
     unit = f" {column.unit}" if column.unit else ""
     end = "Highest" if column.higher_is_better else "Lowest"
     return f"{end} mean of {column.label}: {listing(leaders)}, {best:.{column.decimals}f}{unit}."
-
-
-def _failed(evaluation: ScoredEvaluation) -> str:
-    cells = len(evaluation.runs) + len(evaluation.failed)
-    if not evaluation.failed:
-        return f"All {counted(cells, 'cell')} of the grid have a result."
-    return f"{len(evaluation.failed)} of {counted(cells, 'cell')} have no result; see Failed cells."

@@ -180,8 +180,8 @@ def _intervals(aggregates: Aggregates) -> Drawn | None:
     for position, (label, whole) in enumerate(rows.items()):
         known = [
             summary.mean
-            for (_, system), found in aggregates.by_recording.items()
-            if system == label and (summary := found.get(column.key)) is not None
+            for found in aggregates.recordings.values()
+            if label in found and (summary := found[label].get(column.key)) is not None
         ]
         heights = [position] * len(known)
         axes.plot(known, heights, ".", color=MUTED, ms=4, alpha=0.8, mew=0)

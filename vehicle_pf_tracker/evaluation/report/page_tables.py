@@ -57,11 +57,8 @@ def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -
 
 def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Column]) -> Table:
     """Show metrics of one recording, as means and spreads over the seeds."""
-    table = {
-        label: summaries
-        for label in aggregates.order
-        if (summaries := aggregates.by_recording.get((recording, label))) is not None
-    }
+    found = aggregates.recordings[recording]
+    table = {label: found[label] for label in aggregates.order if label in found}
     return _metrics_table(
         table, columns, lambda _, summary, column: mean_and_spread_text(summary, column)
     )

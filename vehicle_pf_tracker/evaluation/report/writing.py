@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, astuple, dataclass
+from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -31,7 +31,6 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     STEP,
     SUCCESS,
     Aggregates,
-    Summaries,
     aggregate,
     findings,
 )
@@ -79,18 +78,13 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     return "\n".join(parts)
 
 
-def summary_csv(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
+def summary_csv(aggregates: Aggregates) -> str:
     """Return every mean with its spread and interval, a line each, with every digit."""
-    everything = [(ALL_RECORDINGS, label, found) for label, found in aggregates.overall.items()]
-    everything += [
-        (name, label, found)
-        for entry in evaluation.recordings
-        for (name, label), found in aggregates.by_recording.items()
-        if name == entry.name
-    ]
+    places = {ALL_RECORDINGS: aggregates.overall, **aggregates.recordings}
     rows = [
         [recording, system, column.key, column.unit, *astuple(found)]
-        for recording, system, summaries in everything
+        for recording, by_system in places.items()
+        for system, summaries in by_system.items()
         for column in COLUMNS
         if (found := summaries.get(column.key)) is not None
     ]
@@ -131,41 +125,10 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
             }
             for column in COLUMNS
         },
-        "order": list(aggregates.order),
-        "overall": {label: _plain(found) for label, found in aggregates.overall.items()},
-        "recordings": {
-            entry.name: {
-                label: _plain(found)
-                for (name, label), found in aggregates.by_recording.items()
-                if name == entry.name
-            }
-            for entry in evaluation.recordings
-        },
-        "rankings": {key: asdict(ranking) for key, ranking in aggregates.rankings.items()},
         "findings": findings(evaluation, aggregates),
-        "recoveries": {label: list(found) for label, found in aggregates.recoveries.items()},
         "failed": [asdict(cell) for cell in evaluation.failed],
+        **asdict(aggregates),
     }
-
-
-def _plain(summaries: Summaries) -> dict[str, dict[str, Any] | None]:
-    return {key: None if found is None else asdict(found) for key, found in summaries.items()}
-
-
-@dataclass(frozen=True, slots=True)
-class ReportOptions:
-    """Parts of a report besides the page and the summaries.
-
-    Attributes
-    ----------
-    images : bool
-        True for stills of the recordings in the page.
-    recordings : bool
-        True for recordings with truth and all estimates, in ``estimates/``.
-    """
-
-    images: bool = True
-    recordings: bool = False
 
 
 class Report(NamedTuple):
@@ -178,7 +141,9 @@ class Report(NamedTuple):
 
 def write_report(
     folder: Path,
-    options: ReportOptions | None = None,
+    *,
+    images: bool = True,
+    recordings: bool = False,
     notify: Callable[[str], object] = lambda _: None,
     on_stage: Callable[[str], object] = lambda _: None,
 ) -> Report:
@@ -190,8 +155,10 @@ def write_report(
     ----------
     folder : Path
         Folder of an evaluation.
-    options : ReportOptions or None
-        Parts to write; None writes the page and the summaries.
+    images : bool
+        True for stills of the recordings in the page.
+    recordings : bool
+        True for recordings with truth and all estimates, in ``estimates/``.
     notify : callable
         Called with a sentence for each file that could not be made.
     on_stage : callable
@@ -202,15 +169,14 @@ def write_report(
     InputError
         If it is not an evaluation folder, or cannot be written to.
     """
-    options = options or ReportOptions()
     on_stage("scoring the runs")
     evaluation = score_folder(EvaluationFolder(folder))
     aggregates = aggregate(evaluation)
     page = folder / "report.html"
     on_stage("drawing the page")
-    write_text(page, make_page(evaluation, aggregates, images=options.images))
+    write_text(page, make_page(evaluation, aggregates, images=images))
     written = [page, *_write_summaries(folder, evaluation, aggregates)]
-    if options.recordings:
+    if recordings:
         written += write_estimate_recordings(evaluation, notify, on_stage)
     return Report(written, evaluation, aggregates)
 
@@ -220,7 +186,7 @@ def _write_summaries(
 ) -> list[Path]:
     texts = {
         "summary.md": summary_markdown(evaluation, aggregates),
-        "summary.csv": summary_csv(evaluation, aggregates),
+        "summary.csv": summary_csv(aggregates),
         "summary.tex": summary_tex(aggregates),
     }
     for name, text in texts.items():

@@ -1,0 +1,65 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Steps that became slower than the figures of the last page, as ratios over the same baselines."""
+
+from __future__ import annotations
+
+import re
+import statistics
+
+from benchmarks.bench.results import Results
+
+SLOWER = 1.1
+"""A step that takes more than this many times as long is reported: less is within what two runs on
+one idle machine differ by."""
+_HEAD = "| step | ms | "
+_RATIO = re.compile(r"([\d.e+]+) ± ")
+
+
+def last_ratios(page: str) -> dict[str, float]:
+    """Read the table of steps of a page: its ratios by case, as ``step/apf/csrt``."""
+    lines = iter(page.splitlines())
+    head = next((line for line in lines if line.startswith(_HEAD)), "")
+    baselines = re.findall(r"over (\w+)", head)
+    found = {}
+    for line in lines:
+        cells = [cell.strip() for cell in line.split("|")]
+        if len(cells) < 3:  # the table has ended
+            break
+        # Behind the empty cell before the first bar come the name and the time.
+        for baseline, cell in zip(baselines, cells[3:], strict=False):
+            if ratio := _RATIO.match(cell):
+                found[f"step/{cells[1].strip('`')}/{baseline}"] = float(ratio[1])
+    return found
+
+
+def slower_steps(results: Results, page: str) -> list[str]:
+    """Name each variant whose step became more than a tenth slower than on `page`.
+
+    The baselines ran in turns with the variant then and now, so that the machine cancels out. The
+    median over the baselines is judged: one of them alone may have changed with OpenCV's version.
+    """
+    last = last_ratios(page)
+    factors: dict[str, list[float]] = {}
+    for case in results.cases:
+        if case.name in last:
+            factors.setdefault(case.name.split("/")[1], []).append(last[case.name] / case.ratio)
+    medians = {variant: statistics.median(values) for variant, values in factors.items()}
+    return [
+        f"a step of {variant} takes {factor:.2f} times as long as on the last page, "
+        "compared with the same baselines"
+        for variant, factor in medians.items()
+        if factor > SLOWER
+    ]
