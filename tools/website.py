@@ -28,7 +28,8 @@ from pathlib import Path
 from typing import Any
 
 import vehicle_pf_tracker
-from vehicle_pf_tracker.cli.main import PROGRAM, VERBS, main
+from vehicle_pf_tracker.cli.console import PROGRAM
+from vehicle_pf_tracker.cli.main import VERBS, main
 
 ROOT = Path(__file__).resolve().parents[1]
 OUTSIDE = re.compile(r"\[([^\]]*)\]\(\.\./([^)]*)\)")
