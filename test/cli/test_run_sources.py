@@ -159,8 +159,8 @@ def test_doubtful_targets_are_followed_with_a_notice(run, tmp_path, capsys):
     recording = record(tmp_path / "bag", truths=())
     assert run(recording, "--target", "8,24,3,2", "--target", "big:0,0,90,60") == 0
     error = capsys.readouterr().err
-    assert "the target 1 is doubtful: it is only 3 x 2 px large" in error
-    assert "the target big is doubtful: it covers 88% of the image" in error
+    assert "the target 8,24,3,2 is doubtful: it is only 3 x 2 px large" in error
+    assert "the target 0,0,90,60 is doubtful: it covers 88% of the image" in error
 
 
 def test_a_run_leaves_nothing_of_the_one_before(run, video, tmp_path):
@@ -215,10 +215,10 @@ def test_a_video_that_finds_no_space_is_an_error_and_is_not_left(tmp_path, monke
     with (
         little_space(),
         pytest.raises(InputError, match=f"cannot write {path}"),
-        pictures.video_writer(path, (160, 120), 25.0) as writer,
+        pictures.video_writer(path, (160, 120), 25.0) as write,
     ):
         for frame in noise:
-            writer.write(frame)
+            write(frame)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, identity_colour
-from vehicle_pf_tracker.offline.traffic_results import TrafficSummary, limited
+from vehicle_pf_tracker.offline.traffic_results import TrafficSummary
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 MODES = {
@@ -72,11 +72,6 @@ def test_a_late_class_counts():
     assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences()
 
 
-def test_many_notices_are_cut_short():
-    assert limited(["a"] * 3, 2) == ["a", "a", "and 1 more notices"]
-    assert limited(["a"] * 2, 2) == ["a", "a"]
-
-
 def drive(picture, count=30, width=320):
     frame = np.zeros((240, width, 3), np.uint8)
     for index in range(count):
@@ -111,9 +106,3 @@ def test_frames_of_another_size_begin_the_picture_anew(tmp_path):
     drive(picture, width=320)
     assert picture.write(tmp_path / "paths.png")
     assert cv2.imread(str(tmp_path / "paths.png")).shape == (480, 640, 3)
-
-
-def test_memory_of_a_path_does_not_grow_with_its_length():
-    picture = PathPicture()
-    drive(picture, count=500)
-    assert all(len(path.places) <= 16 for path in picture.paths.values())

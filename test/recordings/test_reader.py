@@ -31,14 +31,14 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import mcap_blocks, messages, topics
 from vehicle_pf_tracker.recordings.cdr import header_stamp_ns
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import COMPRESSIONS, RecordingWriter
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 
 def stamps(recording, **span):
     return [found.stamp_ns for found in recording.frames(**span)]
 
 
-@pytest.mark.parametrize("compression", COMPRESSIONS)
+@pytest.mark.parametrize("compression", CompressionType)
 def test_raw_frames_come_back_unchanged(record, compression):
     recording = Recording(record(10, compression=compression))
     frames = list(recording.frames())
@@ -51,7 +51,7 @@ def test_raw_frames_come_back_unchanged(record, compression):
     assert recording.notices == []
 
 
-@pytest.mark.parametrize("compression", COMPRESSIONS)
+@pytest.mark.parametrize("compression", CompressionType)
 def test_compressed_frames_come_back(tmp_path, compression):
     with RecordingWriter(tmp_path / "bag", compression=compression) as writer:
         for index in range(5):
@@ -312,7 +312,7 @@ def test_impossible_spans_are_refused(record, span):
 
 
 def test_seeking_reads_only_what_is_wanted(record, monkeypatch):
-    recording = Recording(record(60, compression="none", size=(200, 200)))
+    recording = Recording(record(60, compression=CompressionType.NONE, size=(200, 200)))
     total = 60 * 200 * 200 * 3
     read = []
 

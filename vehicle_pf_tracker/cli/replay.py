@@ -17,18 +17,19 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from vehicle_pf_tracker.cli.console import (
-    Progress,
+    Clock,
     UsageError,
     shown_progress,
     tell_notice,
     tell_notices,
-    time_left,
 )
 from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
@@ -51,30 +52,25 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay.replay_options import Progress as ReplayProgress
 
 
-class ReplayWords:
-    """Describes the progress of a replay; rates begin with its first image."""
+@contextmanager
+def shown_replay(
+    stream: TextIO | None = None, clock: Clock = time.monotonic
+) -> Iterator[Callable[[ReplayProgress], None]]:
+    """Return a function that shows a replay's progress; rates begin with its first image."""
+    with shown_progress(stream, clock) as show:
+        began = clock()
 
-    def __init__(self) -> None:
-        self._began = self._pass_began = self._position = 0.0
+        def tell(progress: ReplayProgress) -> None:
+            nonlocal began
+            if progress.frames == 1:
+                began = clock()
+            count, seconds = progress.frames, clock() - began
+            words = f"{count} frame{'s' * (count > 1)}"
+            if seconds > 0:
+                words += f", {(count - 1) / seconds:.1f} frames/s"
+            show(words, progress.position / progress.length if progress.position else None)
 
-    def __call__(self, progress: ReplayProgress, elapsed: float) -> Progress:
-        """Describe the replay `elapsed` s after its beginning."""
-        if progress.frames == 1:
-            self._began = elapsed
-        if progress.frames == 1 or progress.position < self._position:  # a loop begins again
-            self._pass_began = elapsed
-        self._position = progress.position
-        words, seconds = (
-            f"{progress.frames} frame{'s' * (progress.frames > 1)}",
-            elapsed - self._began,
-        )
-        if seconds > 0:
-            words += f", {(progress.frames - 1) / seconds:.1f} frames/s"
-        if not progress.position:
-            return Progress(words)
-        share = progress.position / progress.length
-        left = time_left(share, elapsed - self._pass_began)
-        return Progress(f"{share:4.0%}, {words}, {left}", share)
+        yield tell
 
 
 ANSWERS = ("estimates.csv", "*/estimates.csv")
@@ -183,7 +179,7 @@ def run(request: Request) -> int:
         if request.output:
             make_folder(request.output)
         try:
-            with shown_progress(ReplayWords()) as on_progress:
+            with shown_replay() as on_progress:
                 report = replay(recording, options_of(request), on_progress, tell_notice)
         except NoTargetError as error:
             raise UsageError(str(error)) from None

@@ -45,7 +45,6 @@ from vehicle_pf_tracker.offline.traffic_results import (
     COUNTS,
     MOT_TRACKS,
     TRACKS,
-    limited,
     track_files,
 )
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
@@ -108,7 +107,7 @@ def run(request: Request) -> int:
             *(detections.notices if detections is not None else []),
             *notices,
         ]
-        tell_notices(limited(notices))
+        tell_notices(notices)
         _write(request, configuration, tracking, source, notices, folder)
     for sentence in tracking.summary.sentences(tracking.counter):
         print(sentence)

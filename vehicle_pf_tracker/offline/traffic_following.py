@@ -36,8 +36,8 @@ from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
-_MOST_NOTICES = 200
-"""Notices kept: a camera without a clock gives one per frame, for hours."""
+_MOST_NOTICES = 20
+"""Notices kept, what a screen holds: a camera without a clock gives one per frame, for hours."""
 
 
 class TrafficRun:

@@ -113,7 +113,7 @@ def to_yaml(
 
 
 def _comment(spec: ParameterSpec) -> str:
-    facts = [spec.unit, spec.bounds, " | ".join(spec.choices), spec.source]
+    facts = [spec.unit, spec.bounds_text, " | ".join(spec.choices), spec.source]
     if spec.effect != "keeps":
         facts.append(f"a change {EFFECTS[spec.effect]}")
     if spec.read_only:

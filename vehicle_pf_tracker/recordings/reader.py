@@ -115,8 +115,7 @@ class Recording:
         blocks = [block for index in self.files for block in index.blocks]
         self.start_ns = min(block.start_ns for block in blocks)
         self.end_ns = max(block.end_ns for block in blocks)
-        self._notices = ReadNotices(self.path, self.image_topic, found)
-        self._notices.add_files(self.files)
+        self._notices = ReadNotices(self.path, self.image_topic, found, self.files)
 
     @property
     def duration_ns(self) -> int:

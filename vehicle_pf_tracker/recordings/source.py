@@ -142,19 +142,15 @@ class Moment:
             )
         return cls(seconds=seconds)
 
-    def is_after(self, number: int, elapsed: float) -> bool:
-        """Return whether the moment is later than frame `number`, `elapsed` s after the first."""
-        if self.frame is not None:
-            return self.frame > number
-        assert self.seconds is not None
-        return self.seconds > elapsed + 1e-9  # the rounding of a stamp
+    def after(self, number: int, elapsed: float) -> float:
+        """Return by how much the moment is later than frame `number`, `elapsed` s from the first.
 
-    def is_before(self, number: int, elapsed: float) -> bool:
-        """Return whether the moment is earlier than that frame."""
+        The result is negative where it is earlier, and its unit is the moment's own.
+        """
         if self.frame is not None:
-            return self.frame < number
+            return self.frame - number
         assert self.seconds is not None
-        return self.seconds < elapsed - 1e-9
+        return round(self.seconds - elapsed, 9)  # a stamp's rounding
 
 
 def numbered_part(
@@ -172,9 +168,9 @@ def numbered_part(
     for number, found in enumerate(frames, start=1):
         first_ns = found.stamp_ns if first_ns is None else first_ns
         elapsed = (found.stamp_ns - first_ns) * 1e-9
-        if start is not None and start.is_after(number, elapsed):
+        if start is not None and start.after(number, elapsed) > 0:
             continue
-        if end is not None and end.is_before(number, elapsed):
+        if end is not None and end.after(number, elapsed) < 0:
             break
         yielded += 1
         yield number, found

@@ -130,14 +130,28 @@ class ReadNotices:
         The topic whose images are counted.
     found : iterable of str
         Irregularities found before, a sentence each.
+    files : iterable of McapIndex
+        Indexes of the files in order, which report damage.
     """
 
-    def __init__(self, path: Path, image_topic: str, found: Iterable[str]) -> None:
+    def __init__(
+        self, path: Path, image_topic: str, found: Iterable[str], files: Iterable[McapIndex]
+    ) -> None:
         self._path = path
         self._image_topic = image_topic
         self._sentences = list(found)
         self._unreadable: dict[int, str] = {}
         self._damages: dict[tuple[Path, int], str] = {}
+        frames = 0
+        for index in files:
+            of_topic = (n for n, one in index.channels.items() if one.topic == image_topic)
+            frames += sum(index.counts[number] for number in of_topic)
+            self._sentences += [f"recording {index.path}: {damage}" for damage in index.damages]
+            if index.is_truncated:
+                self._sentences.append(
+                    f"recording {index.path} is truncated after frame {frames}; "
+                    "what was readable is used"
+                )
 
     @property
     def sentences(self) -> list[str]:
@@ -154,22 +168,6 @@ class ReadNotices:
     def first_reason(self) -> str:
         """Reason why the first image, or else the first part, could not be read."""
         return next(iter([*self._unreadable.values(), *self._damages.values()]))
-
-    def add_files(self, files: Iterable[McapIndex]) -> None:
-        """Add the damage that the indexes of the files, in order, report."""
-        frames = 0
-        for index in files:
-            frames += sum(
-                index.counts[channel_id]
-                for channel_id, channel in index.channels.items()
-                if channel.topic == self._image_topic
-            )
-            self._sentences += [f"recording {index.path}: {damage}" for damage in index.damages]
-            if index.is_truncated:
-                self._sentences.append(
-                    f"recording {index.path} is truncated after frame {frames}; "
-                    "what was readable is used"
-                )
 
     def add_block(self, index: McapIndex, block: Block, error: DamageError) -> None:
         """Note a part of a file that was skipped."""

@@ -21,7 +21,6 @@ between two frames).
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
@@ -39,7 +38,6 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec, unknown_name
 
 QOS_PREFIX = "qos_overrides."
-_INT64 = 2**63
 _OF_RCLPY = {"use_sim_time", "start_type_description_service"}
 """Parameters that rclpy itself declares."""
 
@@ -55,14 +53,12 @@ def describe(spec: ParameterSpec) -> ParameterDescriptor:
         additional_constraints=choices,
         read_only=spec.read_only,
     )
-    if spec.bounds and spec.kind is int:
-        low = -_INT64 if spec.minimum is None else int(spec.minimum)
-        high = _INT64 - 1 if spec.maximum is None else int(spec.maximum)
-        descriptor.integer_range = [IntegerRange(from_value=low, to_value=high)]
-    elif spec.bounds:
-        least = -sys.float_info.max if spec.minimum is None else spec.minimum
-        most = sys.float_info.max if spec.maximum is None else spec.maximum
-        descriptor.floating_point_range = [FloatingPointRange(from_value=least, to_value=most)]
+    if spec.bounds:
+        low, high = map(spec.kind, spec.bounds)
+        if spec.kind is int:
+            descriptor.integer_range = [IntegerRange(from_value=low, to_value=high)]
+        else:
+            descriptor.floating_point_range = [FloatingPointRange(from_value=low, to_value=high)]
     return descriptor
 
 

@@ -32,7 +32,7 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs
-from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, LOWEST_FPS, Footage, Picture
+from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
 from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_node
@@ -67,24 +67,17 @@ class Settings:
     )
     fps: float = parameter(
         0.0, "Frame rate of a folder or a video; 0 takes what it states",
-        minimum=0.0, maximum=HIGHEST_FPS, unit="1/s", read_only=True,
+        bounds=(0.0, HIGHEST_FPS), unit="1/s", read_only=True,
     )  # fmt: skip
     loop: bool = parameter(False, "Begin a video or a folder again at its end", read_only=True)
     frame_id: str = parameter("camera", "Frame of the images' headers", read_only=True)
     compressed: bool = parameter(
         False, "Publish JPEG images too, on image/compressed", read_only=True
     )
-    jpeg_quality: int = parameter(
-        95, "Quality of the JPEG images", minimum=1, maximum=100, read_only=True
-    )
+    jpeg_quality: int = parameter(95, "Quality of the JPEG images", bounds=(1, 100), read_only=True)
     camera_info_url: str = parameter(
         "", "Calibration YAML, a path or file:///URL; published as camera_info", read_only=True
     )
-
-    def validate(self) -> None:
-        """Raise InputError for a frame rate that is none."""
-        if 0 < self.fps < LOWEST_FPS:
-            raise InputError(f"fps must be 0 or at least {LOWEST_FPS:g} 1/s, got {self.fps:g}")
 
 
 def declare(node: Node) -> Settings:
