@@ -126,10 +126,6 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
     def _facts(self) -> Mapping[str, object]:
         return self.stream.facts if self.stream is not None else {}
 
-    def _reset(self) -> str:
-        assert self.stream is not None
-        return self.stream.reset()
-
     def open_images(self) -> ImageInput:
         """Listen to images."""
         own = self.table.configuration.node
@@ -180,7 +176,10 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         """Prepare for images."""
         try:
             self.prepare()
-            self.serve("~/reset", self._reset)
+            assert self.stream is not None
+            self.serve("~/reset", self.stream.reset)
+            if self.stream.incidents is not None:
+                self.serve("~/snapshot", self.stream.write_incident)
         except Exception:  # of whatever a network or numba raises
             self.cleanup()
             raise

@@ -29,6 +29,7 @@ from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
@@ -41,7 +42,7 @@ from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocali
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
-from vehicle_pf_tracker.trackers.estimate import START, Estimate
+from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TargetError
 
@@ -145,13 +146,13 @@ class Stream(NodeStream):
         health: Health,
         cameras: CameraInputs,
     ) -> None:
+        self.asked: Box | None = None
         super().__init__(node, configuration, outputs, health)
         self._outputs = outputs
         self._variant = variant
         self._applied = configuration
         self._session: Session | None = None
         self._loading = KernelLoading(configuration.tracker.kernels)
-        self.asked: Box | None = None
         self._target_problem = ""
         self._stillness = Stillness()
         self.localisation = StreamLocalisation(variant.name, configuration.session.road, cameras)
@@ -216,7 +217,18 @@ class Stream(NodeStream):
         else:
             super().decline(header, error)
 
-    def set_target(self, box: Box) -> None:
+    @property
+    def followed(self) -> Box | None:
+        """Box of the target while it is visible; None where there is none."""
+        estimate = self.estimate
+        return estimate.box if estimate and estimate.mode is Mode.TRACKING else None
+
+    @property
+    def period(self) -> float:
+        """Nominal period of the images, s."""
+        return self._session.tracker.frame_period if self._session else DEFAULT_PERIOD
+
+    def start_on(self, box: Box) -> None:
         """Start on `box` with the next image, if it fits into that.
 
         Raises
@@ -337,6 +349,7 @@ class Stream(NodeStream):
         words = "; ".join(session.events)
         if not words:
             return {}
-        self.health.restarts += session.recovered
+        if session.recovered:
+            self.note_restart()
         (self.errors if session.recovered else self.warnings).say("event", words)
         return {"event": words}

@@ -26,6 +26,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.compressed_image import CodedImage
@@ -39,6 +40,7 @@ from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
 MOST_WAITING = 16
@@ -189,12 +191,12 @@ class TrafficStream(NodeStream):
     def __init__(
         self, node: Node, configuration: Configuration, outputs: TrafficOutputs, health: Health
     ) -> None:
+        self.vehicles = Vehicles(configuration)
         super().__init__(node, configuration, outputs, health)
         self._outputs = outputs
         self._waiting: WaitingImages[Image | CompressedImage] | None = None
         if configuration.tracker.detector.kind == TOPIC:
             self._waiting = WaitingImages()
-        self.vehicles = Vehicles(configuration)
         self._began = 0.0
         self._detections: Detections | None = None
         self._events: list[str] = []
@@ -284,6 +286,21 @@ class TrafficStream(NodeStream):
         """Width and height of the stream's images, px; None before the first."""
         return self.vehicles.session.size
 
+    @property
+    def followed(self) -> Box | None:
+        """Box of the selected vehicle while it is visible; None where there is none."""
+        one = self.vehicles.selected
+        return one.box if one is not None and one.mode is TrackMode.TRACKING else None
+
+    @property
+    def period(self) -> float:
+        """Nominal period of the images, s."""
+        return self.vehicles.session.tracker.frame_period
+
+    def start_on(self, box: Box) -> None:
+        """Follow and select the vehicle in `box` of the first image."""
+        self.vehicles.select_first(box)
+
     def reset(self) -> str:
         """Forget all vehicles and counts; begin on the configured target."""
         self.vehicles.reset()
@@ -331,7 +348,8 @@ class TrafficStream(NodeStream):
         mode = WAITING if selected is None else selected.mode.value
         values = {"reason": self._reason} if selected is None else scalars(selected)
         values |= {**vehicles.summary(), "step_ms": step_ms}
-        self.health.restarts += vehicles.session.recovered
+        if vehicles.session.recovered:
+            self.note_restart()
         for event in events:
             self.warnings.say(" ".join(event.split()[:3]), event)  # without numbers
         if events:

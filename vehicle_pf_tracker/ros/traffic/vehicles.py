@@ -213,6 +213,10 @@ class Vehicles:
         self.waiting.append(box)
         return None
 
+    def select_first(self, box: Box) -> None:
+        """Follow the vehicle in `box` of the next image, and select it."""
+        self._configured = box
+
     def remove_selected(self) -> int:
         """Forget the selected vehicle, and return its number.
 
