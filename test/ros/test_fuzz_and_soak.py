@@ -72,7 +72,11 @@ def test_each_fault_of_a_detector_in_turn(start_process):
     if find_spec("vision_msgs") is None and (reason := missing()):
         pytest.skip(f"vision_msgs is not installed, and cannot be built: {reason}")
     told = run(start_process, "traffic_faults.py", "--seconds", "1", timeout=300)
-    rows = [line.strip("| ").split(" | ") for line in told.splitlines() if line.startswith("| ")]
+    rows = [
+        [cell.strip() for cell in line.split(" | ")]
+        for line in told.replace("|\n", "| \n").splitlines()
+        if line.startswith("| ")
+    ]
     told = {fault: sentences for fault, _, _, sentences in rows[1:]}
     unusable = "detections of an image cannot be used: not finite, without an area, outside"
     assert "MB that are read" in told.pop("10 000 boxes, once a second")

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -37,10 +37,12 @@ from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import in_pixels
 from vehicle_pf_tracker.ros.traffic.messages import read_serialized_detections, read_stamp, scalars
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
+from vehicle_pf_tracker.ros.traffic.rates import Rates, TimedDetector
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
 MOST_WAITING = 16
@@ -56,11 +58,12 @@ ImageT = TypeVar("ImageT")
 
 @dataclass(slots=True)
 class _Waiting(Generic[ImageT]):
-    """An image with its number in the stream, and when it has waited for long enough, s."""
+    """An image with its number in the stream, when it came and has waited for long enough, s."""
 
     image: ImageT
     stamp_ns: int
     number: int
+    came: float
     until: float
     is_answered: bool = False
     detections: Detections | None = None
@@ -83,10 +86,13 @@ class WaitingImages(Generic[ImageT]):
     matched, missed, late, unmatched : int
         Images with detections, images that waited in vain, detections that came after their image
         was passed on, and detections of stamps that no image has.
+    latency : float
+        Time that the last image with detections waited for them, s.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self.matched = self.missed = self.late = self.unmatched = 0
+        self.latency = 0.0
         self._clock = clock
         self._images: deque[_Waiting[ImageT]] = deque()
         self._early: dict[int, Detections | None] = {}
@@ -104,7 +110,8 @@ class WaitingImages(Generic[ImageT]):
 
     def add_image(self, image: ImageT, stamp_ns: int, max_wait: float) -> None:
         """Take the next image, which may wait for `max_wait` s."""
-        waiting = _Waiting(image, stamp_ns, self._number, self._clock() + max_wait)
+        now = self._clock()
+        waiting = _Waiting(image, stamp_ns, self._number, now, now + max_wait)
         if stamp_ns in self._early:
             waiting.is_answered, waiting.detections = True, self._early.pop(stamp_ns)
         self._number += 1
@@ -118,6 +125,7 @@ class WaitingImages(Generic[ImageT]):
         for waiting in self._images:
             if waiting.stamp_ns == stamp_ns and not waiting.is_answered:
                 waiting.is_answered, waiting.detections = True, detections
+                self.latency = self._clock() - waiting.came
                 return
         if stamp_ns in self._passed:
             self.late += 1
@@ -198,6 +206,7 @@ class TrafficStream(NodeStream):
         if configuration.tracker.detector.kind == TOPIC:
             self._waiting = WaitingImages()
         self._began = 0.0
+        self._rates = Rates()
         self._detections: Detections | None = None
         self._events: list[str] = []
         self.tell_drawn_seed(self.vehicles.session.tracker.seed)
@@ -217,6 +226,7 @@ class TrafficStream(NodeStream):
             "seed": self.vehicles.session.tracker.seed,
             "detector": self._configuration.tracker.detector.kind,
             **self.vehicles.summary(),
+            **{name: round(value, 2) for name, value in self._rates.values.items()},
             **detections,
         }
 
@@ -355,7 +365,22 @@ class TrafficStream(NodeStream):
         if events:
             values["event"] = "; ".join(events)
         self.health.answered(mode, step_ms)
+        self._note_rates(estimates)
         self.publish_mode(header, mode, values)
+
+    def judge(self) -> str:
+        """Name the rates that are not as usual; called once a second."""
+        return self._rates.judge()
+
+    def _note_rates(self, estimates: Sequence[TrackEstimate]) -> None:
+        detector, found, seconds = self.vehicles.session.detector, len(self._detections or ()), 0.0
+        if self._waiting is not None:
+            seconds = self._waiting.latency
+        elif isinstance(detector, TimedDetector):
+            found, seconds = detector.found, detector.seconds
+        known = [one.identity for one in estimates if one.mode in CONFIRMED]
+        visible = sum(one.mode is TrackMode.TRACKING for one in estimates)
+        self._rates.note(known, found, visible, seconds)
 
     @property
     def _reason(self) -> str:
