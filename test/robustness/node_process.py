@@ -79,11 +79,8 @@ class NodeProcess:
     ) -> None:
         os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         box = zip(("x", "y", "width", "height"), target or (), strict=target is not None)
-        words = [
-            *([RELIABLE] if is_reliable else []),
-            *(f"target.{name}:={value}" for name, value in box),
-            *assignments,
-        ]
+        words = [*(f"target.{name}:={value}" for name, value in box), *assignments]
+        words += [RELIABLE] if is_reliable else []
         self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - open as long as the node
         code = (
             "from vehicle_pf_tracker.ros.executables import main;"

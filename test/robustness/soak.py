@@ -19,7 +19,8 @@
 The vehicle is hidden now and then, somebody sets targets, right ones and impossible ones, and
 somebody turns parameters. Prints images in and out, the time from sending a good image to its
 answer, and how the resident memory went. Exit status 1 if a good image that reached the node stayed
-unanswered or had no estimate, was answered twice, or a change of parameters was refused or stayed unanswered.
+unanswered or had no estimate, was answered twice, or a change of parameters was refused or stayed
+unanswered.
 """
 
 from __future__ import annotations
@@ -209,12 +210,8 @@ def main() -> None:
     soak.run(args.minutes * 60)
     report(soak)
     node.end()
-    is_bad = (
-        len(soak.sent) > soak.lost
-        or soak.answers["second answers"]
-        or sum(soak.changes) < soak.asked
-    )
-    raise SystemExit(1 if is_bad else 0)
+    is_bad = len(soak.sent) > soak.lost or sum(soak.changes) < soak.asked
+    raise SystemExit(1 if is_bad or soak.answers["second answers"] else 0)
 
 
 if __name__ == "__main__":
