@@ -27,6 +27,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
@@ -149,6 +150,8 @@ class FrameDetections:
         For learning what becomes of them.
     log_odds : (N,) array
         Log odds that each is a vehicle.
+    clutter : (N,) array
+        Logarithm of the false alarms per image as often as where each is.
     free : list of int
         Indices of those that no track has taken.
     """
@@ -169,6 +172,7 @@ class FrameDetections:
             for edges, score in zip(self.edges, self.scores.tolist(), strict=True)
         ]
         self.log_odds = evidence.log_odds(self.samples)
+        self.clutter = evidence.clutter(self.samples)
         self.free = list(range(len(boxes)))
         self._colours = colours
         self._histograms: dict[int, Array] = {}
@@ -197,6 +201,53 @@ def pair_costs(
             alike = similarity(tracks[row].colours, found.histogram(indices[column]))
             costs[row, column] += settings.colour_cost * (1 - alike)
     return costs
+
+
+_BORDER = 1.0
+"""Distance in px from the border of the image up to which an edge counts as cut."""
+_SIZES = 2.0
+"""Logarithm of the ratio of the largest and the smallest false alarms, by which they are spread."""
+
+
+def cut_edges(edges: Array, size: tuple[int, int]) -> npt.NDArray[np.bool_]:
+    """Find the edges of boxes (..., 4) that lie on or beyond the borders of the image."""
+    borders = np.array(size) - _BORDER
+    return np.concatenate([edges[..., :2] <= _BORDER, edges[..., 2:] >= borders], axis=-1)
+
+
+def fits(
+    tracks: Sequence[Track], found: FrameDetections, indices: Sequence[int], noise: float
+) -> Array:
+    """Log odds (tracks, detections) that a detection is a new track's and no false alarm.
+
+    The density of the prediction against that of false alarms there, which have any size. An edge
+    that is cut in both tells nothing. Only where it is says so, neither scores nor colours.
+
+    Parameters
+    ----------
+    tracks : sequence of Track
+        Tracks, predicted into this frame.
+    found : FrameDetections
+        Detections of the frame.
+    indices : sequence of int
+        Those to compare with.
+    noise : float
+        Standard deviation of an edge, fraction of the size.
+    """
+    detected = found.edges[indices]
+    sides = np.tile(detected[:, 2:] - detected[:, :2], 2)
+    false = found.clutter[indices] - math.log(found.size[0] * found.size[1])
+    false -= np.log(sides[:, :2] * _SIZES).sum(axis=1)
+    spread = deviations(detected, noise) ** 2
+    odds = np.empty((len(tracks), len(detected)))
+    for row, track in enumerate(tracks):
+        cut = cut_edges(track.state.edges, found.size) & cut_edges(detected, found.size)
+        variances = np.where(cut, spread + (_SIZES * sides) ** 2 / (2 * np.pi), spread)
+        covariance = track.state.edge_covariance + variances[:, np.newaxis] * np.eye(4)
+        residual = (detected - track.state.edges)[..., np.newaxis]
+        costs = (residual * np.linalg.solve(covariance, residual)).sum(axis=(1, 2))
+        odds[row] = -(costs + np.linalg.slogdet(2 * np.pi * covariance)[1]) / 2 - false
+    return odds
 
 
 _MISSED_FOR = 5.0

@@ -121,6 +121,8 @@ class Track:
         Evidence that the vehicle exists.
     strength : float
         Evidence by the scores of its detections alone.
+    doubt : float
+        Log odds against a vehicle by these scores; never below zero.
     matches, partial : int
         Number of its detections, and of the latest in a row that showed only a part of it.
     crowded : int
@@ -129,6 +131,8 @@ class Track:
         Largest width and height of its latest detections, px.
     confirmed, lost : bool
         It is reported; it has been hidden for too long to be predicted.
+    has_driven : bool
+        Its way shows that it is no part of the scene.
     given : bool
         It was given by hand: that no detector finds it does not refute it.
     score : float
@@ -157,12 +161,14 @@ class Track:
     label: str = ""
     log_odds: float = 0.0
     strength: float = 0.0
+    doubt: float = 0.0
     matches: int = 0
     partial: int = 0
     crowded: int = 0
     sides: Array = field(default_factory=lambda: np.zeros(2))
     confirmed: bool = False
     lost: bool = False
+    has_driven: bool = False
     given: bool = False
     score: float = math.nan
     age: float = 0.0
@@ -177,7 +183,6 @@ class Track:
     usual_similarity: float = _FIRST_SIMILARITY
     growth: Growth = field(default_factory=Growth)
     _first: Array = field(default_factory=lambda: np.zeros(2))
-    _drive: Array = field(default_factory=lambda: np.zeros(8))
 
     def predict(self, elapsed: float) -> None:
         """Go on by `elapsed` nominal periods."""
@@ -197,34 +202,16 @@ class Track:
         """Let the usual similarity of the colours follow that of a detected vehicle."""
         self.usual_similarity += _COLOUR_RATE * (similarity - self.usual_similarity)
 
-    def note_place(self, centre: Array) -> None:
-        """Note the centre (px) of a detection, from which the straightness of its way is known."""
-        x, y = centre.tolist()
-        if not self._drive[0]:
-            self._first = centre
-        time = self.age
-        self._drive += (1, time, time**2, x, y, time * x, time * y, x * x + y * y)
-
-    @property
-    def straightness(self) -> float:
-        """Share of its detections' scatter that a straight drive at constant speed explains.
-
-        A vehicle comes close to one; what flickers in one place, a tree in the wind, to zero; so
-        does a vehicle whose detections are not noted, because it was given by hand.
-        """
-        count, time, squared, x, y, time_x, time_y, places = self._drive.tolist()
-        if not count:
-            return 0.0
-        scatter = places - (x * x + y * y) / count
-        duration = squared - time * time / count
-        if scatter <= 0 or duration <= 0:
-            return 0.0
-        along_x, along_y = time_x - time * x / count, time_y - time * y / count
-        return float((along_x**2 + along_y**2) / duration / scatter)
+    def note_place(self, edges: Array) -> None:
+        """Note the edges (px) of a detection, of which the first is where its way begins."""
+        if not self._first.any():
+            self._first = (edges[:2] + edges[2:]) / 2
 
     @property
     def way(self) -> float:
-        """Distance from its first detection, in its present widths."""
+        """Distance from its first detection, in its present widths; 0 where none is noted."""
+        if not self._first.any():
+            return 0.0
         left, top, right, bottom = self.state.edges.tolist()
         x, y = self._first.tolist()
         moved = math.hypot((left + right) / 2 - x, (top + bottom) / 2 - y)

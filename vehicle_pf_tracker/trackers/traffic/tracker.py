@@ -28,8 +28,10 @@ from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.base import drawn_seed
 from vehicle_pf_tracker.trackers.traffic.association import (
+    GATE,
     FrameDetections,
     assign,
+    fits,
     former,
     pair_costs,
     resume,
@@ -231,6 +233,7 @@ class TrafficTracker:
 
     def _take(self, detections: Detections, elapsed: float) -> None:
         """Give the detections to the tracks; what is left over may be new vehicles."""
+        self._evidence.look()
         found = FrameDetections(detections, self._evidence, self._colours, self._size)
         recent = [one for one in self._tracks if one.confirmed and one.unseen < _RECENT]
         strong = np.flatnonzero(found.log_odds >= _STRONG).tolist()
@@ -238,11 +241,11 @@ class TrafficTracker:
         self._drop_parts(found)
         self._match([one for one in self._tracks if one.confirmed], found, found.free)
         self._drop_parts(found)
-        self._match([one for one in self._tracks if not one.confirmed], found, found.free)
+        self._match_tentative([one for one in self._tracks if not one.confirmed], found)
         self._existence.fade(self._tracks, elapsed)
         for index in found.free:
             if self._is_taken(found.edges[index]):
-                self._evidence.learn(found.samples[index], False)
+                self._evidence.learn(found.samples[index], False, alone=False)
             else:
                 self._begin_from(found, index)
 
@@ -261,7 +264,17 @@ class TrafficTracker:
         for row, column in pairs:
             self._correct(tracks[row], found, indices[column])
 
-    def _correct(self, track: Track, found: FrameDetections, index: int) -> None:
+    def _match_tentative(self, tracks: Sequence[Track], found: FrameDetections) -> None:
+        """Pair new tracks with free detections that are rather theirs than false alarms."""
+        if not tracks or not found.free:
+            return
+        indices = found.free.copy()
+        odds = fits(tracks, found, indices, self.parameters.detections.edge_noise)
+        for row, column in assign(GATE - odds):
+            found.free.remove(indices[column])
+            self._correct(tracks[row], found, indices[column], float(odds[row, column]))
+
+    def _correct(self, track: Track, found: FrameDetections, index: int, fit: float = 0.0) -> None:
         """Correct a track by its detection."""
         settings = self.parameters.detections
         edges = found.edges[index]
@@ -274,7 +287,7 @@ class TrafficTracker:
             if not is_cut(edges, self._size):
                 track.growth.add(edges)
         known = track.confirmed
-        self._existence.detected(track, edges, found.samples[index], float(found.log_odds[index]))
+        self._existence.detected(track, found, index, fit)
         if track.confirmed and not known and self.parameters.returning:
             hidden = former(track, self._tracks)
             if hidden is not None:
@@ -289,7 +302,7 @@ class TrafficTracker:
             edges = found.edges[index]
             if (intersections(edges, boxes) > _NESTED * areas(edges)).any():
                 found.free.remove(index)
-                self._evidence.learn(found.samples[index], False)
+                self._evidence.learn(found.samples[index], False, alone=False)
 
     def _is_taken(self, edges: Array) -> bool:
         """Test whether a tracked vehicle is where a new one would begin."""
@@ -304,7 +317,7 @@ class TrafficTracker:
         track = self._begin(edges, found.labels[index])
         track.score = float(found.scores[index])
         track.learn_colours(found.histogram(index))
-        self._existence.detected(track, edges, found.samples[index], float(found.log_odds[index]))
+        self._existence.begun(track, found, index)
 
     def _begin(self, edges: Array, label: str) -> Track:
         """Begin a track in a box, with the next identity."""
