@@ -56,9 +56,7 @@ BRIEF = SimulatedDetector(misses=0.67, miss_length=2.0, false_alarms=0.3, noise=
 class CloseParameters(TrafficSceneParameters):
     """Parameters of a close road, which has no bridges, lorries or red lights."""
 
-    shake: float = parameter(
-        3.0, "the camera shakes farther", minimum=0.0, maximum=10.0, unit="px"
-    )
+    shake: float = parameter(3.0, "the camera shakes farther", minimum=0.0, maximum=10.0, unit="px")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,8 +69,9 @@ class CloseScene(TrafficScene):
         """Render every frame in order, with its truth."""
         backdrop = self.backdrop()
         for index in range(self.frame_count):
-            picture = np.mean([self._painted(backdrop, index + at) for at in _EXPOSURE], axis=0)
-            yield self.camera.capture(picture.astype(np.float32), index), self.truth(index)
+            moments = [self._painted(backdrop, index + at) for at in _EXPOSURE]
+            picture: Image = np.mean(moments, axis=0).astype(np.float32)
+            yield self.camera.capture(picture, index), self.truth(index)
 
     def truth(self, index: int) -> tuple[VehicleTruth, ...]:
         """Exact truth about every vehicle in the image of frame `index`, by identity."""
@@ -89,7 +88,7 @@ class CloseScene(TrafficScene):
         )
 
     def _painted(self, backdrop: Image, moment: float) -> Image:
-        picture = backdrop.copy()
+        picture: Image = backdrop.copy()
         order = self._far_to_near(round(moment))
         for part in (0, 1):
             for number in order:

@@ -45,8 +45,9 @@ from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identi
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.offline.run_folder import versions
+from vehicle_pf_tracker.offline.traffic_results import IN_TRACKS, Backdating, Frames
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -205,6 +206,7 @@ def follow(
         frame_rate=sequence.frame_rate,
     )
     tracks: list[list[float]] = []
+    backdating = Backdating()
     seconds = 0.0
     for number, frame in enumerate(sequence.frames(), start=1):
         detections = None
@@ -214,17 +216,20 @@ def follow(
         before = time.process_time()
         estimates = session.feed(frame, round(number * 1e9 / sequence.frame_rate), detections)
         seconds += time.process_time() - before
-        tracks += _rows(number, estimates)
+        tracks += _rows(backdating.add(number, 0, estimates))
+    tracks += _rows(backdating.rest())
     found = np.array(recorder.rows).reshape(-1, 6) if given is None else given
     rows = np.array(tracks, dtype=np.float64).reshape(-1, 6)
     return rows, found, seconds / sequence.frame_count
 
 
-def _rows(number: int, estimates: Sequence[TrackEstimate]) -> Iterator[list[float]]:
-    for one in estimates:
-        if one.mode in {TrackMode.TRACKING, TrackMode.OCCLUDED}:
-            box = one.box
-            yield [number, one.identity, box.x, box.y, box.width, box.height]
+def _rows(frames: Frames) -> list[list[float]]:
+    return [
+        [number, one.identity, one.box.x, one.box.y, one.box.width, one.box.height]
+        for number, _, estimates in frames
+        for one in estimates
+        if one.mode in IN_TRACKS
+    ]
 
 
 NAME = "traffic"

@@ -278,14 +278,17 @@ def former(track: Track, others: Sequence[Track]) -> Track | None:
     others : sequence of Track
         All tracks.
     """
-    costs = [(cost, one.identity, one) for one in others if (cost := _cost(track, one)) is not None]
+    costs = [(cost, one.serial, one) for one in others if (cost := _cost(track, one)) is not None]
     return min(costs)[2] if costs else None
 
 
 def resume(hidden: Track, track: Track) -> None:
     """Go on with a hidden vehicle where the new track that it turned out to be is."""
     hidden.state, hidden.before = track.state, track.before
-    hidden.score, hidden.label = track.score, track.label or hidden.label
+    hidden.score = track.score
+    for label, votes in track.votes.items():
+        hidden.vote(label, votes)
+    hidden.has_driven = hidden.has_driven or track.has_driven
     hidden.unseen = hidden.undetected = 0.0
     hidden.log_odds = max(hidden.log_odds, track.log_odds)
     hidden.visible, hidden.covers, hidden.hidden_by = track.visible, track.covers, None

@@ -31,20 +31,25 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track, edges_of
+from vehicle_pf_tracker.trackers.traffic.track import Track, edges_of
 
 _LEAST, _MOST = -0.6, 2.0
 """Bounds of the log odds that the score of one detection adds: a few good scores are no proof, and
 a detector that knows little about a vehicle must not hide it for ever."""
 _SCORE_DOUBT = 0.5
 """Log odds per detection that are taken off, in confirming by scores alone."""
+_SCORE_MEMORY = 0.8
+"""Weight of the detections before in this: a spot that looks like a vehicle does so each time, so
+that the latest five are worth as much as all."""
 _NEW_VEHICLES = 0.05
 """Vehicles that come into view per image: one in two thirds of a second at 30 Hz."""
 _MOST_FIT = 3.0
 """Most log odds by where a detection is: no single one proves a vehicle."""
-_DRIVES = 4.0
-"""Standard deviations of its speed from zero above which a track drives: what flickers in one
-place is below two."""
+_STRAIGHT, _DRIVES = 0.8, 7.0
+"""Straightness of a drive, which a leap between two places that flicker cannot reach (0.75), and
+least evidence for it: one in a thousand that flicker in one place have as much."""
+_MOVING = 4.0
+"""Standard deviations of its speed from zero above which a vehicle does not stand."""
 _DOUBTED = 2.0
 """Log odds against a track, by the scores of its detections, for which it has to drive twice as
 far: false alarms side by side look like a short drive."""
@@ -118,12 +123,13 @@ class Existence:
         """Share of the vehicles in plain sight that the detector finds."""
         return min(max(self._detected / self._asked, _LEAST_DETECTED), _MOST_DETECTED)
 
-    def begun(self, track: Track, found: FrameDetections, index: int) -> None:
-        """Take the first detection of a new track."""
-        self._add(track, found, index, math.log(_NEW_VEHICLES) - float(found.clutter[index]))
+    def begun(self, track: Track, found: FrameDetections, index: int) -> bool:
+        """Take the first detection of a new track; True if that is already enough."""
+        fit = math.log(_NEW_VEHICLES) - float(found.clutter[index])
+        return self._add(track, found, index, fit)
 
-    def detected(self, track: Track, found: FrameDetections, index: int, fit: float) -> None:
-        """Add the evidence of a detection to its track.
+    def detected(self, track: Track, found: FrameDetections, index: int, fit: float) -> bool:
+        """Add the evidence of a detection to its track; True if that proves a tentative one.
 
         Parameters
         ----------
@@ -137,34 +143,29 @@ class Existence:
             Log odds by where it is, of `fits`; not used for a confirmed one.
         """
         if track.confirmed:
-            drives = track.state.speed_ratio > _DRIVES or not track.has_driven
+            drives = track.state.speed_ratio > _MOVING or not track.has_driven
             fit = self._numbers.agreement if drives else 0.0
-        self._add(track, found, index, min(fit, _MOST_FIT))
+        return self._add(track, found, index, min(fit, _MOST_FIT))
 
-    def _add(self, track: Track, found: FrameDetections, index: int, fit: float) -> None:
+    def _add(self, track: Track, found: FrameDetections, index: int, fit: float) -> bool:
         sample, log_odds = found.samples[index], float(found.log_odds[index])
-        track.unseen = track.undetected = 0.0
-        track.hidden_by = None
-        track.matches += 1
-        score = log_odds if track.confirmed else self._evidence.score_gain(sample.score)
-        score = min(max(score, _LEAST), _MOST)
-        track.doubt = max(track.doubt - score, 0.0)
-        track.log_odds += score + fit
-        track.log_odds = min(track.log_odds, MOST_EVIDENCE)
-        track.strength += min(max(log_odds - _SCORE_DOUBT, _LEAST), _MOST)
+        gain = log_odds if track.confirmed else self._evidence.score_gain(sample.score)
+        track.add_evidence(found.edges[index], min(max(gain, _LEAST), _MOST), fit)
+        doubted = min(max(log_odds - _SCORE_DOUBT, _LEAST), _MOST)
+        track.strength = _SCORE_MEMORY * track.strength + doubted
         if track.has_driven or track.given:
-            if track.given or track.state.speed_ratio > _DRIVES:
+            if track.given or track.state.speed_ratio > _MOVING:
                 self._evidence.learn(sample, True)
-            return
+            return False
         track.samples.append(sample)
-        edges = found.edges[index]
-        track.note_place(edges)
-        birth = self.parameters.birth
-        if track.matches >= birth.matches and self._drives(track):
-            track.has_driven = track.log_odds >= birth.evidence or track.confirmed
-        proven = track.strength > self._numbers.proven_by_scores
-        if track.has_driven or (proven and track.log_odds >= birth.evidence):
-            track.confirmed = True
+        known = track.confirmed or track.log_odds >= self.parameters.birth.evidence
+        track.has_driven = known and self._drives(track)
+        self._teach(track)
+        proven = track.has_driven or track.strength > self._numbers.proven_by_scores
+        return not track.confirmed and known and proven
+
+    def _teach(self, track: Track) -> None:
+        """Learn from the detections of what has driven, or stands for long."""
         if track.has_driven:
             for one in track.samples:
                 self._evidence.learn(one, True)
@@ -175,8 +176,11 @@ class Existence:
                 self._evidence.learn(oldest, False)
 
     def _drives(self, track: Track) -> bool:
+        if track.matches < self.parameters.birth.matches:
+            return False
         needed = self.parameters.birth.displacement * (1 + track.doubt / _DOUBTED)
-        return track.way > needed and track.state.speed_ratio > _DRIVES
+        straightness, evidence = track.drive()
+        return track.way > needed and straightness > _STRAIGHT and evidence > _DRIVES
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
         """Take off evidence from tracks that a detector has not seen.

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import cv2
@@ -118,6 +119,7 @@ class TrafficTracker:
         self.frame_period = DEFAULT_PERIOD
         self.bad_states = 0
         self.last_identity = 0
+        self._serial = 0
         self._numbers = numbers
         self._seed = drawn_seed(self.parameters.seed)
         self._frame: Frame | None = None
@@ -146,7 +148,7 @@ class TrafficTracker:
         Returns
         -------
         tuple of TrackEstimate
-            One for every vehicle that is followed, by identity.
+            One for every vehicle that is followed, by identity, tentative ones last.
         """
         self._look(frame)
         for track in self._tracks:
@@ -161,7 +163,7 @@ class TrafficTracker:
             self._hold(normals)
         self._end()
         self._learn_similarity()
-        ordered = sorted(self._tracks, key=lambda track: track.identity)
+        ordered = sorted(self._tracks, key=lambda one: (one.identity or math.inf, one.serial))
         return tuple(track.estimate() for track in ordered)
 
     def add(self, box: Box, label: str = "") -> int:
@@ -177,8 +179,10 @@ class TrafficTracker:
         if self._frame is None:
             raise RuntimeError("show the tracker a frame before adding a vehicle")
         check_target(box, *self._size)
-        track = self._begin(np.array([*box.corners[0], *box.corners[2]]), label)
-        track.confirmed = track.given = True
+        track = self._begin(np.array([*box.corners[0], *box.corners[2]]))
+        track.vote(label, 1.0)
+        track.given = True
+        self._confirm(track)
         track.log_odds = MOST_EVIDENCE
         track.learn_colours(self._colours.histogram(track.state.edges, track.covers))
         return track.identity
@@ -281,18 +285,23 @@ class TrafficTracker:
         others = np.delete(found.edges, index, axis=0)
         whole = measure(track, edges, settings.edge_noise, settings.covered, self._size, others)
         track.score = float(found.scores[index])
-        track.label = found.labels[index] or track.label
+        track.vote(found.labels[index], track.score)
         if whole and track.visible > _LEARNING_SHARE:
             track.learn_colours(found.histogram(index))
             if not is_cut(edges, self._size):
                 track.growth.add(edges)
-        known = track.confirmed
-        self._existence.detected(track, found, index, fit)
-        if track.confirmed and not known and self.parameters.returning:
-            hidden = former(track, self._tracks)
-            if hidden is not None:
-                resume(hidden, track)
-                self._tracks.remove(track)
+        if self._existence.detected(track, found, index, fit):
+            self._confirm(track)
+
+    def _confirm(self, track: Track) -> None:
+        """Give a new vehicle its number, unless it is one that was hidden."""
+        may_return = self.parameters.returning and not track.given
+        if may_return and (hidden := former(track, self._tracks)) is not None:
+            resume(hidden, track)
+            self._tracks.remove(track)
+            return
+        self.last_identity += 1
+        track.identity = self.last_identity
 
     def _drop_parts(self, found: FrameDetections) -> None:
         """Drop detections inside vehicles that have one: their bonnets, or second boxes."""
@@ -314,13 +323,15 @@ class TrafficTracker:
     def _begin_from(self, found: FrameDetections, index: int) -> None:
         """Take a detection for a new vehicle, as yet without evidence."""
         edges = found.edges[index]
-        track = self._begin(edges, found.labels[index])
+        track = self._begin(edges)
         track.score = float(found.scores[index])
+        track.vote(found.labels[index], track.score)
         track.learn_colours(found.histogram(index))
-        self._existence.begun(track, found, index)
+        if self._existence.begun(track, found, index):
+            self._confirm(track)
 
-    def _begin(self, edges: Array, label: str) -> Track:
-        """Begin a track in a box, with the next identity."""
+    def _begin(self, edges: Array) -> Track:
+        """Begin a track in a box."""
         parameters, period = self.parameters, self.frame_period
         drive = Drive(
             acceleration=parameters.motion.acceleration * period**2 / _VEHICLE_WIDTH,
@@ -329,9 +340,9 @@ class TrafficTracker:
         )
         # A horizon below the box would have it drive on the sky.
         horizon = min(self._row, float(edges[Edge.BOTTOM]) - 1)
-        self.last_identity += 1
+        self._serial += 1
         state = first_state(edges, parameters.detections.edge_noise, horizon, drive, self._size)
-        track = Track(self.last_identity, state, label=label)
+        track = Track(self._serial, state)
         self._tracks.append(track)
         return track
 
