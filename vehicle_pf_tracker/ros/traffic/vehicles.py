@@ -97,7 +97,8 @@ class Selection:
 
     def of(self, estimates: Sequence[TrackEstimate]) -> TrackEstimate | None:
         """Return the estimate of the selected vehicle, where there is one."""
-        return next((one for one in estimates if one.identity == self.identity), None)
+        chosen = self.identity
+        return next((one for one in estimates if chosen and one.identity == chosen), None)
 
 
 def _contains(box: Box, point: Position) -> bool:
