@@ -276,15 +276,19 @@ def test_other_threads_leave_the_signals_alone():
 def test_what_was_tracked_until_a_signal_is_kept_and_said(
     run, video, tmp_path, monkeypatch, capsys, number
 ):
-    numbered = run_verb.numbered_frames
+    numbered = run_verb.numbered_part
 
-    def interrupted(*values):
-        for frame, found in numbered(*values):
+    def signalled(frames):
+        for frame, found in frames:
             if frame == 6:
                 os.kill(os.getpid(), number)
             yield frame, found
 
-    monkeypatch.setattr(run_verb, "numbered_frames", interrupted)
+    def interrupted(*values):
+        first, frames = numbered(*values)
+        return first, signalled(frames)
+
+    monkeypatch.setattr(run_verb, "numbered_part", interrupted)
     made = tmp_path / "made.mp4"
     assert run(video, "--target", TARGET, "--video", made) == 128 + number
     rows = estimates(tmp_path / "out")
