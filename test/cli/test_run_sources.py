@@ -222,13 +222,6 @@ def test_a_video_that_finds_no_space_is_an_error_and_is_not_left(tmp_path, monke
     assert list(tmp_path.iterdir()) == []
 
 
-def test_there_is_no_window_without_a_display(run, video, monkeypatch, capsys):
-    monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    assert run(video, "--target", TARGET, "--show") == 1
-    assert "--show needs a display" in capsys.readouterr().err
-
-
 @pytest.fixture
 def interrupts():
     """Take signals as Python does, also where a shell in the background or nohup ignores them."""

@@ -87,8 +87,7 @@ def run(request: Request) -> int:
 
 
 def _track(request: Request, variant: Variant, source: Source, folder: RunFolder) -> int:
-    window = request.source if request.show else ""
-    pictures = Pictures(request.video, particles=request.particles, window=window)
+    pictures = Pictures(request.video, particles=request.particles)
     with stopping() as stop, counting("tracked") as progress:
         (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
         trackers = _trackers(request, variant, source, first, found.stamp_ns)

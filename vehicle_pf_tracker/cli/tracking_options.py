@@ -30,7 +30,6 @@ from vehicle_pf_tracker.cli.requests import (
     SourceOptions,
     VerbRequest,
     option,
-    switch,
 )
 from vehicle_pf_tracker.cli.source_part import Moment
 from vehicle_pf_tracker.core.box import Box
@@ -251,7 +250,6 @@ class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
     video: Path | None = option(
         type=Path, metavar="FILE", help="write the frames with all that is followed to FILE, an mp4"
     )
-    show: bool = switch(help="show them in a window meanwhile; q ends the run")
 
     @property
     def inputs(self) -> tuple[str | Path | None, ...]:

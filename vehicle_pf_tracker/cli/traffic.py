@@ -145,7 +145,7 @@ def _follow(
     request: Request, tracking: TrafficRun, source: Source, folder: Path
 ) -> tuple[int, list[str]]:
     """Follow all vehicles to the end or to a signal; return the exit status, and notices."""
-    pictures = Pictures(request.video, window=request.source if request.show else "")
+    pictures = Pictures(request.video)
     counts = tracking.counter is not None
     with (
         stopping() as stop,
