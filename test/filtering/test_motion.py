@@ -20,7 +20,6 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.filtering.motion import (
-    RAYLEIGH_MEAN,
     sample_disc,
     sample_normal,
     sample_normal_rayleigh,
@@ -73,18 +72,6 @@ def test_sampler_draws_from_the_density():
     assert counts.sum() == pytest.approx(expected.sum(), rel=0.01)
 
 
-def test_drift_after_t_steps_is_t_times_the_rayleigh_mean():
-    # Equations 18 to 20 with all T terms (interpretation 4), and 21 and 22 across the motion.
-    steps, sigma = 12, 4.0
-    rng = np.random.default_rng(3)
-    position = np.zeros((20_000, 2))
-    for _ in range(steps):
-        position += sample_normal_rayleigh(rng, len(position), (1.0, 0.0), sigma, sigma)
-    assert pytest.approx(math.sqrt(math.pi / 2)) == RAYLEIGH_MEAN
-    assert position[:, 0].mean() == pytest.approx(steps * RAYLEIGH_MEAN * sigma, rel=0.01)
-    assert position[:, 1].mean() == pytest.approx(0.0, abs=0.5)
-
-
 def test_without_a_direction_the_drift_goes_everywhere():
     moves = sample_normal_rayleigh(np.random.default_rng(4), 50_000, (0.0, 0.0), 2.0, 1.0)
     assert np.abs(moves.mean(axis=0)).max() < 0.06
@@ -97,7 +84,3 @@ def test_disc_is_filled_evenly():
     # Half of the area lies within 10 / sqrt(2); the mean distance is two thirds of the radius.
     assert np.mean(distance < 10.0 / math.sqrt(2)) == pytest.approx(0.5, abs=0.005)
     assert distance.mean() == pytest.approx(20 / 3, rel=0.005)
-
-
-def test_disc_of_no_radius_is_its_middle():
-    assert not sample_disc(np.random.default_rng(8), 3, 0.0).any()

@@ -81,12 +81,6 @@ def test_jpeg_keeps_the_order_of_the_channels(options):
     assert np.abs(frame.astype(int) - RED).max() <= 3
 
 
-def test_grey_jpeg_becomes_rgb():
-    frame = decode_compressed("jpeg", coded(".jpg", np.full((16, 16), 90, np.uint8)))
-    assert frame.shape == (16, 16, 3)
-    assert np.abs(frame.astype(int) - 90).max() <= 1
-
-
 def test_what_cameras_put_before_the_frame_header_is_passed_over():
     """A thumbnail with a frame header of its own, fill bytes, stray bytes."""
     data = coded(".jpg", SMALL)

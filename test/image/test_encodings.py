@@ -62,11 +62,6 @@ def test_any_buffer_is_taken(wrap):
     assert np.array_equal(to_rgb("rgb8", 2, 3, 9, False, data), COLOURS)
 
 
-def test_mono8_is_repeated_in_all_channels():
-    grey = np.array([[0, 128, 255]], np.uint8)
-    assert np.array_equal(convert("mono8", grey, 3), np.repeat(grey[..., None], 3, axis=2))
-
-
 @pytest.mark.parametrize(("order", "big"), [("<u2", False), (">u2", True)])
 def test_mono16_keeps_the_high_byte_in_both_byte_orders(order, big):
     values = np.array([[0x0000, 0x12FF, 0xFF00]], order)
@@ -115,13 +110,6 @@ def mosaic(pattern, colour, size=8):
 def test_bayer_patterns_by_their_ros_names(pattern, colour):
     frame = convert(f"bayer_{pattern}8", mosaic(pattern, colour), 8)
     assert np.array_equal(frame[2:-2, 2:-2], np.full((4, 4, 3), colour, np.uint8))
-
-
-@pytest.mark.parametrize(("order", "big"), [("<u2", False), (">u2", True)])
-def test_bayer_16_keeps_the_high_byte(order, big):
-    rows = (mosaic("rggb", RED).astype(np.uint16) * 256 + 255).astype(order)
-    frame = convert("bayer_rggb16", rows, 8, big=big)
-    assert np.array_equal(frame[3, 3], RED)
 
 
 def bt601(y, u, v):

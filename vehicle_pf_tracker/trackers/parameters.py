@@ -50,9 +50,8 @@ def frame_rate_parameter() -> Any:
         0.0,
         "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
         "intervals.",
-        bounds=(0.0, 1000.0),
-        unit="1/s",
-    )
+        bounds=(0.0, 1000.0), unit="1/s",
+    )  # fmt: skip
 
 
 def side_parameter(doc: str) -> Any:
@@ -128,7 +127,11 @@ class CommonParameters:
     evidence: EvidenceParameters = group(EvidenceParameters)
 
     def effective(self: ParametersT) -> ParametersT:
-        """Return the effective parameters, where some override others."""
+        """Return the effective parameters: as printed where `as_printed` is set."""
+        return self.printed() if getattr(self, "as_printed", False) else self
+
+    def printed(self: ParametersT) -> ParametersT:
+        """Return the parameters with every choice that the paper prints."""
         return self
 
     def validate(self) -> None:

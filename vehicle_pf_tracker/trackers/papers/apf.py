@@ -173,10 +173,8 @@ class ApfParameters(ParticleParameters):
         """Newest displacements that the drift leaves out, in frames."""
         return self.velocity.delay if self.occlusion.rule == "relative" else 0
 
-    def effective(self) -> ApfParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        if not self.as_printed:
-            return self
+    def printed(self) -> ApfParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
         return replace(
             self,
             histogram_bits=3,
@@ -242,7 +240,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         cloud = Cloud(particles, *weights)
         position = cloud.mean()  # step 13
         at = np.asarray([position])
-        histogram = self.kernels.histograms(feature, frame, at, window)[0]  # step 14
+        histogram = feature.histograms(frame, at, window)[0]  # step 14
         evidence = hellinger_similarity(histogram, self.reference.histogram)
         self._compare_and_learn(settings, histogram, evidence)  # steps 15 and 16
         self._follow(settings, position, elapsed, regular=regular)

@@ -66,30 +66,22 @@ def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Wei
 def as_printed_switch(source: str) -> Any:
     """Make the switch that follows the paper to the letter; `source` names what it undoes."""
     return parameter(
-        False,
-        "Follow the paper to the letter: overrides every interpretation below.",
+        False, "Follow the paper to the letter: overrides every interpretation below.",
         source=source,
-    )
+    )  # fmt: skip
 
 
 def histogram_bits_parameter(*, tuned: bool = False) -> Any:
     """Make the resolution of joint colour histograms."""
     return parameter(
-        3,
-        "More: finer colours, more easily upset by light and noise.",
-        bounds=(1, 5),
-        unit="bits/channel",
-        source="P1 section III-C",
-        effect="relearns",
-        tuned=tuned,
-    )
+        3, "More: finer colours, more easily upset by light and noise.", bounds=(1, 5),
+        unit="bits/channel", source="P1 section III-C", effect="relearns", tuned=tuned,
+    )  # fmt: skip
 
 
 def resampling_parameter(source: str) -> Any:
     """Make the choice of a resampling scheme; `source` is where the paper resamples."""
     return parameter(
-        "multinomial",
-        "How ancestors are drawn; systematic and stratified vary less.",
-        choices=SCHEMES,
-        source=source,
-    )
+        "multinomial", "How ancestors are drawn; systematic and stratified vary less.",
+        choices=SCHEMES, source=source,
+    )  # fmt: skip

@@ -42,12 +42,9 @@ TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
 def texture_parameter() -> Any:
     """Make the choice of the texture feature."""
     return parameter(
-        "glcm",
-        "The histogram that describes texture; the paper tried all three and kept glcm.",
-        choices=TEXTURES,
-        source="P2 section III-D",
-        effect="relearns",
-    )
+        "glcm", "The histogram that describes texture; the paper tried all three and kept glcm.",
+        choices=TEXTURES, source="P2 section III-D", effect="relearns",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,10 +179,8 @@ class MfpfParameters(FeatureFilterParameters):
         source="P2 section IV, interpretation 18",
     )
 
-    def effective(self) -> MfpfParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        if not self.as_printed:
-            return self
+    def printed(self) -> MfpfParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
         printed = common_print(self)
         return replace(
             printed,

@@ -162,9 +162,9 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
 class ConventionalParameters(RepeatedResamplingParameters):
     """Parameters of `conventional`."""
 
-    def effective(self) -> ConventionalParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        return common_print(self) if self.as_printed else self
+    def printed(self) -> ConventionalParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
+        return common_print(self)
 
 
 class ConventionalTracker(RepeatedResampling[ConventionalParameters]):
@@ -218,10 +218,8 @@ class AdaptiveParameters(RepeatedResamplingParameters):
     )  # fmt: skip
     occlusion: OcclusionTestParameters = group(OcclusionTestParameters)
 
-    def effective(self) -> AdaptiveParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        if not self.as_printed:
-            return self
+    def printed(self) -> AdaptiveParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
         return replace(common_print(self), occlusion=replace(self.occlusion, test="n_eff"))
 
 
