@@ -101,7 +101,7 @@ def test_errors_become_one_line_and_a_status(capsys, failing, error, status, lin
     [
         ("rclpy", "pip install 'vehicle_pf_tracker[ros]'"),
         ("sensor_msgs.msg", "module sensor_msgs is not there: source ROS's setup.bash"),
-        ("onnxruntime", "install the extra [onnx], pip install 'vehicle_pf_tracker[onnx]'"),
+        ("onnxruntime", "install the extra [video], pip install 'vehicle_pf_tracker[video]'"),
         ("av", "pip install 'vehicle_pf_tracker[video]'"),
         ("mcap.writer", "the Python module mcap is not there: it belongs to every installation"),
     ],

@@ -15,6 +15,7 @@
 """Every way to install the package, tried for real: the code and its files are found in each."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -170,3 +171,40 @@ def assert_ros_finds(prefix):
     stated = "import pkg_resources as p; print(p.get_distribution('vehicle_pf_tracker').requires())"
     command = f'. {prefix.parent}/setup.sh && exec "$0" -W ignore -c "$1"'
     assert run("sh", "-c", command, sys.executable, stated, cwd=prefix).strip() == "[]"
+
+
+WRITTEN = {
+    "video": (
+        "grid.png",
+        "seen.mp4",
+        "out/summary.png",
+        "out/estimates.csv",
+        "vehicles/tracks.csv",
+    ),
+    "ros": ("rec/metadata.yaml", "replayed/estimates.csv"),
+    "evaluation": ("recordings/bridge/metadata.yaml", "results/report.html"),
+}
+"""What the README's commands leave, by the extra that they need."""
+
+
+def readme_commands(extra):
+    """The commands after `pip install '.[EXTRA]'` in the README."""
+    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    first = f"pip install '.[{extra}]'\n"
+    (commands,) = [block.removeprefix(first) for block in blocks if block.startswith(first)]
+    return commands
+
+
+@pytest.mark.parametrize("extra", WRITTEN)
+def test_an_extra_brings_all_that_the_readme_shows_for_it(wheel, extra, tmp_path):
+    python = bare(tmp_path / "env")
+    pip("install", f"{wheel}[{extra}]", cwd=tmp_path, python=python)
+    script = f"trap 'kill $(jobs -p) || true' EXIT\nset -e\n{readme_commands(extra)}"
+    variables = {
+        "PATH": f"{python.parent}:{os.environ['PATH']}",
+        "ROS_DOMAIN_ID": 1 + os.getpid() % 100,  # not that of the tests beside this one
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+    run("bash", "-c", script, cwd=tmp_path, **variables)
+    for name in WRITTEN[extra]:
+        assert (tmp_path / name).stat().st_size > 0

@@ -140,7 +140,7 @@ def test_its_generated_files_are_there(checkout):
     assert '<enclave path="/vehicle_pf_tracker/toy">' in policy
     assert 'node="toy_tracker"' in policy
     assert "\n## toy\n" in (checkout / "docs/parameters.md").read_text()
-    for page in ("README.md", "docs/choosing.md", "docs/variants.md"):
+    for page in ("docs/choosing.md", "docs/variants.md"):
         assert "\n| `toy` | " in (checkout / page).read_text()
 
 

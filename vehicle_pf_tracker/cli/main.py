@@ -46,14 +46,14 @@ EXTRAS: Mapping[str, str] = MappingProxyType(
     {
         "matplotlib": "evaluation",
         "jinja2": "evaluation",
-        "scipy": "traffic",  # `evaluation` brings it too, and says so before
-        "numba": "numba",
+        "optuna": "evaluation",
+        "scipy": "video",  # `evaluation` brings it too, and says so before
         "av": "video",
-        "onnxruntime": "onnx",
-        "optuna": "tune",
+        "onnxruntime": "video",
+        "numba": "numba",
     }
 )
-"""The extra that brings a module, by its name."""
+"""The smallest extra that brings a module, by its name."""
 
 _ROS_ENDINGS = ("_msgs", "_interfaces", "_srvs")
 
@@ -100,7 +100,7 @@ EVALUATING = frozenset({"demo", "evaluate", "tune", "report"})
 """Verbs that need the extra `evaluation`: nodes, `replay`, `run` and `import` do without it."""
 
 EVALUATION_MODULES = ("matplotlib", "scipy", "jinja2")
-"""Modules that the extra `evaluation` brings."""
+"""Modules of the extra `evaluation` that each of these verbs needs."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:

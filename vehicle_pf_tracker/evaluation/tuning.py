@@ -213,7 +213,7 @@ def _optuna() -> Any:
         import optuna  # noqa: PLC0415 - an extra
     except ModuleNotFoundError:
         raise InputError(
-            "tuning needs the extra [tune]: `pip install 'vehicle_pf_tracker[tune]'`"
+            "tuning needs the extra [evaluation]: `pip install 'vehicle_pf_tracker[evaluation]'`"
         ) from None
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     return optuna

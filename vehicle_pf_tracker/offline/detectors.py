@@ -45,8 +45,8 @@ def open_network(path: Path) -> Network:
         runtime = importlib.import_module("onnxruntime")
     except ImportError:
         raise InputError(
-            "networks need ONNX Runtime: install the extra [onnx], "
-            "pip install 'vehicle_pf_tracker[onnx]'"
+            "networks need ONNX Runtime: install the extra [video], "
+            "pip install 'vehicle_pf_tracker[video]'"
         ) from None
     if not path.is_file():
         raise InputError(f"there is no network {path}")

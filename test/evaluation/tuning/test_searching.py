@@ -14,7 +14,7 @@
 
 import pytest
 
-pytest.importorskip("optuna", reason="the extra [tune] is not installed")
+pytest.importorskip("optuna", reason="the extra [evaluation] is not installed")
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
