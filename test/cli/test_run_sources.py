@@ -222,13 +222,6 @@ def test_a_video_that_finds_no_space_is_an_error_and_is_not_left(tmp_path, monke
     assert list(tmp_path.iterdir()) == []
 
 
-def test_there_is_no_window_without_a_display(run, video, monkeypatch, capsys):
-    monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    assert run(video, "--target", TARGET, "--show") == 1
-    assert "--show needs a display" in capsys.readouterr().err
-
-
 @pytest.fixture
 def interrupts():
     """Take signals as Python does, also where a shell in the background or nohup ignores them."""
@@ -276,15 +269,19 @@ def test_other_threads_leave_the_signals_alone():
 def test_what_was_tracked_until_a_signal_is_kept_and_said(
     run, video, tmp_path, monkeypatch, capsys, number
 ):
-    numbered = run_verb.numbered_frames
+    numbered = run_verb.numbered_part
 
-    def interrupted(*values):
-        for frame, found in numbered(*values):
+    def signalled(frames):
+        for frame, found in frames:
             if frame == 6:
                 os.kill(os.getpid(), number)
             yield frame, found
 
-    monkeypatch.setattr(run_verb, "numbered_frames", interrupted)
+    def interrupted(*values):
+        first, frames = numbered(*values)
+        return first, signalled(frames)
+
+    monkeypatch.setattr(run_verb, "numbered_part", interrupted)
     made = tmp_path / "made.mp4"
     assert run(video, "--target", TARGET, "--video", made) == 128 + number
     rows = estimates(tmp_path / "out")

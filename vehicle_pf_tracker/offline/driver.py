@@ -286,8 +286,7 @@ def follow(
                 continue
             states = list(zip(annotators, of_frame, estimates, strict=True))
             draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
-            if not take(tuple(row.mode for row in of_frame), draw, found.frame):
-                break
+            take(tuple(row.mode for row in of_frame), draw, found.frame)
     return rows
 
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Pictures of a run: a video that browsers play, a window, and a sheet of its key frames."""
+"""Pictures of a run: a video that browsers play, and a sheet of its key frames."""
 
 from __future__ import annotations
 
@@ -128,39 +128,6 @@ def has_display() -> bool:
     )
 
 
-class PictureWindow:
-    """Shows one frame after the other.
-
-    Parameters
-    ----------
-    title : str
-        Title of the window.
-
-    Raises
-    ------
-    InputError
-        If there is no display, or this OpenCV has no windows.
-    """
-
-    def __init__(self, title: str) -> None:
-        self._title = title
-        try:
-            # Without a display, Qt would end the program instead of raising.
-            if not has_display():
-                raise InputError("--show needs a display, and there is none; use --video FILE")
-            cv2.namedWindow(title, cv2.WINDOW_NORMAL)
-        except cv2.error:
-            raise InputError(
-                "--show needs an OpenCV with windows (opencv-python, not -headless); "
-                "use --video FILE"
-            ) from None
-
-    def show(self, picture: Frame) -> bool:
-        """Show a frame; False when the user presses q or Escape."""
-        cv2.imshow(self._title, cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
-        return cv2.waitKey(1) & 0xFF not in (ord("q"), 27)
-
-
 THUMB_WIDTH = 400
 """Width of a key frame on the sheet, px: three of them fill a page's width."""
 _COLUMNS = 3
@@ -227,7 +194,7 @@ def _tiled(thumbs: list[Frame]) -> Frame:
 
 
 class Pictures:
-    """Annotated frames: a video, a window, and the key frames.
+    """Annotated frames: a video, and the key frames.
 
     Parameters
     ----------
@@ -235,8 +202,6 @@ class Pictures:
         Video to write.
     particles : bool
         Draw the particles.
-    window : str
-        Title of a window that shows each annotated frame; empty for none. Its user can end the run.
 
     Attributes
     ----------
@@ -244,17 +209,10 @@ class Pictures:
         The key frames.
     """
 
-    def __init__(
-        self,
-        video: Path | None = None,
-        *,
-        particles: bool = False,
-        window: str = "",
-    ) -> None:
+    def __init__(self, video: Path | None = None, *, particles: bool = False) -> None:
         self.video = video
         self.particles = particles
         self.sheet = ContactSheet()
-        self._window = PictureWindow(window) if window else None
 
     @property
     def notices(self) -> list[str]:
@@ -262,12 +220,12 @@ class Pictures:
         return [NO_ENCODER] if self.video and not has_encoder() else []
 
     @contextmanager
-    def drawing(self, rate: float) -> Iterator[Callable[[tuple[str, ...], Draw, Frame], bool]]:
-        """Give a function that takes modes, drawing and image of each frame; False ends the run."""
+    def drawing(self, rate: float) -> Iterator[Callable[[tuple[str, ...], Draw, Frame], None]]:
+        """Give a function that takes the modes, the drawing and the image of each frame."""
         with ExitStack() as stack:
             write: Write | None = None
 
-            def take(modes: tuple[str, ...], draw: Draw, frame: Frame) -> bool:
+            def take(modes: tuple[str, ...], draw: Draw, frame: Frame) -> None:
                 nonlocal write
                 self.sheet.add(modes, draw)
                 if self.video is not None and write is None:
@@ -275,6 +233,5 @@ class Pictures:
                     write = stack.enter_context(writing)
                 if write is not None:
                     write(draw())
-                return self._window is None or self._window.show(draw())
 
             yield take

@@ -26,7 +26,6 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from vehicle_pf_tracker.core.outputs import output_errors
-from vehicle_pf_tracker.offline.estimates import clock_words
 from vehicle_pf_tracker.offline.output_files import replacing
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -158,10 +157,6 @@ class VehicleLog:
 
     Attributes
     ----------
-    first_frame, last_frame : int
-        Numbers of the first and the last frame that it was visible in.
-    first_ns, last_ns : int
-        Their stamps in ns.
     label : str
         Class; "" where it is unknown.
     survived : int
@@ -170,10 +165,6 @@ class VehicleLog:
         True from the beginning of an occlusion until it is visible again.
     """
 
-    first_frame: int
-    first_ns: int
-    last_frame: int
-    last_ns: int
     label: str = ""
     survived: int = 0
     is_hidden: bool = False
@@ -199,36 +190,27 @@ class TrafficSummary:
         self._occupancy: Tally[str] = Tally()
         self._most_in_zone: dict[str, int] = {}
 
-    def add(
-        self,
-        number: int,
-        stamp_ns: int,
-        estimates: Iterable[TrackEstimate],
-        occupancy: Mapping[str, int],
-    ) -> None:
-        """Take the next frame with its number, and the vehicles in each zone."""
+    def add(self, estimates: Iterable[TrackEstimate], occupancy: Mapping[str, int]) -> None:
+        """Take the next frame, and the number of vehicles in each zone."""
         self.frames += 1
         confirmed = [one for one in estimates if one.mode in (*CONFIRMED, TrackMode.LOST)]
         for one in confirmed:
-            self._follow(one, number, stamp_ns)
+            self._follow(one)
         present = sum(one.mode is not TrackMode.LOST for one in confirmed)
         self.most_at_once = max(self.most_at_once, present)
         for zone, count in occupancy.items():
             self._occupancy[zone] += count
             self._most_in_zone[zone] = max(count, self._most_in_zone.get(zone, 0))
 
-    def _follow(self, one: TrackEstimate, number: int, stamp_ns: int) -> None:
+    def _follow(self, one: TrackEstimate) -> None:
         is_visible = one.mode is TrackMode.TRACKING
         vehicle = self.vehicles.get(one.identity)
         if vehicle is None:
             if is_visible:
-                self.vehicles[one.identity] = VehicleLog(
-                    number, stamp_ns, number, stamp_ns, one.label
-                )
+                self.vehicles[one.identity] = VehicleLog(one.label)
             return
         if is_visible:
             vehicle.survived += vehicle.is_hidden
-            vehicle.last_frame, vehicle.last_ns = number, stamp_ns
             vehicle.label = one.label or vehicle.label
         vehicle.is_hidden = not is_visible
 
@@ -249,7 +231,6 @@ class TrafficSummary:
         found = [
             f"{_number(len(self.vehicles), 'vehicle')} in {self.frames} frames, at most "
             f"{self.most_at_once} at once{self._classes()}",
-            self._longest(),
             f"{_number(self.survived, 'occlusion')} survived under the same number; "
             f"{_number(self.ended_hidden, 'vehicle')} not seen again after an occlusion",
         ]
@@ -281,15 +262,6 @@ class TrafficSummary:
     def _classes(self) -> str:
         classes = Tally(one.label for one in self.vehicles.values() if one.label)
         return f" ({_listed(classes)})" if classes else ""
-
-    def _longest(self) -> str:
-        identity, one = max(
-            self.vehicles.items(), key=lambda item: item[1].last_ns - item[1].first_ns
-        )
-        return (
-            f"longest: vehicle {identity}, for {clock_words(one.last_ns - one.first_ns)} "
-            f"(frames {one.first_frame} to {one.last_frame})"
-        )
 
     def _counts(self, counter: Counter) -> list[str]:
         lines = [
