@@ -29,6 +29,7 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.offline.drawing import Annotator, annotated
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame
@@ -65,7 +66,8 @@ class OfflineTracker:
         Start without such a target: its box, in the frame that its stamp belongs to;
         the frames before are waited through.
     targets : mapping of int to Box
-        Boxes to start on, or to start again on, by the numbers of their frames.
+        Boxes to start on, or to start again on, by the numbers of their frames. That of the first
+        frame takes the place of the one in `settings`.
     max_diff : float
         Largest difference of stamps that belong together, in s.
 
@@ -75,8 +77,6 @@ class OfflineTracker:
         Drives the tracker; it knows the seed in use.
     start_frame : int or None
         Number of the frame that the target was first set in; None until then.
-    notices : list of str
-        Irregularities, a sentence each.
     estimate : Estimate or None
         That of the last frame; None where it has none.
     """
@@ -93,7 +93,7 @@ class OfflineTracker:
     ) -> None:
         self.session = Session(variant, parameters, settings)
         self.start_frame: int | None = None
-        self.notices = list(self.session.tracker.kernels.notices)
+        self._notices = list(self.session.tracker.kernels.notices)
         self._first_truth = first_truth if self.session.waiting else None
         self._limit_ns = max_diff_ns(max_diff)
         self._localisation = _localisation(self.session)
@@ -118,16 +118,23 @@ class OfflineTracker:
         for number, (current, following) in enumerate(itertools.pairwise(stamped), start=first):
             assert current is not None
             self._on_road.append({})
-            if self._is_start(current[0], following[0] if following else None):
-                self._set_target()
+            truth = self._first_truth
+            if truth is not None and self._is_start(truth, current[0], following):
+                self._give(truth.box, is_first=True)
+                self._first_truth = None
             if number in self._targets:
-                self.session.set_target(self._targets[number])
+                self._give(self._targets[number], is_first=number == first)
+                self._doubt(self._targets[number], current[1])
             yield self._row(number, *current)
         if self._first_truth is not None:
             raise InputError(
                 f"no image is within {self._limit_ns / 1e9:g} s of the first truth, "
                 f"at {self._first_truth.stamp_ns / 1e9:.3f} s; give a target with --target x,y,w,h"
             )
+
+    def _doubt(self, box: Box, frame: Frame | None) -> None:
+        found = [] if frame is None else doubts(frame, box)
+        self._notices += [f"the target {box} is doubtful: {why}" for why in found]
 
     @property
     def road_columns(self) -> dict[str, list[float | None]]:
@@ -137,27 +144,29 @@ class OfflineTracker:
         return {name: [one.get(name) for one in self._on_road] for name in ROAD_COLUMNS}
 
     @property
-    def road_notices(self) -> list[str]:
-        """Reasons why frames have no place on the road, a sentence each."""
-        return [
+    def notices(self) -> list[str]:
+        """Irregularities so far, a sentence each."""
+        off_road = (
             f"no place on the road in {count} frame{'s' * (count > 1)}: {reason}"
             for reason, count in self._off_road.items()
-        ]
+        )
+        return [*self._notices, *off_road]
 
-    def _is_start(self, stamp_ns: int, next_ns: int | None) -> bool:
+    def _is_start(
+        self, truth: Truth, stamp_ns: int, following: tuple[int, Frame | None] | None
+    ) -> bool:
         """Return whether the image at `stamp_ns` is the one nearest to the first truth."""
-        if self._first_truth is None:
-            return False
-        distance = abs(stamp_ns - self._first_truth.stamp_ns)
-        is_nearest = next_ns is None or abs(next_ns - self._first_truth.stamp_ns) >= distance
+        distance = abs(stamp_ns - truth.stamp_ns)
+        is_nearest = following is None or abs(following[0] - truth.stamp_ns) >= distance
         return distance <= self._limit_ns and is_nearest
 
-    def _set_target(self) -> None:
-        """Configure the first truth's box, so that a recording that loops starts on it again."""
-        assert self._first_truth is not None
-        settings = with_target(self.session.settings, self._first_truth.box)
-        self.session.reconfigure(self.session.tracker.parameters, settings)
-        self._first_truth = None
+    def _give(self, box: Box, *, is_first: bool) -> None:
+        """Give the session a target; the first is configured: a loop starts on it again."""
+        if is_first:
+            settings = with_target(self.session.settings, box)
+            self.session.reconfigure(self.session.tracker.parameters, settings)
+        else:
+            self.session.set_target(box)
 
     def _row(self, number: int, stamp_ns: int, frame: Frame | None) -> EstimateRow:
         self.estimate = None
@@ -168,9 +177,9 @@ class OfflineTracker:
         except (InputError, TrackerError) as error:
             if self._ends_run(error):
                 raise
-            self.notices.append(f"frame {number} was rejected: {error}")
+            self._notices.append(f"frame {number} was rejected: {error}")
             return EstimateRow.without(number, stamp_ns, REJECTED)
-        self.notices += [f"frame {number}: {event}" for event in self.session.events]
+        self._notices += [f"frame {number}: {event}" for event in self.session.events]
         if estimate is None:
             return EstimateRow.without(number, stamp_ns, WAITING)
         if self.start_frame is None:
@@ -277,8 +286,7 @@ def follow(
                 continue
             states = list(zip(annotators, of_frame, estimates, strict=True))
             draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
-            if not take(tuple(row.mode for row in of_frame), draw, found.frame):
-                break
+            take(tuple(row.mode for row in of_frame), draw, found.frame)
     return rows
 
 

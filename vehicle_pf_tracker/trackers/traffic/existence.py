@@ -20,6 +20,7 @@ import math
 from collections.abc import Sequence
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
 from vehicle_pf_tracker.trackers.traffic.detections import (
     SHIPPED,
@@ -27,7 +28,6 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     TrafficNumbers,
     areas,
     inside_image,
-    intersections,
     overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
