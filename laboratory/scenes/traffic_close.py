@@ -56,7 +56,7 @@ BRIEF = SimulatedDetector(misses=0.67, miss_length=2.0, false_alarms=0.3, noise=
 class CloseParameters(TrafficSceneParameters):
     """Parameters of a close road, which has no bridges, lorries or red lights."""
 
-    shake: float = parameter(3.0, "the camera shakes farther", minimum=0.0, maximum=10.0, unit="px")
+    shake: float = parameter(3.0, "the camera shakes farther", bounds=(0.0, 10.0), unit="px")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
