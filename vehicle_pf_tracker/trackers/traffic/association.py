@@ -205,14 +205,16 @@ def pair_costs(
 
 _BORDER = 1.0
 """Distance in px from the border of the image up to which an edge counts as cut."""
+_NEAR_BORDER = 0.05
+"""The same, of the side: the usual error of an edge."""
 _SIZES = 2.0
 """Logarithm of the ratio of the largest and the smallest false alarms, by which they are spread."""
 
 
 def cut_edges(edges: Array, size: tuple[int, int]) -> npt.NDArray[np.bool_]:
     """Find the edges of boxes (..., 4) that lie on or beyond the borders of the image."""
-    borders = np.array(size) - _BORDER
-    return np.concatenate([edges[..., :2] <= _BORDER, edges[..., 2:] >= borders], axis=-1)
+    margin = np.maximum(_NEAR_BORDER * (edges[..., 2:] - edges[..., :2]), _BORDER)
+    return np.concatenate([edges[..., :2] <= margin, edges[..., 2:] >= size - margin], axis=-1)
 
 
 def fits(

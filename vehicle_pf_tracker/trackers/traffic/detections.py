@@ -221,6 +221,11 @@ class DetectionEvidence:
         usual = np.log((genuine + _PRIOR) / (total - genuine + _PRIOR))
         return float(self._by_score(np.array([score]))[0] - usual)
 
+    def rank(self, score: float) -> float:
+        """Share of the vehicles' detections that had a lower score; 0 before enough are known."""
+        below = self._sums[np.searchsorted(self._sorted, score)]
+        return float(below / max(self._sums[-1], _NEIGHBOURS))
+
     def clutter(self, samples: list[Sample]) -> Array:
         """Logarithm of the false alarms per image, (N,), in a place as large as the image.
 
