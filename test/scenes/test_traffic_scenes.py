@@ -294,3 +294,7 @@ def test_the_page_lists_scenes_and_detectors():
         merges = f"{one.merges:.0%}" if one.merges else "–"
         row = f"| `{name}` | {facts} {one.noise:.0%} | {merges} |".replace("%", " %")
         assert row in page
+
+
+def test_vehicles_outside_the_image_have_no_truth():
+    assert still(Box(70, 10, 20, 10), Box(-20, 10, 20, 10)).truth(0) == ()
