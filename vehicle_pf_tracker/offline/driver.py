@@ -115,21 +115,17 @@ class OfflineTracker:
         InputError
             If the target is invalid in the first frame, or no frame belongs to the first truth.
         """
-        for number, (current, following) in enumerate(_with_next(frames), start=first):
-            next_ns = None if following is None else following[0]
-            yield self.row(number, *current, next_ns, is_first=number == first)
+        stamped = (StampedFrame(*one) for one in frames)
+        for number, (found, following) in enumerate(_with_next(stamped), start=first):
+            yield self.row(number, found, following, is_first=number == first)
         self.check_started()
 
     def row(
-        self,
-        number: int,
-        stamp_ns: int,
-        frame: Frame | None,
-        next_ns: int | None,
-        *,
-        is_first: bool,
+        self, number: int, found: StampedFrame, following: StampedFrame | None, *, is_first: bool
     ) -> EstimateRow:
-        """Take the next frame, with its number and the stamp of the one after it; see `rows`."""
+        """Take the next frame, with its number and the one after it; see `rows`."""
+        stamp_ns, frame = found.stamp_ns, found.frame
+        next_ns = None if following is None else following.stamp_ns
         self._on_road.append({})
         truth = self._first_truth
         if truth is not None and self._is_start(truth, stamp_ns, next_ns):
@@ -140,8 +136,8 @@ class OfflineTracker:
                 self._configure_target(box)
             else:
                 self.session.set_target(box)
-            found = [] if frame is None else doubts(frame, box)
-            self._notices += [f"the target {box} is doubtful: {why}" for why in found]
+            reasons = [] if frame is None else doubts(frame, box)
+            self._notices += [f"the target {box} is doubtful: {why}" for why in reasons]
         return self._estimated(number, stamp_ns, frame)
 
     def check_started(self) -> None:
@@ -280,12 +276,10 @@ def follow(
         for name in trackers
     ]
     with pictures.drawing(frame_rate_of(ahead)) as take:
-        for (number, found), following in _with_next(itertools.chain(ahead, frames)):
-            next_ns = None if following is None else following[1].stamp_ns
+        all_frames = (found for _, found in itertools.chain(ahead, frames))
+        for number, (found, following) in enumerate(_with_next(all_frames), start=first):
             of_frame = {
-                name: tracker.row(
-                    number, found.stamp_ns, found.frame, next_ns, is_first=number == first
-                )
+                name: tracker.row(number, found, following, is_first=number == first)
                 for name, tracker in trackers.items()
             }
             for name, row in of_frame.items():
