@@ -282,15 +282,14 @@ def follow(
                 name: tracker.row(number, found, following, is_first=number == first)
                 for name, tracker in trackers.items()
             }
-            for name, row in of_frame.items():
+            states = []
+            for annotator, (name, row) in zip(annotators, of_frame.items(), strict=True):
                 rows[name].append(row)
+                annotator.follow(trackers[name].estimate)
+                states.append((annotator, row, trackers[name].estimate))
             if on_frame is not None:
                 on_frame(found, of_frame)
-            estimates = [tracker.estimate for tracker in trackers.values()]
-            for annotator, estimate in zip(annotators, estimates, strict=True):
-                annotator.follow(estimate)
             if found.frame is not None:
-                states = list(zip(annotators, of_frame.values(), estimates, strict=True))
                 draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
                 modes = tuple(row.mode for row in of_frame.values())
                 take(modes, draw, found.frame, found.stamp_ns)
