@@ -22,13 +22,17 @@ COVERED := 92
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: demo test test-all test-offline test-footage test-ros test-noble kernels lint types format config colcon baselines bench reproduce clean
+# Each target that says of itself what it does, with two hashes, is listed by `make help`.
+.PHONY: help demo test test-all test-offline test-footage test-ros test-noble kernels lint types format config colcon baselines bench reproduce docs dist clean
 
-demo: .venv/installed
+demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
 
-# Three parts side by side on two cores: the tests through ROS mostly wait, and the others compute. In
-# processes of their own, since rclpy and Dask in one have crashed.
+help:  ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*  ## \(.*\)/\1|\2/p' $(firstword $(MAKEFILE_LIST)) | \
+		while IFS='|' read -r target words; do printf '%-12s %s\n' "$$target" "$$words"; done
+
+# Three parts side by side on two cores: the tests through ROS mostly wait, and the others compute.
 PARTS := test-ros test-offline test-footage
 RUN := $(BIN)/python -m pytest -m "not slow"
 
@@ -37,12 +41,12 @@ test: .venv/installed
 	$(RUN) $(PYTEST_ARGS)
 else
 # What takes a few seconds or less, without coverage.
-test: .venv/installed kernels
+test: .venv/installed kernels  ## the fast tests, or PYTEST_ARGS="test/core …"
 	$(MAKE) --no-print-directory --jobs=3 --keep-going $(PARTS)
 endif
 
 # Everything, with branch coverage; the slow tests try every way to install, colcon's too.
-test-all: .venv/installed .venv/colcon kernels
+test-all: .venv/installed .venv/colcon kernels  ## every test, with branch coverage
 	$(BIN)/coverage erase
 	$(MAKE) --no-print-directory --jobs=2 --keep-going $(PARTS) RUN="$(BIN)/coverage run -m pytest"
 	$(BIN)/coverage combine --quiet
@@ -60,42 +64,50 @@ test-ros test-footage: .venv/installed
 	@log=$$(mktemp); $(RUN) $(addprefix test/,$(if $(filter test-ros,$@),ros,$(FOOTAGE))) > $$log 2>&1; \
 	status=$$?; cat $$log; rm -f $$log; exit $$status
 
-test-noble: .venv-noble/installed
+test-noble: .venv-noble/installed  ## numbers, pixels and messages with the NumPy and OpenCV of Ubuntu 24.04
 	.venv-noble/bin/python -m pytest -m "not slow" $(PYTEST_ARGS) $(VERSIONED)
 
-colcon: .venv/colcon
+colcon: .venv/colcon  ## colcon build and its tests, in a scratch folder
 	PATH="$(CURDIR)/$(BIN):$$PATH" .ci/colcon
 
 # Trackers to compare with, and TrackEval: two OpenCV packages in one environment overwrite each other.
-baselines: .venv-baselines/locked
+baselines: .venv-baselines/locked  ## build the environment of what is compared with
 
 # Writes results/bench/bench.json and docs/performance.md, and with SEQUENCES=FOLDER the cost of fusion on
 # them, results/fusion_cost; wants a machine with nothing else to do. With BENCH_ARGS=--toy some cases of
 # every part run once, in less than a minute, and results/bench_toy has all that is written.
-bench: .venv/installed .venv-baselines/locked
+bench: .venv/installed .venv-baselines/locked  ## measure speed, memory and the node; writes docs/performance.md
 	$(if $(SEQUENCES),$(BIN)/python -m benchmarks.fusion_cost $(SEQUENCES) --resampled car_a silver_estate S1301 -o results/fusion_cost)
 	$(BIN)/python -m benchmarks.bench --docs $(PAGES) $(BENCH_ARGS)
 
 # The papers' experiments; what was run before is not run again.
-reproduce: .venv/installed
+reproduce: .venv/installed  ## run the papers' experiments; writes docs/reproduction.md
 	$(BIN)/python -m reproduction $(FIGURES) --docs $(PAGES)
 
-lint: .venv/installed
+lint: .venv/installed  ## ruff
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 
-format: .venv/installed
+format: .venv/installed  ## ruff format
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
 
-types: .venv/installed
+types: .venv/installed  ## mypy
 	$(BIN)/mypy
 
 # Everything that follows from the registry of variants and their parameters.
-config: .venv/installed
+config: .venv/installed  ## write what follows from the parameters: config/, tables in pages
 	$(BIN)/python -m tools.generate
 
-clean:
+docs: .venv/docs  ## build the site of the pages, into results/site
+	NO_MKDOCS_2_WARNING=true $(BIN)/python -m mkdocs build --quiet --strict
+
+dist: .venv/docs  ## build the wheel and the source archive, into results/dist
+	rm -rf results/dist
+	$(BIN)/python -m build --no-isolation --outdir results/dist . > /dev/null
+	$(BIN)/twine check --strict results/dist/*
+
+clean:  ## remove what the other targets made
 	rm -rf .venv .venv-noble .venv-baselines build install log results *.egg-info
 	rm -rf .coverage .coverage.* .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -108,13 +120,14 @@ clean:
 .venv-noble/locked: requirements/noble.txt requirements/ros-jazzy.txt
 	.ci/make-venv .venv-noble requirements/noble.txt $(or $(NOBLE_PYTHON),3.12 3.11 3.10)
 
-.venv-baselines/locked: requirements/baselines.txt
-	.ci/make-venv --without-ros .venv-baselines requirements/baselines.txt $(PYTHON)
+.venv-baselines/locked: vehicle_pf_tracker/evaluation/baselines.txt
+	.ci/make-venv --without-ros .venv-baselines vehicle_pf_tracker/evaluation/baselines.txt $(PYTHON)
 
-.venv/installed .venv-noble/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml vehicle_pf_tracker/trackers/registry.py
+.venv/installed .venv-noble/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml package.xml \
+		vehicle_pf_tracker/trackers/registry.py
 	$*/bin/python $(INSTALL) --no-build-isolation --editable .
 	touch $@
 
-.venv/colcon: .venv/locked requirements/colcon.txt
-	$(BIN)/python $(INSTALL) --requirement requirements/colcon.txt
+.venv/colcon .venv/docs: .venv/%: .venv/installed requirements/%.txt
+	$(BIN)/python $(INSTALL) --requirement requirements/$*.txt
 	touch $@

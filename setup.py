@@ -1,6 +1,10 @@
-"""One description of the package for both of its homes: pip, and colcon on a robot."""
+"""One description of the package for both of its homes: pip, and colcon on a robot.
+
+Name, version, maintainer, licence and addresses stand in package.xml and are read from there.
+"""
 
 import sys
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from setuptools import find_packages, setup
@@ -12,10 +16,13 @@ if sys.version_info < PYTHON:  # before an import fails on what older ones lack
         "one".format(*PYTHON, *sys.version_info[:2])
     )
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # pip's isolated builds leave it out
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))  # pip's isolated builds leave it out
 from vehicle_pf_tracker.trackers.registry import NODES  # noqa: E402 - needs no library
 
-NAME = "vehicle_pf_tracker"
+PACKAGE = ET.parse(HERE / "package.xml").getroot()  # noqa: S314 - our own file
+NAME = PACKAGE.findtext("name")
+MAINTAINER = PACKAGE.find("maintainer")
 JAZZY_WHEELS = "sys_platform == 'linux' and platform_machine == 'x86_64'"
 
 RUNTIME = [
@@ -28,13 +35,11 @@ RUNTIME = [
     "rich>=13",
     "PyYAML>=6.0",
 ]
-EVALUATION = ["matplotlib>=3.6", "scipy>=1.11", "jinja2>=3.1"]
-TRAFFIC = ["scipy>=1.11"]  # assignment of detections to vehicles
+# Many vehicles: the assignment of detections, and detection networks.
+TRAFFIC = ["scipy>=1.11", "onnxruntime>=1.17"]
+VIDEO = ["av>=14", *TRAFFIC]
+EVALUATION = ["matplotlib>=3.6", "jinja2>=3.1", "optuna>=4.0", *VIDEO]
 NUMBA = ["numba>=0.60"]
-VIDEO = ["av>=14"]
-ONNX = ["onnxruntime>=1.17"]
-CLUSTER = ["distributed>=2024.5", "fsspec>=2024.5"]
-TUNE = ["optuna>=4.0", *EVALUATION]
 TEST = ["pytest>=7", "hypothesis>=6.100"]
 LINT = ["ruff>=0.17,<0.18", "mypy>=2.4,<3", "types-PyYAML"]
 COVERAGE = ["coverage>=7.10"]
@@ -48,7 +53,7 @@ ROS = [
         "ros-rosgraph-msgs==2.0.3",
         "ros-rcl-interfaces==2.0.3",
     )
-]
+] + TRAFFIC
 
 # On a robot (`setup.py install` or `develop`: colcon and the Debian builds) the libraries come from
 # apt through package.xml. apt's OpenCV is not called opencv-python-headless, and the executables
@@ -63,16 +68,35 @@ def files(pattern: str) -> list[str]:
 
 setup(
     name=NAME,
-    version="0.1.0",
+    version=PACKAGE.findtext("version"),
     description="Particle-filter vehicle tracking through occlusions, for ROS 2 and recordings",
-    license="Apache-2.0",
-    maintainer="vehicle_pf_tracker maintainers",
-    maintainer_email="maintainers@vehicle-pf-tracker.invalid",
+    long_description=(HERE / "README.md").read_text(encoding="utf-8"),
+    long_description_content_type="text/markdown",
+    license=PACKAGE.findtext("license"),
+    license_files=["LICENSE"],
+    maintainer=MAINTAINER.text,
+    maintainer_email=MAINTAINER.get("email"),
+    project_urls={url.get("type").capitalize(): url.text for url in PACKAGE.findall("url")},
+    keywords=["tracking", "particle filter", "occlusion", "traffic", "vehicles", "video", "ROS 2"],
+    classifiers=[
+        "Development Status :: 4 - Beta",
+        "Environment :: Console",
+        "Intended Audience :: Developers",
+        "Intended Audience :: Science/Research",
+        "Operating System :: POSIX :: Linux",
+        "Programming Language :: Python :: 3",
+        *(f"Programming Language :: Python :: 3.{minor}" for minor in range(10, 14)),
+        "Topic :: Scientific/Engineering :: Image Processing",
+        "Topic :: Scientific/Engineering :: Image Recognition",
+        "Typing :: Typed",
+    ],
     python_requires=">={}.{}".format(*PYTHON),
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
     package_data={
         NAME: ["py.typed"],
         f"{NAME}.cli": ["pick.html", "pick.js"],
+        f"{NAME}.recordings": ["ImageAnnotations.msg"],
+        f"{NAME}.evaluation": ["baselines.txt"],
         f"{NAME}.evaluation.report": ["templates/*"],
     },
     data_files=[
@@ -85,17 +109,13 @@ setup(
     zip_safe=False,
     install_requires=[] if BUILT_FOR_ROS else RUNTIME,
     extras_require={
+        "video": VIDEO,
         "ros": ROS,
         "evaluation": EVALUATION,
-        "traffic": TRAFFIC,
         "numba": NUMBA,
-        "video": VIDEO,
-        "onnx": ONNX,
-        "cluster": CLUSTER,
-        "tune": TUNE,
         "test": TEST,
         "lint": LINT,
-        "dev": TEST + LINT + COVERAGE + TRAFFIC + NUMBA + VIDEO + ONNX + CLUSTER + TUNE + READERS,
+        "dev": TEST + LINT + COVERAGE + NUMBA + EVALUATION + READERS,
     },
     entry_points={
         "console_scripts": [

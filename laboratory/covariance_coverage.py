@@ -172,32 +172,39 @@ def fitted_table(folder: Path, licence: str) -> str:
     paths = runs_of(folder)
     everything = [path for group in paths.values() for path in group]
     fits = {name: fit(Runs(group)) for name, group in [("*", everything), *paths.items()]}
-    lines = [
-        licence,
-        '"""Calibration of covariances, written by `python -m laboratory.uncertainty fit`."""',
-        "",
-        "from __future__ import annotations",
-        "",
-        "from collections.abc import Mapping",
-        "",
-        "from vehicle_pf_tracker.trackers.uncertainty import Calibration, Spread",
-        "",
-        "CALIBRATIONS: Mapping[str, Calibration] = {",
+    rows = [
+        f'    "{name}": ({_source(found.visible)}, {_source(found.hidden)}),\n'
+        for name, found in fits.items()
     ]
-    for name, found in fits.items():
-        lines += [
-            f'    "{name}": Calibration(',
-            f"        {_source(found.visible)},",
-            f"        {_source(found.hidden)},",
-            "    ),",
-        ]
-    return "\n".join([*lines, "}", '"""By variant; `*` serves those that are not in it."""', ""])
+    return f"{licence}{_TABLE[0]}{''.join(rows)}{_TABLE[1]}"
+
+
+_TABLE = (
+    '''"""Calibration of covariances, written by `python -m laboratory.uncertainty fit`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from vehicle_pf_tracker.trackers.uncertainty import Calibration, Spread
+
+_SPREADS: Mapping[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
+''',
+    '''}
+"""`Spread` while visible and otherwise, by variant; `*` serves those that are not in it."""
+
+CALIBRATIONS: Mapping[str, Calibration] = {
+    name: Calibration(Spread(*visible), Spread(*hidden))
+    for name, (visible, hidden) in _SPREADS.items()
+}
+''',
+)
 
 
 def _source(spread: Spread) -> str:
     numbers = astuple(spread)
     used = numbers if any(numbers[4:]) else numbers[:4]
-    return f"Spread({', '.join(f'{number:g}' for number in used)})"
+    return f"({', '.join(f'{number:g}' for number in used)})"
 
 
 def report(folder: Path) -> str:

@@ -23,6 +23,7 @@ import numpy.typing as npt
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction.apf_systems import (
     INTERPRETATIONS,
     INTERPRETATIONS_NOTE,
@@ -31,17 +32,6 @@ from reproduction.apf_systems import (
     with_sigma,
 )
 from reproduction.cells import RunCell
-from reproduction.experiment import (
-    Claim,
-    DataTable,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 
 _SPEEDS = tuple(range(2, 21, 2)), (4, 12)
@@ -53,12 +43,12 @@ _SLOPES = 0.4, 0.6
 Grid = npt.NDArray[np.float64]
 
 
-def cells(size: Size) -> list[RunCell]:
+def cells(size: ex.Size) -> list[RunCell]:
     """Run every interpretation at every speed with every sigma and seed."""
     return [_cell(*point, seed) for point in _points(size) for seed in size.seeds]
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw the errors as grey levels, and look for the best sigma of each speed."""
     rows = tuple(
         (interpretation, speed, sigma, seed, _rmse(results, (interpretation, speed, sigma), seed))
@@ -68,14 +58,14 @@ def report(results: Results, size: Size) -> Report:
     grids = {
         interpretation: _grid(results, interpretation, size) for interpretation in INTERPRETATIONS
     }
-    return Report(
-        DataTable(("interpretation", "speed", "sigma", "seed", "rmse_px"), rows),
+    return ex.Report(
+        ex.DataTable(("interpretation", "speed", "sigma", "seed", "rmse_px"), rows),
         _figure(grids, size),
         _verdict(grids, size),
     )
 
 
-def _points(size: Size) -> list[tuple[str, int, int]]:
+def _points(size: ex.Size) -> list[tuple[str, int, int]]:
     speeds, sigmas = size.of(*_SPEEDS), size.of(*_SIGMAS)
     return [
         (interpretation, speed, sigma)
@@ -90,11 +80,11 @@ def _cell(interpretation: str, speed: int, sigma: int, seed: int) -> RunCell:
     return RunCell(scene, with_sigma(INTERPRETATIONS[interpretation], float(sigma)), seed)
 
 
-def _rmse(results: Results, point: tuple[str, int, int], seed: int) -> float:
+def _rmse(results: ex.Results, point: tuple[str, int, int], seed: int) -> float:
     return float(results[_cell(*point, seed)]["metrics"]["rmse_px"])
 
 
-def _grid(results: Results, interpretation: str, size: Size) -> Grid:
+def _grid(results: ex.Results, interpretation: str, size: ex.Size) -> Grid:
     """RMSE by speed, sigma and seed."""
     return np.array(
         [
@@ -107,7 +97,7 @@ def _grid(results: Results, interpretation: str, size: Size) -> Grid:
     )
 
 
-def _figure(grids: Mapping[str, Grid], size: Size) -> Figure:
+def _figure(grids: Mapping[str, Grid], size: ex.Size) -> Figure:
     speeds, sigmas = np.array(size.of(*_SPEEDS)), np.array(size.of(*_SIGMAS))
     figure = Figure(figsize=(11, 4.4), layout="constrained")
     axes = figure.subplots(1, len(grids), sharey=True)
@@ -134,16 +124,16 @@ def _figure(grids: Mapping[str, Grid], size: Size) -> Figure:
     return figure
 
 
-def _verdict(grids: Mapping[str, Grid], size: Size) -> ExperimentVerdict:
+def _verdict(grids: Mapping[str, Grid], size: ex.Size) -> ex.ExperimentVerdict:
     speeds, sigmas = size.of(*_SPEEDS), size.of(*_SIGMAS)
-    return ExperimentVerdict(
+    return ex.ExperimentVerdict(
         (
-            Claim(
+            ex.Claim(
                 "for each speed there is a sigma with the least error, about half the speed",
                 _PLACE,
                 tuple(_least(name, grid, size) for name, grid in grids.items()),
             ),
-            Claim(
+            ex.Claim(
                 "larger sigmas than half the speed give low errors too",
                 _PLACE,
                 tuple(_above(name, grid, size) for name, grid in grids.items()),
@@ -155,22 +145,22 @@ def _verdict(grids: Mapping[str, Grid], size: Size) -> ExperimentVerdict:
     )
 
 
-def _least(interpretation: str, grid: Grid, size: Size) -> Finding:
+def _least(interpretation: str, grid: Grid, size: ex.Size) -> ex.Finding:
     speeds, sigmas = np.array(size.of(*_SPEEDS), float), np.array(size.of(*_SIGMAS), float)
     means = grid.mean(axis=2)
     best = sigmas[means.argmin(axis=1)]
     holding = np.all(grid < CLOSE_PX, axis=2)
     if not np.any(holding):
         parts = f"no sigma follows the vehicle (least mean RMSE: {means.min():.0f} px)"
-        return Finding(interpretation, Holds.NO, parts)
+        return ex.Finding(interpretation, ex.Holds.NO, parts)
     slope = float(speeds @ best / (speeds @ speeds))
     held = np.any(holding, axis=1)
     first = sigmas[holding.argmax(axis=1)]
     boundary = float(speeds[held] @ first[held] / (speeds[held] @ speeds[held]))
     low, high = _SLOPES
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.of(low <= slope <= high, low <= boundary <= high),
+        ex.Holds.of(low <= slope <= high, low <= boundary <= high),
         f"best sigma = {slope:.2f} speed (fitted; at each speed: "
         f"{', '.join(f'{v:g}: {s:g}' for v, s in zip(speeds, best, strict=True))}); "
         "losing the vehicle ends (least sigma that keeps all seeds below 15 px) at "
@@ -178,20 +168,20 @@ def _least(interpretation: str, grid: Grid, size: Size) -> Finding:
     )
 
 
-def _above(interpretation: str, grid: Grid, size: Size) -> Finding:
+def _above(interpretation: str, grid: Grid, size: ex.Size) -> ex.Finding:
     speeds, sigmas = np.array(size.of(*_SPEEDS)), np.array(size.of(*_SIGMAS))
     above = sigmas[np.newaxis] >= speeds[:, np.newaxis] / 2
     inside, outside = grid[above], grid[~above]
     near = float((inside < CLOSE_PX).mean())
     below = float((outside < CLOSE_PX).mean()) if outside.size else 0.0
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.share(near, 0.95, 0.75),
+        ex.Holds.share(near, 0.95, 0.75),
         f"{near:.0%} of the runs with sigma at or above half the speed have an RMSE below 15 px "
         f"(median {np.median(inside):.1f} px), {below:.0%} of those below it",
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "apf-fig1", "APF, figure 1: the error over sigma and the vehicle's speed", cells, report
 )

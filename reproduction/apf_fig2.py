@@ -20,6 +20,7 @@ from itertools import islice
 
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction.apf_systems import (
     SETTING,
     VEHICLE_WIDTH,
@@ -27,17 +28,6 @@ from reproduction.apf_systems import (
     covered,
 )
 from reproduction.cells import RunCell
-from reproduction.experiment import (
-    Claim,
-    DataTable,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 
@@ -46,12 +36,12 @@ _BEFORE = 4
 """Frames that the picture is taken before the vehicle reaches the bar."""
 
 
-def cells(size: Size) -> list[RunCell]:
+def cells(size: ex.Size) -> list[RunCell]:
     """Run nothing: the video alone is shown."""
     return []
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Show the frame, and measure bar and occlusion in the truth."""
     choice = artificial_video(_WIDTH)
     truths = choice.truths()
@@ -64,18 +54,18 @@ def report(results: Results, size: Size) -> Report:
         for n, t in enumerate(truths, start=1)
     )
     hidden = sum(truth.occlusion is Occlusion.TOTAL for truth in truths)
-    return Report(
-        DataTable(("frame", "x", "y", "occlusion", "visible_fraction"), rows),
+    return ex.Report(
+        ex.DataTable(("frame", "x", "y", "occlusion", "visible_fraction"), rows),
         _figure(shown),
-        ExperimentVerdict(
+        ex.ExperimentVerdict(
             (
-                Claim(
+                ex.Claim(
                     f"a dark vertical bar of {_WIDTH} px hides the whole vehicle",
                     "section IV, figure 2",
                     (
-                        Finding(
+                        ex.Finding(
                             "our interpretation",
-                            Holds.of(hidden > 0),
+                            ex.Holds.of(hidden > 0),
                             f"less than a tenth of the {VEHICLE_WIDTH:g} px vehicle is seen in "
                             f"{hidden} of {len(truths)} frames, and the bar covers a part of it or "
                             f"all in {stretch[1] - stretch[0] + 1}",
@@ -102,4 +92,6 @@ def _figure(shown: SceneFrame) -> Figure:
     return figure
 
 
-EXPERIMENT = Experiment("apf-fig2", "APF, figure 2: a frame of the artificial video", cells, report)
+EXPERIMENT = ex.Experiment(
+    "apf-fig2", "APF, figure 2: a frame of the artificial video", cells, report
+)

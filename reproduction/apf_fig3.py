@@ -24,6 +24,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction.apf_systems import (
     INTERPRETATIONS,
     INTERPRETATIONS_NOTE,
@@ -34,18 +35,6 @@ from reproduction.apf_systems import (
     with_sigma,
 )
 from reproduction.cells import Result, RunCell
-from reproduction.experiment import (
-    Claim,
-    DataTable,
-    Entry,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.numbers import (
     counted,
     median_and_range,
@@ -65,7 +54,7 @@ _MONOTONE = 0.9
 """Rank correlation from which on one thing counts as growing with another."""
 
 
-def cells(size: Size) -> list[RunCell]:
+def cells(size: ex.Size) -> list[RunCell]:
     """Run every interpretation on every width with every seed."""
     return [
         _cell(interpretation, width, seed)
@@ -75,7 +64,7 @@ def cells(size: Size) -> list[RunCell]:
     ]
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Show the first seed's similarities as grey levels, and judge all seeds."""
     truths = {width: artificial_video(width).truths() for width in size.of(*_WIDTHS)}
     ends = {
@@ -90,7 +79,7 @@ def report(results: Results, size: Size) -> Report:
     }
     table = _Runs(runs, ends, size)
     spans = {width: covered(of_width) for width, of_width in truths.items()}
-    return Report(_data(runs), _figure(runs, spans, size), _verdict(table))
+    return ex.Report(_data(runs), _figure(runs, spans, size), _verdict(table))
 
 
 def _cell(interpretation: str, width: int, seed: int) -> RunCell:
@@ -105,7 +94,7 @@ class _Runs:
         self,
         runs: dict[tuple[str, int, int], Result],
         ends: dict[int, list[tuple[float, float]]],
-        size: Size,
+        size: ex.Size,
     ) -> None:
         self._runs, self._ends = runs, ends
         self.widths, self.seeds = size.of(*_WIDTHS), size.seeds
@@ -146,13 +135,13 @@ def _has_resumed(width: int, run: Result) -> bool:
     return share([regime == "regular" for regime in last]) >= _RESUMED
 
 
-def _data(runs: dict[tuple[str, int, int], Result]) -> DataTable:
-    rows: list[tuple[Entry, ...]] = []
+def _data(runs: dict[tuple[str, int, int], Result]) -> ex.DataTable:
+    rows: list[tuple[ex.Entry, ...]] = []
     for point, run in runs.items():
         trace = run["trace"]
         columns = zip(trace["pi"], trace["regime"], trace["x"], trace["y"], strict=True)
         rows += [(*point, frame, *values) for frame, values in enumerate(columns, start=1)]
-    return DataTable(
+    return ex.DataTable(
         ("interpretation", "width", "seed", "frame", "pi", "regime", "x", "y"), tuple(rows)
     )
 
@@ -160,7 +149,7 @@ def _data(runs: dict[tuple[str, int, int], Result]) -> DataTable:
 def _figure(
     runs: dict[tuple[str, int, int], Result],
     spans: dict[int, tuple[int, int] | None],
-    size: Size,
+    size: ex.Size,
 ) -> Figure:
     widths, seed = size.of(*_WIDTHS), size.seeds[0]
     figure = Figure(figsize=(11, 4.4), layout="constrained")
@@ -194,13 +183,13 @@ def _outline(axes: Axes, spans: dict[int, tuple[int, int] | None]) -> None:
         )
 
 
-def _verdict(table: _Runs) -> ExperimentVerdict:
-    def claim(words: str, judge: Callable[[_Runs, str], Finding]) -> Claim:
-        return Claim(
+def _verdict(table: _Runs) -> ex.ExperimentVerdict:
+    def claim(words: str, judge: Callable[[_Runs, str], ex.Finding]) -> ex.Claim:
+        return ex.Claim(
             words, _PLACE, tuple(judge(table, interpretation) for interpretation in INTERPRETATIONS)
         )
 
-    return ExperimentVerdict(
+    return ex.ExperimentVerdict(
         (
             claim("the vehicle is tracked at every width from 0 to 120 px", _tracked),
             claim("the wider the occlusion, the more frames are in occlusion mode", _longer),
@@ -214,52 +203,52 @@ def _verdict(table: _Runs) -> ExperimentVerdict:
     )
 
 
-def _tracked(table: _Runs, interpretation: str) -> Finding:
+def _tracked(table: _Runs, interpretation: str) -> ex.Finding:
     errors = table.of(interpretation, table.end_error)
     hits = [error < CLOSE_PX for error in errors]
     wide = [width for width, hit in zip(table.of(interpretation, lambda w, _: w), hits, strict=True)
             if not hit]  # fmt: skip
     failing = f"; misses from {min(wide)} px on" if wide and min(wide) else ""
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.share(share(hits)),
+        ex.Holds.share(share(hits)),
         f"{counted(hits)} runs are within {CLOSE_PX:g} px over the last {_LAST} frames{failing}; "
         f"error there {median_and_range(errors)} px",
     )
 
 
-def _longer(table: _Runs, interpretation: str) -> Finding:
+def _longer(table: _Runs, interpretation: str) -> ex.Finding:
     frames = table.by_width(interpretation, _occluded_frames)
     rank = rank_correlation(table.widths, frames)
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.of(rank >= _MONOTONE, rank >= 0.5),
+        ex.Holds.of(rank >= _MONOTONE, rank >= 0.5),
         f"from {frames[0]:g} frames without a bar to {frames[-1]:g} at {table.widths[-1]} px "
         f"(medians); rank correlation {rank:.2f}",
     )
 
 
-def _deeper(table: _Runs, interpretation: str) -> Finding:
+def _deeper(table: _Runs, interpretation: str) -> ex.Finding:
     least = table.by_width(interpretation, _least_pi)
     rank = rank_correlation(table.widths, least)
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.of(rank <= -_MONOTONE, rank <= -0.5),
+        ex.Holds.of(rank <= -_MONOTONE, rank <= -0.5),
         f"least Pi from {least[0]:.2f} without a bar to {least[-1]:.2f} at {table.widths[-1]} px "
         f"(medians); rank correlation {rank:.2f}",
     )
 
 
-def _resumed(table: _Runs, interpretation: str) -> Finding:
+def _resumed(table: _Runs, interpretation: str) -> ex.Finding:
     hits = table.of(interpretation, _has_resumed)
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.share(share(hits)),
+        ex.Holds.share(share(hits)),
         f"in {counted(hits)} runs at least half of the last {_LAST} frames are regular",
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "apf-fig3", "APF, figure 3: the similarity Pi over frames and the occlusion's width", cells,
     report,
 )  # fmt: skip

@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction.apf_systems import (
     INTERPRETATIONS,
     INTERPRETATIONS_NOTE,
@@ -31,18 +32,6 @@ from reproduction.apf_systems import (
     with_sigma,
 )
 from reproduction.cells import Result, RunCell
-from reproduction.experiment import (
-    Claim,
-    DataTable,
-    Entry,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.numbers import counted, median_and_range, share
 
 _WIDTHS = 1, 30
@@ -55,7 +44,7 @@ _SLACK = 3
 """Frames before and after the covered ones in which an occlusion may be noticed."""
 
 
-def cells(size: Size) -> list[RunCell]:
+def cells(size: ex.Size) -> list[RunCell]:
     """Run every interpretation on both widths with every seed."""
     return [
         _cell(interpretation, width, seed)
@@ -65,9 +54,9 @@ def cells(size: Size) -> list[RunCell]:
     ]
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw the first seed's similarities, and judge all seeds."""
-    rows: list[tuple[Entry, ...]] = []
+    rows: list[tuple[ex.Entry, ...]] = []
     for interpretation in INTERPRETATIONS:
         for width in _WIDTHS:
             for seed in size.seeds:
@@ -78,7 +67,9 @@ def report(results: Results, size: Size) -> Report:
                     for frame, values in enumerate(columns, start=1)
                 ]
     names = ("interpretation", "width", "seed", "frame", "pi", "pi_up", "regime")
-    return Report(DataTable(names, tuple(rows)), _figure(results, size), _verdict(results, size))
+    return ex.Report(
+        ex.DataTable(names, tuple(rows)), _figure(results, size), _verdict(results, size)
+    )
 
 
 def _cell(interpretation: str, width: int, seed: int) -> RunCell:
@@ -86,7 +77,7 @@ def _cell(interpretation: str, width: int, seed: int) -> RunCell:
     return RunCell(artificial_video(width), system, seed, _RECORD)
 
 
-def _figure(results: Results, size: Size) -> Figure:
+def _figure(results: ex.Results, size: ex.Size) -> Figure:
     figure = Figure(figsize=(11, 5.2), layout="constrained")
     axes = figure.subplots(2, len(INTERPRETATIONS), sharex=True, sharey=True)
     for column, interpretation in enumerate(INTERPRETATIONS):
@@ -119,14 +110,14 @@ def _draw(axes: Axes, traces: dict[int, list[float | None]]) -> None:
     axes.set_ylim(0, 1)
 
 
-def _verdict(results: Results, size: Size) -> ExperimentVerdict:
+def _verdict(results: ex.Results, size: ex.Size) -> ex.ExperimentVerdict:
     def runs(interpretation: str, width: int) -> list[Result]:
         return [results[_cell(interpretation, width, seed)] for seed in size.seeds]
 
     narrow, wide = _WIDTHS
-    return ExperimentVerdict(
+    return ex.ExperimentVerdict(
         (
-            Claim(
+            ex.Claim(
                 f"with {narrow} px the similarities stay above the threshold, and occlusion mode "
                 "is not entered",
                 _PLACE,
@@ -135,7 +126,7 @@ def _verdict(results: Results, size: Size) -> ExperimentVerdict:
                     for interpretation in INTERPRETATIONS
                 ),
             ),
-            Claim(
+            ex.Claim(
                 f"with {wide} px the similarities fall below the threshold, and the occlusion is "
                 "detected",
                 _PLACE,
@@ -151,7 +142,7 @@ def _verdict(results: Results, size: Size) -> ExperimentVerdict:
     )
 
 
-def _ignored(interpretation: str, runs: Sequence[Result]) -> Finding:
+def _ignored(interpretation: str, runs: Sequence[Result]) -> ex.Finding:
     least = [_least(run, "pi") for run in runs]
     least_up = [_least(run, "pi_up") for run in runs]
     never = [sum(_occluded(run)) == 0 for run in runs]
@@ -159,16 +150,16 @@ def _ignored(interpretation: str, runs: Sequence[Result]) -> Finding:
     near_bar = _span(_WIDTHS[0])
     caused = [any(_occluded(run)[near_bar]) for run in runs]
     frames = [sum(_occluded(run)) for run in runs]
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.of(all(never), not any(caused)),
+        ex.Holds.of(all(never), not any(caused)),
         f"least Pi {median_and_range(least, 2)}, least Pi_up {median_and_range(least_up, 2)}; "
         f"above {_TAU:g} throughout in {counted(above)} runs; {median_and_range(frames, 0)} "
         f"frames in occlusion mode, none in {counted(never)} runs; at the bar in {counted(caused)}",
     )
 
 
-def _detected(interpretation: str, runs: Sequence[Result]) -> Finding:
+def _detected(interpretation: str, runs: Sequence[Result]) -> ex.Finding:
     least, least_up = ([_least(run, name) for run in runs] for name in _SHOWN)
     fell = [min(pair) < _TAU for pair in zip(least, least_up, strict=True)]
     span = _span(_WIDTHS[-1])
@@ -179,9 +170,9 @@ def _detected(interpretation: str, runs: Sequence[Result]) -> Finding:
         fall and enter and frames < span.start / 2
         for fall, enter, frames in zip(fell, entered, before, strict=True)
     ]
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.share(share(hits)),
+        ex.Holds.share(share(hits)),
         f"least Pi {median_and_range(least, 2)}, least Pi_up {median_and_range(least_up, 2)}; "
         f"occlusion mode at the bar in {counted(entered)} runs, before it in "
         f"{median_and_range(before, 0)} frames",
@@ -204,6 +195,6 @@ def _span(width: int) -> slice:
     return slice(found[0] - 1 - _SLACK, found[1] + _SLACK)
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "apf-fig4", "APF, figure 4: Pi and Pi_up with occlusions of 1 and 30 px", cells, report
 )

@@ -23,27 +23,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
+from reproduction import experiment as ex
 from reproduction.apf_systems import APF, INTERPRETATIONS
 from reproduction.cells import Result, RunCell
-from reproduction.experiment import (
-    Claim,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.numbers import counted, median_and_range, share
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.plots import OUTLINE
 from vehicle_pf_tracker.evaluation.scores import Scores
-from vehicle_pf_tracker.offline.estimates import interpolate_occlusions
+from vehicle_pf_tracker.trackers.estimate import Mode
 
-_Judge: TypeAlias = Callable[[str, Sequence[Result], Sequence[Scores]], Finding]
+_Judge: TypeAlias = Callable[[str, Sequence[Result], Sequence[Scores]], ex.Finding]
 
 _PLACE = "section IV, figure 5"
 _EARLY = 3
@@ -51,18 +42,18 @@ _ROWS_AROUND = 60
 """Rows of the image shown above and below the vehicle's path."""
 
 
-def cells(size: Size) -> list[RunCell]:
+def cells(size: ex.Size) -> list[RunCell]:
     """Run every interpretation of the paper's tracker with every seed."""
     return [video3.cell(system, seed) for system in INTERPRETATIONS.values() for seed in size.seeds]
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Show the first seed's path over four frames, and judge all seeds."""
     runs = {
         system.label: [video3.run_scores(results, system, seed) for seed in size.seeds]
         for system in INTERPRETATIONS.values()
     }
-    return Report(
+    return ex.Report(
         video3.data(runs, size),
         _figure(runs[APF.label][0], size.seeds[0]),
         _verdict(results, runs, size),
@@ -107,7 +98,7 @@ def _draw(axes: Axes, frame: Frame, scored: Scores, until: int) -> None:
     axes.imshow(frame.mean(axis=2), cmap="gray", vmin=0, vmax=255, extent=(0, width, height, 0))
     rows = [f.row for f in scored.frames[:until]]
     path = [row.position for row in rows if row.position is not None]
-    line = [point for point in interpolate_occlusions(rows) if point is not None]
+    line = [row.position for row in rows if row.mode == Mode.TRACKING and row.position is not None]
     # Black on white and white on black, so that both are seen on any ground.
     axes.plot(*zip(*line, strict=True), color="white", lw=3.6)
     axes.plot(
@@ -127,51 +118,52 @@ def _draw(axes: Axes, frame: Frame, scored: Scores, until: int) -> None:
     )
 
 
-def _verdict(results: Results, runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
-    def claim(words: str, judge: _Judge) -> Claim:
+def _verdict(
+    results: ex.Results, runs: dict[str, list[Scores]], size: ex.Size
+) -> ex.ExperimentVerdict:
+    def claim(words: str, judge: _Judge) -> ex.Claim:
         found = []
         for interpretation, system in INTERPRETATIONS.items():
             raw = [results[video3.cell(system, seed)] for seed in size.seeds]
             found.append(judge(interpretation, raw, runs[system.label]))
-        return Claim(words, _PLACE, tuple(found))
+        return ex.Claim(words, _PLACE, tuple(found))
 
-    return ExperimentVerdict(
+    return ex.ExperimentVerdict(
         (
             claim("the vehicle is followed through partial and total occlusions", _followed),
             claim("in the clear, the regular mode is used", _regular),
             claim("occlusion mode is entered during total occlusions", _occluded),
         ),
-        f"{video3.SETTING} {len(size.seeds)} seeds; the picture shows the first, and "
-        "`run --interpolate-occlusions` writes such a path for any recording.",
+        f"{video3.SETTING} {len(size.seeds)} seeds; the picture shows the first.",
     )
 
 
-def _followed(interpretation: str, raw: Sequence[Result], runs: Sequence[Scores]) -> Finding:
+def _followed(interpretation: str, raw: Sequence[Result], runs: Sequence[Scores]) -> ex.Finding:
     hits = video3.recoveries(runs)
     rmse = [run["metrics"]["rmse_px"] for run in raw]
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.share(share(hits), partly=0.25),
+        ex.Holds.share(share(hits), partly=0.25),
         f"{counted(hits)} total occlusions recovered from; RMSE {median_and_range(rmse)} px",
     )
 
 
-def _regular(interpretation: str, raw: Sequence[Result], runs: Sequence[Scores]) -> Finding:
+def _regular(interpretation: str, raw: Sequence[Result], runs: Sequence[Scores]) -> ex.Finding:
     shares = [_share_in(run, scored, Occlusion.NONE, "regular")
               for run, scored in zip(raw, runs, strict=True)]  # fmt: skip
     return _by_share(interpretation, shares, "regular in {} % of the clear frames")
 
 
-def _occluded(interpretation: str, raw: Sequence[Result], runs: Sequence[Scores]) -> Finding:
+def _occluded(interpretation: str, raw: Sequence[Result], runs: Sequence[Scores]) -> ex.Finding:
     shares = [_share_in(run, scored, Occlusion.TOTAL, "occlusion")
               for run, scored in zip(raw, runs, strict=True)]  # fmt: skip
     return _by_share(interpretation, shares, "occlusion mode in {} % of the hidden frames")
 
 
-def _by_share(interpretation: str, shares: Sequence[float], sentence: str) -> Finding:
+def _by_share(interpretation: str, shares: Sequence[float], sentence: str) -> ex.Finding:
     least = min(shares)
     numbers = sentence.format(median_and_range([100 * value for value in shares], 0))
-    return Finding(interpretation, Holds.of(least >= 0.8, max(shares) >= 0.5), numbers)
+    return ex.Finding(interpretation, ex.Holds.of(least >= 0.8, max(shares) >= 0.5), numbers)
 
 
 def _share_in(run: Result, scored: Scores, occlusion: Occlusion, regime: str) -> float:
@@ -184,7 +176,7 @@ def _share_in(run: Result, scored: Scores, occlusion: Occlusion, regime: str) ->
     return share(hits)
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "apf-fig5", "APF, figure 5: the path over the scene, interpolated over the occlusions", cells,
     report,
 )  # fmt: skip

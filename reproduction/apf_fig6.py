@@ -22,19 +22,9 @@ from statistics import median
 from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
+from reproduction import experiment as ex
 from reproduction.apf_systems import INTERPRETATIONS, RIVALS, SIX
 from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
-from reproduction.experiment import (
-    Claim,
-    DataTable,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.numbers import median_and_range
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
@@ -43,10 +33,10 @@ from vehicle_pf_tracker.evaluation.scores import Scores
 _PLACE = "section IV, figure 6"
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw the first seed's errors, and judge all seeds."""
     runs = video3.all_scores(results, size)
-    return Report(
+    return ex.Report(
         video3.data(runs, size),
         _figure(runs),
         _verdict(runs, size),
@@ -82,22 +72,24 @@ def _mean_errors(of_seeds: Sequence[Scores]) -> tuple[list[float], list[float]]:
     return before, after
 
 
-def _table(runs: dict[str, list[Scores]]) -> DataTable:
+def _table(runs: dict[str, list[Scores]]) -> ex.DataTable:
     rows = []
     for label, of_seeds in runs.items():
         before, after = _mean_errors(of_seeds)
         rows.append((label, median_and_range(before), median_and_range(after)))
-    return DataTable(("tracker", "before the first total occlusion", "after the last"), tuple(rows))
+    return ex.DataTable(
+        ("tracker", "before the first total occlusion", "after the last"), tuple(rows)
+    )
 
 
-def _verdict(runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
+def _verdict(runs: dict[str, list[Scores]], size: ex.Size) -> ex.ExperimentVerdict:
     findings = tuple(
         _finding(interpretation, runs[system.label], runs)
         for interpretation, system in INTERPRETATIONS.items()
     )
-    return ExperimentVerdict(
+    return ex.ExperimentVerdict(
         (
-            Claim(
+            ex.Claim(
                 "before and after the total occlusions APF's errors are smaller than the others'",
                 _PLACE,
                 findings,
@@ -108,7 +100,9 @@ def _verdict(runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
     )
 
 
-def _finding(interpretation: str, own: Sequence[Scores], runs: dict[str, list[Scores]]) -> Finding:
+def _finding(
+    interpretation: str, own: Sequence[Scores], runs: dict[str, list[Scores]]
+) -> ex.Finding:
     ours = _mean_errors(own)
     rivals = {rival.label: _mean_errors(runs[rival.label]) for rival in RIVALS}
     smaller, words = [], []
@@ -119,9 +113,9 @@ def _finding(interpretation: str, own: Sequence[Scores], runs: dict[str, list[Sc
             f"{when}: {median_and_range(ours[index])} px against {best}'s "
             f"{median_and_range(rivals[best][index])} px"
         )
-    return Finding(interpretation, Holds.of(all(smaller), any(smaller)), "; ".join(words))
+    return ex.Finding(interpretation, ex.Holds.of(all(smaller), any(smaller)), "; ".join(words))
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "apf-fig6", "APF, figure 6: the error in each frame, of all six trackers", video3.cells, report
 )

@@ -19,17 +19,8 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
+from reproduction import experiment as ex
 from reproduction.apf_systems import INTERPRETATIONS, RIVALS, SIX
-from reproduction.experiment import (
-    Claim,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.numbers import counted, share
 from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
 from vehicle_pf_tracker.evaluation.scores import Scores
@@ -37,11 +28,11 @@ from vehicle_pf_tracker.evaluation.scores import Scores
 _PLACE = "section IV, figure 7"
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw the first seed's x, and judge all seeds."""
     runs = video3.all_scores(results, size)
     drawn = {system.label: runs[system.label][0] for system in SIX}
-    return Report(video3.data(runs, size), _figure(drawn), _verdict(runs, size))
+    return ex.Report(video3.data(runs, size), _figure(drawn), _verdict(runs, size))
 
 
 def _figure(runs: dict[str, Scores]) -> Figure:
@@ -60,7 +51,7 @@ def _figure(runs: dict[str, Scores]) -> Figure:
     return figure
 
 
-def _verdict(runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
+def _verdict(runs: dict[str, list[Scores]], size: ex.Size) -> ex.ExperimentVerdict:
     own = {
         interpretation: video3.recoveries(runs[system.label])
         for interpretation, system in INTERPRETATIONS.items()
@@ -68,30 +59,34 @@ def _verdict(runs: dict[str, list[Scores]], size: Size) -> ExperimentVerdict:
     others = {rival.label: video3.recoveries(runs[rival.label]) for rival in RIVALS}
     lost = [not hit for hits in others.values() for hit in hits]
     parts = "; ".join(f"{label} {counted(hits)}" for label, hits in others.items())
-    return ExperimentVerdict(
+    return ex.ExperimentVerdict(
         (
-            Claim(
+            ex.Claim(
                 "APF overcomes the total occlusions and follows the vehicle again",
                 _PLACE,
                 tuple(
-                    Finding(
+                    ex.Finding(
                         interpretation,
-                        Holds.share(share(hits), partly=0.25),
+                        ex.Holds.share(share(hits), partly=0.25),
                         f"{counted(hits)} total occlusions recovered from",
                     )
                     for interpretation, hits in own.items()
                 ),
             ),
-            Claim(
+            ex.Claim(
                 "PF, SAPF, HPFMS, PFCL and MS do not",
                 _PLACE,
-                (Finding("one likelihood", Holds.share(share(lost)), f"recovered from: {parts}"),),
+                (
+                    ex.Finding(
+                        "one likelihood", ex.Holds.share(share(lost)), f"recovered from: {parts}"
+                    ),
+                ),
             ),
         ),
         f"{video3.SETTING} {len(size.seeds)} seeds; curves are those of the first.",
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "apf-fig7", "APF, figure 7: the way along x, as all six trackers see it", video3.cells, report
 )

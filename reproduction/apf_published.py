@@ -20,20 +20,12 @@ from collections.abc import Mapping, Sequence
 from statistics import fmean, median
 from typing import TypeAlias
 
-from reproduction.apf_systems import (
-    APF,
-    AS_PRINTED,
-    LIBERTIES,
-    OWN_LIKELIHOOD,
-    RELATIVE,
-    RIVALS,
-    SIX,
-)
+from reproduction import apf_systems as apf
 from reproduction.experiment import DataTable, Entry
 from reproduction.numbers import counted, mean_and_spread, rank_correlation
 from reproduction.paper_scenes import VIDEOS
 
-LABELS = tuple(system.label for system in (*RIVALS, APF))
+LABELS = tuple(system.label for system in (*apf.RIVALS, apf.APF))
 """The six, in the order of the paper's columns."""
 _PRINTED_ROWS = (
     (85.83, 100.19, 87.34, 93.45, 86.83, 25.65),
@@ -62,7 +54,7 @@ PUBLISHED: Mapping[str, Mapping[str, float]] = {
     for video, row in zip(VIDEOS, _PRINTED_ROWS, strict=True)
 }
 """The paper's RMSE in px, by video and by tracker."""
-BESIDE = (RELATIVE, AS_PRINTED, *OWN_LIKELIHOOD, *LIBERTIES)
+BESIDE = (apf.RELATIVE, apf.AS_PRINTED, *apf.OWN_LIKELIHOOD, *apf.LIBERTIES)
 """Systems that run on all videos beside the six."""
 
 Errors: TypeAlias = Mapping[str, Mapping[str, Sequence[float]]]
@@ -123,13 +115,15 @@ def ratios(videos: Errors, label: str, rivals: Sequence[str]) -> dict[str, float
 def published_ratio(video: str) -> float:
     """Return the paper's RMSE of APF over that of the best rival."""
     row = PUBLISHED[video]
-    return row[APF.label] / min(row[rival.label] for rival in RIVALS)
+    return row[apf.APF.label] / min(row[rival.label] for rival in apf.RIVALS)
 
 
 def ratio_table(videos: Errors) -> DataTable:
     """Compare how far APF is ahead of the best rival, which the scene's size does not change."""
-    rivals = [rival.label for rival in RIVALS]
-    found = {system.label: ratios(videos, system.label, rivals) for system in (APF, RELATIVE)}
+    rivals = [rival.label for rival in apf.RIVALS]
+    found = {
+        system.label: ratios(videos, system.label, rivals) for system in (apf.APF, apf.RELATIVE)
+    }
     rows = tuple(
         (name, VIDEOS[name].occlusion, *(f"{of[name]:.2f}" for of in found.values()),
          f"{published_ratio(name):.2f}")
@@ -149,6 +143,6 @@ def beside_table(videos: Errors, recovered: Mapping[str, Sequence[bool]]) -> Dat
             ),
             counted(recovered[system.label]),
         )
-        for system in (*SIX, *BESIDE)
+        for system in (*apf.SIX, *BESIDE)
     )
     return DataTable(("tracker", *groups(videos), "recovered from total occlusions"), rows)

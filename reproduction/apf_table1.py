@@ -23,20 +23,8 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction.cells import RunCell, SceneChoice
-from reproduction.experiment import (
-    PAPER,
-    Claim,
-    DataTable,
-    Entry,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.numbers import counted, share
 from reproduction.paper_scenes import VIDEOS
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
@@ -62,19 +50,19 @@ class _Row:
     resolution: str
 
 
-def cells(size: Size) -> list[RunCell]:
+def cells(size: ex.Size) -> list[RunCell]:
     """Run nothing: the truth says it all."""
     return []
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Read every scene's truth, and hold it against the paper's table."""
     truths = {
         (name, seed): SceneChoice.of(name).seeded(seed).truths()
         for name in VIDEOS
         for seed in size.seeds
     }
-    rows: list[tuple[Entry, ...]] = []
+    rows: list[tuple[ex.Entry, ...]] = []
     fits = []
     for number, name in enumerate(VIDEOS, start=1):
         published = _published(number)
@@ -88,11 +76,11 @@ def report(results: Results, size: Size) -> Report:
         )  # fmt: skip
     columns = ("video", "vehicle", "occlusion", "resolution, px", "what hides it here",
                "speed, px/frame", "partly hidden frames", "fully hidden frames")  # fmt: skip
-    table = DataTable(columns, tuple(rows))
-    return Report(
+    table = ex.DataTable(columns, tuple(rows))
+    return ex.Report(
         _data(truths),
         _figure(truths, size.seeds[0]),
-        ExperimentVerdict((_claim(fits),), _setting(size)),
+        ex.ExperimentVerdict((_claim(fits),), _setting(size)),
         {"The paper's columns, and what our scenes add to them:": table},
     )
 
@@ -132,13 +120,13 @@ def _range(counts: Sequence[int]) -> str:
     return f"{low}" if low == high else f"{low} to {high}"
 
 
-def _data(truths: dict[tuple[str, int], list[Truth]]) -> DataTable:
+def _data(truths: dict[tuple[str, int], list[Truth]]) -> ex.DataTable:
     rows = tuple(
         (name, seed, frame, truth.occlusion.name.lower(), truth.visible_fraction)
         for (name, seed), of in truths.items()
         for frame, truth in enumerate(of, start=1)
     )
-    return DataTable(("video", "seed", "frame", "occlusion", "visible_fraction"), rows)
+    return ex.DataTable(("video", "seed", "frame", "occlusion", "visible_fraction"), rows)
 
 
 def _figure(truths: dict[tuple[str, int], list[Truth]], seed: int) -> Figure:
@@ -160,21 +148,21 @@ def _figure(truths: dict[tuple[str, int], list[Truth]], seed: int) -> Figure:
     return figure
 
 
-def _claim(fits: Sequence[bool]) -> Claim:
-    return Claim(
+def _claim(fits: Sequence[bool]) -> ex.Claim:
+    return ex.Claim(
         "our counterparts have the paper's kinds of vehicle and occlusion, and its resolutions",
         _PLACE,
         (
-            Finding(
-                PAPER,
-                Holds.share(share(fits), yes=1.0),
+            ex.Finding(
+                ex.PAPER,
+                ex.Holds.share(share(fits), yes=1.0),
                 f"{counted(fits)} scenes (videos times seeds) fit their row by their truth",
             ),
         ),
     )
 
 
-def _setting(size: Size) -> str:
+def _setting(size: ex.Size) -> str:
     return (
         "Kinds of occlusion are read from the truth of each scene: total is less than a tenth of "
         "the vehicle visible, partial an occlusion in which it never gets that far; the partial "
@@ -185,6 +173,6 @@ def _setting(size: Size) -> str:
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "apf-table1", "APF, table I: vehicle and kind of occlusion of the twenty videos", cells, report
 )

@@ -22,18 +22,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
+from reproduction import experiment as ex
 from reproduction.apf_systems import APF, RIVALS, SIX, ruled
-from reproduction.experiment import (
-    Claim,
-    DataTable,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.numbers import median_and_range
 from reproduction.timing_cell import TimingCell
 
@@ -43,12 +33,12 @@ _ALIKE = 1.1
 """Ratios from one over this to this count as alike."""
 
 
-def cells(size: Size) -> list[TimingCell]:
+def cells(size: ex.Size) -> list[TimingCell]:
     """Run all six in turns, once for each seed."""
     return [_cell(seed) for seed in size.seeds]
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Compare the times as ratios to APF's."""
     times = {seed: results[_cell(seed)]["step_ms"] for seed in size.seeds}
     medians = {s.label: [median(times[seed][s.label]) for seed in size.seeds] for s in SIX}
@@ -62,7 +52,7 @@ def report(results: Results, size: Size) -> Report:
         for seed in size.seeds
         for frame, step in enumerate(times[seed][system.label], start=2)
     )
-    table = DataTable(
+    table = ex.DataTable(
         ("tracker", "ms per frame", "over APF's", "in the paper, min", "over APF's there"),
         tuple(
             (label, median_and_range(medians[label], 2), median_and_range(ratios[label], 2),
@@ -70,8 +60,8 @@ def report(results: Results, size: Size) -> Report:
             for label in medians
         ),
     )  # fmt: skip
-    return Report(
-        DataTable(("tracker", "seed", "frame", "step_ms"), rows),
+    return ex.Report(
+        ex.DataTable(("tracker", "seed", "frame", "step_ms"), rows),
         _figure(ratios),
         _verdict(ratios, size),
         {"Median over the frames; median and range over the seeds:": table},
@@ -100,31 +90,31 @@ def _figure(ratios: dict[str, list[float]]) -> Figure:
     return figure
 
 
-def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
+def _verdict(ratios: dict[str, list[float]], size: ex.Size) -> ex.ExperimentVerdict:
     middle = {label: median(found) for label, found in ratios.items()}
     filters = [rival.label for rival in RIVALS if rival.label != "MS"]
     parts = ", ".join(f"{label} {median_and_range(ratios[label], 2)}" for label in filters)
     cheaper = [label for label in filters if middle[label] < 1]
     alike = [1 / _ALIKE <= middle[label] <= _ALIKE for label in filters]
     mean_shift = f"{median_and_range(ratios['MS'], 2)} of APF's time"
-    return ExperimentVerdict(
+    return ex.ExperimentVerdict(
         (
-            Claim(
+            ex.Claim(
                 "APF takes no more time than the other particle filters",
                 _PLACE,
-                (Finding("one likelihood", Holds.of(not cheaper, len(cheaper) < len(filters)),
+                (ex.Finding("one likelihood", ex.Holds.of(not cheaper, len(cheaper) < len(filters)),
                          f"times over APF's: {parts}"),),
             ),
-            Claim(
+            ex.Claim(
                 "all particle filters take about the same time (within 5 % in the paper)",
                 _PLACE,
-                (Finding("one likelihood", Holds.of(all(alike), any(alike)),
+                (ex.Finding("one likelihood", ex.Holds.of(all(alike), any(alike)),
                          f"times over APF's: {parts}"),),
             ),
-            Claim(
+            ex.Claim(
                 "mean shift takes the least time",
                 _PLACE,
-                (Finding("one likelihood", Holds.of(middle["MS"] <= min(middle.values())),
+                (ex.Finding("one likelihood", ex.Holds.of(middle["MS"] <= min(middle.values())),
                          mean_shift),),
             ),
         ),
@@ -136,6 +126,6 @@ def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
     )  # fmt: skip
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "apf-timing", "APF, processing times: the six trackers' times as ratios", cells, report
 )

@@ -20,30 +20,25 @@ from collections.abc import Sequence
 
 from matplotlib.axes import Axes
 
-from reproduction.apf_systems import (
-    INTERPRETATIONS,
-    RIVALS,
-    SIGMA_RULE,
-    ruled,
-)
+from reproduction import apf_systems as apf
 from reproduction.cells import PATH, RunCell, SceneChoice, System, scores
 from reproduction.experiment import DataTable, Results, Size
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 SCENE = SceneChoice.of("video03")
-SYSTEMS = tuple(dict.fromkeys((*INTERPRETATIONS.values(), *RIVALS)))
+SYSTEMS = tuple(dict.fromkeys((*apf.INTERPRETATIONS.values(), *apf.RIVALS)))
 SETTING = (
     "The scene `video03` is our counterpart of the paper's Video3: a sport utility vehicle passes "
     "a lamp post, is hidden by a sign and then by a coach that overtakes; 15 frames per second. "
-    "Each seed renders a new scene and seeds the trackers. " + SIGMA_RULE
+    "Each seed renders a new scene and seeds the trackers. " + apf.SIGMA_RULE
 )
 _RECORD = (*PATH, "regime")
 
 
 def cell(system: System, seed: int) -> RunCell:
     """Make the cell of `system`."""
-    return ruled(SCENE.seeded(seed), system, seed, _RECORD)
+    return apf.ruled(SCENE.seeded(seed), system, seed, _RECORD)
 
 
 def cells(size: Size) -> list[RunCell]:

@@ -20,29 +20,18 @@ from statistics import fmean, pstdev
 
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction import mfpf_systems as mfpf
 from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
-from reproduction.experiment import (
-    Claim,
-    DataTable,
-    Entry,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.mfpf_systems import FOUR, INTERPRETATIONS, MFPF, SINGLES
 from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
 
 _PLACE = "section V, figures 5b to 15b"
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw the errors with their spread, and judge all seeds."""
-    rows: list[tuple[Entry, ...]] = [
+    rows: list[tuple[ex.Entry, ...]] = [
         (
             interpretation,
             case,
@@ -60,10 +49,10 @@ def report(results: Results, size: Size) -> Report:
         if f.truth is not None
     ]
     columns = ("interpretation", "case", "filter", "seed", "frame", "error_px", "occlusion")
-    return Report(
-        DataTable(columns, tuple(rows)),
+    return ex.Report(
+        ex.DataTable(columns, tuple(rows)),
         _figure(results, size),
-        ExperimentVerdict(
+        ex.ExperimentVerdict(
             _claims(results, size),
             f"{mfpf.setting(size)} {BANDS_NOTE} The paper's rule is shown, on the paper's linear "
             "scale to the left and on a logarithmic one to the right.",
@@ -71,7 +60,7 @@ def report(results: Results, size: Size) -> Report:
     )
 
 
-def _figure(results: Results, size: Size) -> Figure:
+def _figure(results: ex.Results, size: ex.Size) -> Figure:
     names = mfpf.cases(size)
     figure = Figure(figsize=(11, 2.5 * len(names) + 0.5), layout="constrained")
     grid = figure.subplots(len(names), 2, squeeze=False, sharex="row")
@@ -94,15 +83,15 @@ def _figure(results: Results, size: Size) -> Figure:
     return figure
 
 
-def _claims(results: Results, size: Size) -> tuple[Claim, ...]:
+def _claims(results: ex.Results, size: ex.Size) -> tuple[ex.Claim, ...]:
     return (
-        Claim(
+        ex.Claim(
             "in the shadows of case 3 MFPF's error varies the least of all four, the edge filter's "
             "the most",
             "section V-C, figure 9b",
             tuple(_steadiest(results, size, interpretation) for interpretation in INTERPRETATIONS),
         ),
-        Claim(
+        ex.Claim(
             "MFPF is not the best in every frame: in a part of the sequence single features are "
             "ahead, though not on the whole",
             "section V-A and VI",
@@ -111,13 +100,15 @@ def _claims(results: Results, size: Size) -> tuple[Claim, ...]:
     )
 
 
-def _errors(results: Results, case: str, label: str, seed: int, interpretation: str) -> list[float]:
+def _errors(
+    results: ex.Results, case: str, label: str, seed: int, interpretation: str
+) -> list[float]:
     (system,) = (s for s in FOUR if s.label == label)
     frames = mfpf.run_scores(results, case, system, seed, interpretation).frames
     return [frame.error for frame in frames if frame.error is not None]
 
 
-def _steadiest(results: Results, size: Size, interpretation: str) -> Finding:
+def _steadiest(results: ex.Results, size: ex.Size, interpretation: str) -> ex.Finding:
     case = size.of("case3", mfpf.cases(size)[0])
     spreads = {
         system.label: fmean(
@@ -128,13 +119,13 @@ def _steadiest(results: Results, size: Size, interpretation: str) -> Finding:
     }
     least, most = min(spreads, key=spreads.__getitem__), max(spreads, key=spreads.__getitem__)
     parts = ", ".join(f"{label} {value:.1f}" for label, value in spreads.items())
-    return Finding(
-        interpretation, Holds.of((least, most) == (MFPF.label, "Edge"), least == MFPF.label),
+    return ex.Finding(
+        interpretation, ex.Holds.of((least, most) == (MFPF.label, "Edge"), least == MFPF.label),
         f"standard deviation of the error over the frames, mean of the seeds: {parts} px",
     )  # fmt: skip
 
 
-def _in_parts(results: Results, size: Size, interpretation: str) -> Finding:
+def _in_parts(results: ex.Results, size: ex.Size, interpretation: str) -> ex.Finding:
     shares, on_the_whole = [], []
     for case in mfpf.cases(size):
         for seed in size.seeds:
@@ -147,15 +138,15 @@ def _in_parts(results: Results, size: Size, interpretation: str) -> Finding:
             for s in FOUR
         }
         on_the_whole.append(totals.pop(MFPF.label) <= min(totals.values()))
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.of(fmean(shares) < 1 and all(on_the_whole), fmean(shares) < 1),
+        ex.Holds.of(fmean(shares) < 1 and all(on_the_whole), fmean(shares) < 1),
         f"ahead of all single features in {100 * fmean(shares):.0f} % of the frames; on the whole "
         f"in {sum(on_the_whole)} of {len(on_the_whole)} cases",
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "mfpf-errors", "MFPF, figures 5b to 15b: the error in each frame, of all four filters",
     mfpf.cells, report,
 )  # fmt: skip

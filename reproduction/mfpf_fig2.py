@@ -20,19 +20,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction.cells import RunCell
-from reproduction.experiment import (
-    PAPER,
-    Claim,
-    DataTable,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import Weights, from_log
@@ -54,12 +43,12 @@ _PRINTED = "multinomial"
 """The scheme of the paper's list (i) to (iii)."""
 
 
-def cells(size: Size) -> list[RunCell]:
+def cells(size: ex.Size) -> list[RunCell]:
     """Run nothing: the scheme is tried by itself."""
     return []
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw the events, and count how often each is drawn."""
     weights = _weights()
     counts = {
@@ -73,16 +62,16 @@ def report(results: Results, size: Size) -> Report:
         for scheme in names
         for event in range(_EVENTS)
     )
-    claim = Claim(
+    claim = ex.Claim(
         "a standard uniform number is transformed to a particle by the cumulative sum of the "
         "weights, so that each particle is drawn as often as its weight says",
         _PLACE,
         tuple(_finding(name, weights, counts[name], total) for name in names),
     )
-    return Report(
-        DataTable(("scheme", "event", "probability", "frequency"), rows),
+    return ex.Report(
+        ex.DataTable(("scheme", "event", "probability", "frequency"), rows),
         _figure(weights),
-        ExperimentVerdict((claim,), _setting(size)),
+        ex.ExperimentVerdict((claim,), _setting(size)),
     )
 
 
@@ -98,13 +87,13 @@ def _counts(scheme: str, weights: Weights, seed: int) -> Array:
     return np.bincount(drawn, minlength=_EVENTS).astype(float)
 
 
-def _finding(scheme: str, weights: Weights, counts: Array, total: int) -> Finding:
+def _finding(scheme: str, weights: Weights, counts: Array, total: int) -> ex.Finding:
     spread = np.sqrt(total * weights * (1 - weights))
     worst = float(np.max(np.abs(counts - total * weights) / spread))
-    name = f"{PAPER}, {scheme}" if scheme != _PRINTED else PAPER
-    return Finding(
+    name = f"{ex.PAPER}, {scheme}" if scheme != _PRINTED else ex.PAPER
+    return ex.Finding(
         name,
-        Holds.of(worst <= _MOST),
+        ex.Holds.of(worst <= _MOST),
         f"{total} draws: frequencies are at most {worst:.1f} standard deviations of a multinomial "
         f"draw from the weights (largest difference {_farthest(counts / total, weights):.4f})",
     )
@@ -139,7 +128,7 @@ def _draw_transformation(axes: Axes, cumulative: Array) -> None:
     )  # fmt: skip
 
 
-def _setting(size: Size) -> str:
+def _setting(size: ex.Size) -> str:
     return (
         f"Ten particles with the weights of equation 10 (sigma {_SIGMA_V:g}) for coefficients that "
         f"fall to either side of the best; {_DRAWS} draws with each of the seeds "
@@ -148,7 +137,7 @@ def _setting(size: Size) -> str:
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "mfpf-fig2", "MFPF, figure 2: the weights' cumulative distribution in resampling", cells,
     report,
 )  # fmt: skip

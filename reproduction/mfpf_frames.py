@@ -18,19 +18,8 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction import mfpf_systems as mfpf
-from reproduction.experiment import (
-    PAPER,
-    Claim,
-    DataTable,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.mfpf_systems import FOUR, MFPF, SINGLES
 from reproduction.strips import strip_figure, telling_frames
 from vehicle_pf_tracker.core.truth import Occlusion
@@ -40,7 +29,7 @@ _LONG = 60, 80
 """Hidden frames that are about the 70 of the paper's case 4."""
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Show the first seed, and hold the scenes against what the paper tells of its videos."""
     seed = size.seeds[0]
     rows = tuple(
@@ -53,11 +42,11 @@ def report(results: Results, size: Size) -> Report:
     )  # fmt: skip
     columns = ("case", "filter", "seed", "frame", "x", "y", "true_x", "true_y", "occlusion",
                "visible_fraction")  # fmt: skip
-    return Report(
-        DataTable(columns, rows),
+    return ex.Report(
+        ex.DataTable(columns, rows),
         _figure(results, size),
-        ExperimentVerdict(
-            (Claim("the six cases show what the paper's do", "section V, figures 4 to 14",
+        ex.ExperimentVerdict(
+            (ex.Claim("the six cases show what the paper's do", "section V, figures 4 to 14",
                    (_finding(results, size),)),),
             f"{mfpf.setting(size)} The picture shows the first seed, in grey, cut to what "
             "is around the true position; an arrow points to a filter that is elsewhere.",
@@ -65,7 +54,7 @@ def report(results: Results, size: Size) -> Report:
     )  # fmt: skip
 
 
-def _figure(results: Results, size: Size) -> Figure:
+def _figure(results: ex.Results, size: ex.Size) -> Figure:
     rows = {}
     for case in mfpf.cases(size):
         # MFPF first: its line is solid.
@@ -78,7 +67,7 @@ def _figure(results: Results, size: Size) -> Figure:
     return strip_figure(rows)
 
 
-def _finding(results: Results, size: Size) -> Finding:
+def _finding(results: ex.Results, size: ex.Size) -> ex.Finding:
     fits, parts = [], []
     for case in mfpf.cases(size):
         hidden, partial = [], []
@@ -92,7 +81,7 @@ def _finding(results: Results, size: Size) -> Finding:
             f"{case} ({mfpf.occlusion_text(case)}) {min(partial)} to {max(partial)} partly and "
             f"{min(hidden)} to {max(hidden)} fully hidden frames"
         )
-    return Finding(PAPER, Holds.of(all(fits), any(fits)), "; ".join(parts))
+    return ex.Finding(ex.PAPER, ex.Holds.of(all(fits), any(fits)), "; ".join(parts))
 
 
 def _fits(case: str, hidden: list[int], partial: list[int]) -> bool:
@@ -103,6 +92,6 @@ def _fits(case: str, hidden: list[int], partial: list[int]) -> bool:
     return max(hidden) == 0 and (case == "case3") == (max(partial) == 0)
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "mfpf-frames", "MFPF, figures 4 to 14: frames of the six cases", mfpf.cells, report
 )

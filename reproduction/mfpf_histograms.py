@@ -25,21 +25,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction.cells import Probe, Result, SceneChoice
-from reproduction.experiment import (
-    PAPER,
-    PRINTED,
-    Claim,
-    DataTable,
-    Entry,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.mfpf_systems import (
     FEATURES,
     INTERPRETATIONS,
@@ -148,7 +135,7 @@ def histograms(made: dict[str, WindowFeature], target: Target, shown: SceneFrame
     return {name: f.histograms(shown.frame, at, window)[0] for name, f in made.items()}
 
 
-def cells(size: Size) -> list[HistogramCell]:
+def cells(size: ex.Size) -> list[HistogramCell]:
     """Measure along the sequence."""
     return [
         HistogramCell(SceneChoice.of(_SCENE).seeded(seed), interpretation)
@@ -157,9 +144,9 @@ def cells(size: Size) -> list[HistogramCell]:
     ]
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw the first seed's histograms, and judge all seeds."""
-    rows: list[tuple[Entry, ...]] = [
+    rows: list[tuple[ex.Entry, ...]] = [
         (interpretation, situation, seed, FEATURES[name], distance)
         for interpretation in INTERPRETATIONS
         for situation in _SITUATIONS
@@ -179,7 +166,7 @@ def report(results: Results, size: Size) -> Report:
         }
         for interpretation in INTERPRETATIONS
     }
-    table = DataTable(
+    table = ex.DataTable(
         ("", *(read_label(label, interpretation)
                for interpretation in INTERPRETATIONS for label in FEATURES.values())),
         tuple(
@@ -188,16 +175,16 @@ def report(results: Results, size: Size) -> Report:
             for situation in _SITUATIONS
         ),
     )  # fmt: skip
-    return Report(
-        DataTable(("interpretation", "situation", "seed", "feature", "distance"), tuple(rows)),
+    return ex.Report(
+        ex.DataTable(("interpretation", "situation", "seed", "feature", "distance"), tuple(rows)),
         _figure(size),
-        ExperimentVerdict(_claims(found), _setting(size)),
+        ex.ExperimentVerdict(_claims(found), _setting(size)),
         {"Hellinger distance from the first frame's histogram, mean ± standard deviation over the "
          "seeds:": table},
     )  # fmt: skip
 
 
-def _setting(size: Size) -> str:
+def _setting(size: ex.Size) -> str:
     return (
         f"One sequence, as the paper's frames 310 to 360: in scene `{_SCENE}` a car drives through "
         "a tree's shadow, behind a tree's crown, and behind a pillar. Windows at the true "
@@ -208,7 +195,7 @@ def _setting(size: Size) -> str:
         f"those with less than {100 * _GONE:.0f} %. The picture shows the first seed: first frame, "
         "then the one of each kind that is furthest in colour. The paper's rule and our "
         "interpretation have the same features here; "
-        f"{_edges_text(PAPER)}, as printed {_edges_text(PRINTED)}."
+        f"{_edges_text(ex.PAPER)}, as printed {_edges_text(ex.PRINTED)}."
     )
 
 
@@ -241,24 +228,24 @@ def _stretches(visible: Sequence[float]) -> list[list[int]]:
 
 
 def _distances(
-    results: Results, situation: str, seed: int, interpretation: str
+    results: ex.Results, situation: str, seed: int, interpretation: str
 ) -> dict[str, float]:
     choice = SceneChoice.of(_SCENE).seeded(seed)
     # Frames are chosen alike for both interpretations.
-    chosen = chosen_frames(results[HistogramCell(choice, PAPER)], situation)
+    chosen = chosen_frames(results[HistogramCell(choice, ex.PAPER)], situation)
     result = results[HistogramCell(choice, interpretation)]
     return {name: fmean(result["distance"][name][index] for index in chosen) for name in FEATURES}
 
 
-def _claims(found: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[Claim, ...]:
+def _claims(found: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[ex.Claim, ...]:
     return (
-        Claim(
+        ex.Claim(
             "in shadow and under a partial occlusion the edge histogram changes the least, colour "
             "the most, texture is in between",
             _PLACE,
             tuple(_order(interpretation, of) for interpretation, of in found.items()),
         ),
-        Claim(
+        ex.Claim(
             "under a full occlusion no histogram is informative",
             _PLACE,
             tuple(_empty(interpretation, of) for interpretation, of in found.items()),
@@ -266,28 +253,28 @@ def _claims(found: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[Claim,
     )
 
 
-def _order(interpretation: str, of: dict[str, dict[str, list[float]]]) -> Finding:
+def _order(interpretation: str, of: dict[str, dict[str, list[float]]]) -> ex.Finding:
     holds, parts = [], []
     for situation in ("shadow", "partial"):
         means = {name: fmean(values) for name, values in of[situation].items()}
         order = sorted(means, key=means.__getitem__)
-        holds.append(Holds.of(order == ["edge", "texture", "color"], order[0] == "edge"))
+        holds.append(ex.Holds.of(order == ["edge", "texture", "color"], order[0] == "edge"))
         values = " < ".join(f"{FEATURES[name]} {means[name]:.2f}" for name in order)
         parts.append(f"{_TITLES[situation]}: {values}")
-    return Finding(interpretation, Holds.all(holds), f"mean distances, {'; '.join(parts)}")
+    return ex.Finding(interpretation, ex.Holds.all(holds), f"mean distances, {'; '.join(parts)}")
 
 
-def _empty(interpretation: str, of: dict[str, dict[str, list[float]]]) -> Finding:
+def _empty(interpretation: str, of: dict[str, dict[str, list[float]]]) -> ex.Finding:
     means = {name: fmean(values) for name, values in of["full"].items()}
     empty = [value >= _INFORMATIVE for value in means.values()]
     parts = ", ".join(f"{FEATURES[name]} {value:.2f}" for name, value in means.items())
-    return Finding(
-        interpretation, Holds.of(all(empty), any(empty)),
+    return ex.Finding(
+        interpretation, ex.Holds.of(all(empty), any(empty)),
         f"distances (at least {_INFORMATIVE:g} counts as not informative): {parts}",
     )  # fmt: skip
 
 
-def _figure(size: Size) -> Figure:
+def _figure(size: ex.Size) -> Figure:
     shown = _pictures(size.seeds[0])
     figure = Figure(figsize=(11, 1.9 * len(shown)), layout="constrained")
     grid = figure.subplots(len(shown), 4, width_ratios=(1, 1.6, 1.6, 1.6))
@@ -312,9 +299,9 @@ def _figure(size: Size) -> Figure:
 
 def _pictures(seed: int) -> dict[str, tuple[Frame, dict[str, Any]]]:
     """Cut out the true window, and describe it: the first frame's, and the worst of each kind."""
-    made, target = features(PAPER), None
+    made, target = features(ex.PAPER), None
     shown: list[tuple[Frame, dict[str, Any]]] = []
-    probe = _Histograms(PAPER)
+    probe = _Histograms(ex.PAPER)
     for scene_frame in SceneChoice.of(_SCENE).seeded(seed).make().frames():
         target = target or Target(scene_frame.frame, scene_frame.truth.box)
         probe.feed(scene_frame)
@@ -335,7 +322,7 @@ def _cut(shown: SceneFrame) -> Frame:
     return np.array(shown.frame[rows, columns])
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "mfpf-histograms", "MFPF, figure 1: three histograms in the clear, in shadow and occluded",
     cells, report,
 )  # fmt: skip

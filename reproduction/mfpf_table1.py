@@ -23,31 +23,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from statistics import fmean
 
-from reproduction import mfpf_kept as kept
+from reproduction import experiment as ex
 from reproduction import mfpf_systems as mfpf
 from reproduction import mfpf_textures as textures
 from reproduction.case_figure import SHADES, error_case_figure
 from reproduction.cells import RunCell, System
-from reproduction.experiment import (
-    PAPER,
-    Claim,
-    DataTable,
-    Entry,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
-from reproduction.mfpf_systems import (
-    DEFAULTS,
-    FOUR,
-    INTERPRETATIONS,
-    MFPF,
-    SINGLES,
-)
 from reproduction.numbers import mean_and_spread, share
 from reproduction.paper_scenes import CASES
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
@@ -70,42 +50,33 @@ _FOLLOWS, _AT_LEAST = 0.8, 0.10
 
 Errors = Mapping[str, Mapping[str, Sequence[float]]]
 """RMS of each seed, by case and by filter."""
+Followed = Mapping[str, Mapping[str, Sequence[bool]]]
+"""For each seed whether the run ends close to the vehicle, by case and by filter."""
 
 
-def cells(size: Size) -> list[RunCell]:
+def cells(size: ex.Size) -> list[RunCell]:
     """Run the four filters under every interpretation, and the other textures."""
     return mfpf.cells(size) + textures.cells(size)
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Make the tables, and judge them."""
-    errors = {
-        interpretation: _errors(results, size, interpretation, FOUR)
-        for interpretation in INTERPRETATIONS
-    }
-    followed = {
-        interpretation: _followed(results, size, interpretation)
-        for interpretation in INTERPRETATIONS
-    }
+    errors = {name: _errors(results, size, name) for name in mfpf.INTERPRETATIONS}
+    followed = {name: _followed(results, size, name) for name in mfpf.INTERPRETATIONS}
     tables = {
         "RMS in px, mean ± standard deviation over the seeds:": _rms_table(errors, size),
         f"Runs that end with {mfpf.LAST_FRAMES} frames below {CLOSE_PX:g} px, "
         f"of {len(size.seeds)}:": _followed_table(followed, size),
-        "Runs that never lost the vehicle / runs that did: mean RMS in px, and in brackets how "
-        "many (lost: a visible frame with an error of half its box's diagonal):": kept.table(
-            results, size
-        ),
         "The three textures, RMS in px:": textures.table(results, size),
     }
     shades = {name: SHADES[CASES[name].occlusion] for name in mfpf.cases(size)}
-    return Report(
-        _data(results, size),
-        error_case_figure(errors[PAPER], shades, [_short(n) for n in shades], "case"),
-        ExperimentVerdict(
+    return ex.Report(
+        _data(errors, followed, results, size),
+        error_case_figure(errors[ex.PAPER], shades, [_short(n) for n in shades], "case"),
+        ex.ExperimentVerdict(
             (
                 *_claims(errors),
                 *_further(errors, followed),
-                kept.claim(results, size),
                 textures.claim(results, size),
             ),
             mfpf.setting(size),
@@ -120,75 +91,58 @@ def _short(case: str) -> str:
 
 
 def _errors(
-    results: Results, size: Size, interpretation: str, systems: Sequence[System]
+    results: ex.Results, size: ex.Size, interpretation: str
 ) -> dict[str, dict[str, list[float]]]:
     return {
         case: {
             system.label: mfpf.per_seed(results, size, case, system, interpretation, "rmse_px")
-            for system in systems
+            for system in mfpf.FOUR
         }
         for case in mfpf.cases(size)
     }
 
 
-def _followed(
-    results: Results, size: Size, interpretation: str
-) -> dict[str, dict[str, list[bool]]]:
-    """Return for each seed whether the run ends close to the vehicle, by case and filter."""
+def _followed(results: ex.Results, size: ex.Size, interpretation: str) -> Followed:
+    def is_close(case: str, system: System, seed: int) -> bool:
+        scored = mfpf.run_scores(results, case, system, seed, interpretation)
+        last = [frame.error for frame in scored.frames[-mfpf.LAST_FRAMES :]]
+        return all(error is not None and error < CLOSE_PX for error in last)
+
     return {
         case: {
-            system.label: [
-                all(
-                    frame.error is not None and frame.error < CLOSE_PX
-                    for frame in mfpf.run_scores(
-                        results, case, system, seed, interpretation
-                    ).frames[-mfpf.LAST_FRAMES :]
-                )
-                for seed in size.seeds
-            ]
-            for system in FOUR
+            system.label: [is_close(case, system, seed) for seed in size.seeds]
+            for system in mfpf.FOUR
         }
         for case in mfpf.cases(size)
     }
 
 
-def _data(results: Results, size: Size) -> DataTable:
-    followed = {
-        interpretation: _followed(results, size, interpretation)
-        for interpretation in INTERPRETATIONS
-    }
-    rows: list[tuple[Entry, ...]] = []
-    for interpretation in INTERPRETATIONS:
-        for case in mfpf.cases(size):
-            for system in FOUR:
-                values = mfpf.per_seed(results, size, case, system, interpretation, "rmse_px")
-                rows += [
-                    (interpretation, case, system.label, "glcm", seed, rms, int(end))
-                    for seed, rms, end in zip(
-                        size.seeds,
-                        values,
-                        followed[interpretation][case][system.label],
-                        strict=True,
-                    )
-                ]
+def _data(
+    errors: Mapping[str, Errors],
+    followed: Mapping[str, Followed],
+    results: ex.Results,
+    size: ex.Size,
+) -> ex.DataTable:
+    rows: list[tuple[ex.Entry, ...]] = [
+        (interpretation, case, label, "glcm", seed, rms, int(end))
+        for interpretation, found in errors.items()
+        for case, of_case in found.items()
+        for label, values in of_case.items()
+        for seed, rms, end in zip(
+            size.seeds, values, followed[interpretation][case][label], strict=True
+        )
+    ]
     rows += [
-        (PAPER, case, label, texture, seed, rms, None)
+        (ex.PAPER, case, label, texture, seed, rms, None)
         for texture, case, label, seed, rms in textures.rows(results, size)
     ]
-    columns = (
-        "interpretation",
-        "case",
-        "filter",
-        "texture",
-        "seed",
-        "rmse_px",
-        "followed_to_the_end",
-    )
-    return DataTable(columns, tuple(rows))
+    columns = ("interpretation", "case", "filter", "texture", "seed", "rmse_px",
+               "followed_to_the_end")  # fmt: skip
+    return ex.DataTable(columns, tuple(rows))
 
 
-def _rms_table(errors: Mapping[str, Errors], size: Size) -> DataTable:
-    rows: list[tuple[Entry, ...]] = [
+def _rms_table(errors: Mapping[str, Errors], size: ex.Size) -> ex.DataTable:
+    rows: list[tuple[ex.Entry, ...]] = [
         (mfpf.read_label(label, interpretation),
          *(mean_and_spread(of_case[label]) for of_case in found.values()),
          mean_and_spread(_over_cases(found, label)))
@@ -201,19 +155,17 @@ def _rms_table(errors: Mapping[str, Errors], size: Size) -> DataTable:
          f"{fmean(values[n] for n in numbers):.2f}")
         for label, values in _PAPER.items()
     ]  # fmt: skip
-    return DataTable(("filter", *mfpf.cases(size), "all"), tuple(rows))
+    return ex.DataTable(("filter", *mfpf.cases(size), "all"), tuple(rows))
 
 
-def _followed_table(
-    followed: Mapping[str, Mapping[str, Mapping[str, Sequence[bool]]]], size: Size
-) -> DataTable:
-    rows: list[tuple[Entry, ...]] = [
+def _followed_table(followed: Mapping[str, Followed], size: ex.Size) -> ex.DataTable:
+    rows: list[tuple[ex.Entry, ...]] = [
         (mfpf.read_label(label, interpretation),
          *(sum(of_case[label]) for of_case in found.values()))
         for interpretation, found in followed.items()
         for label in _PAPER
     ]  # fmt: skip
-    return DataTable(("filter", *mfpf.cases(size)), tuple(rows))
+    return ex.DataTable(("filter", *mfpf.cases(size)), tuple(rows))
 
 
 def _over_cases(errors: Errors, label: str) -> list[float]:
@@ -222,23 +174,23 @@ def _over_cases(errors: Errors, label: str) -> list[float]:
 
 
 def _best_single(found: Mapping[str, Sequence[float]]) -> str:
-    return min((single.label for single in SINGLES), key=lambda label: fmean(found[label]))
+    return min((single.label for single in mfpf.SINGLES), key=lambda label: fmean(found[label]))
 
 
-def _claims(errors: Mapping[str, Errors]) -> tuple[Claim, ...]:
+def _claims(errors: Mapping[str, Errors]) -> tuple[ex.Claim, ...]:
     return (
-        Claim(
+        ex.Claim(
             "MFPF has the least RMS in all cases",
             _PLACE,
             tuple(_least(interpretation, found) for interpretation, found in errors.items()),
         ),
-        Claim(
+        ex.Claim(
             "its RMS is always 10 to 25 % below the least of the single-feature filters (3 to 23 % "
             "by the paper's own table)",
             _PLACE,
             tuple(_saving(interpretation, found) for interpretation, found in errors.items()),
         ),
-        Claim(
+        ex.Claim(
             "no single feature is the best in all cases",
             _PLACE,
             tuple(_no_single(interpretation, found) for interpretation, found in errors.items()),
@@ -249,7 +201,7 @@ def _claims(errors: Mapping[str, Errors]) -> tuple[Claim, ...]:
 def _ratios(found: Errors) -> dict[str, float]:
     """MFPF's mean RMS over the best single-feature filter's, by case."""
     return {
-        case: fmean(of_case[MFPF.label]) / fmean(of_case[_best_single(of_case)])
+        case: fmean(of_case[mfpf.MFPF.label]) / fmean(of_case[_best_single(of_case)])
         for case, of_case in found.items()
     }
 
@@ -261,34 +213,36 @@ def _numbers_text(found: Errors) -> str:
     )
 
 
-def _least(interpretation: str, found: Errors) -> Finding:
+def _least(interpretation: str, found: Errors) -> ex.Finding:
     least = [ratio <= 1 for ratio in _ratios(found).values()]
-    return Finding(
-        interpretation, Holds.of(all(least), any(least)), f"MFPF's RMS: {_numbers_text(found)}"
+    return ex.Finding(
+        interpretation, ex.Holds.of(all(least), any(least)), f"MFPF's RMS: {_numbers_text(found)}"
     )
 
 
-def _saving(interpretation: str, found: Errors) -> Finding:
+def _saving(interpretation: str, found: Errors) -> ex.Finding:
     enough = [ratio <= 1 - _AT_LEAST for ratio in _ratios(found).values()]
     saved = ", ".join(f"{100 * (1 - ratio):.0f}" for ratio in _ratios(found).values())
-    return Finding(
-        interpretation, Holds.of(all(enough), any(enough)),
+    return ex.Finding(
+        interpretation, ex.Holds.of(all(enough), any(enough)),
         f"below it by {saved} % in the cases in order",
     )  # fmt: skip
 
 
-def _no_single(interpretation: str, found: Errors) -> Finding:
+def _no_single(interpretation: str, found: Errors) -> ex.Finding:
     best = {case: _best_single(of_case) for case, of_case in found.items()}
     parts = ", ".join(f"case {_short(case)} {label}" for case, label in best.items())
-    return Finding(interpretation, Holds.of(len(set(best.values())) > 1), f"the best: {parts}")
+    return ex.Finding(
+        interpretation, ex.Holds.of(len(set(best.values())) > 1), f"the best: {parts}"
+    )
 
 
 def _further(
     errors: Mapping[str, Errors],
-    followed: Mapping[str, Mapping[str, Mapping[str, Sequence[bool]]]],
-) -> tuple[Claim, ...]:
+    followed: Mapping[str, Followed],
+) -> tuple[ex.Claim, ...]:
     return (
-        Claim(
+        ex.Claim(
             "(the claims above taken together) over all cases MFPF's mean RMS is below that of the "
             "best single-feature filter",
             _PLACE,
@@ -299,12 +253,12 @@ def _further(
                 ),
                 _over_all(
                     "the paper's rule, single features with their defaults",
-                    errors[PAPER],
-                    errors[DEFAULTS],
+                    errors[ex.PAPER],
+                    errors[mfpf.DEFAULTS],
                 ),
             ),
         ),
-        Claim(
+        ex.Claim(
             "(not in the paper in numbers) MFPF follows to the end: in 8 of 10 runs where the "
             "vehicle is never hidden, and otherwise as often as the best single feature",
             "section V, cases 1 to 6",
@@ -313,36 +267,36 @@ def _further(
     )
 
 
-def _over_all(interpretation: str, found: Errors, rivals: Errors) -> Finding:
-    own = _over_cases(found, MFPF.label)
-    singles = {single.label: _over_cases(rivals, single.label) for single in SINGLES}
+def _over_all(interpretation: str, found: Errors, rivals: Errors) -> ex.Finding:
+    own = _over_cases(found, mfpf.MFPF.label)
+    singles = {single.label: _over_cases(rivals, single.label) for single in mfpf.SINGLES}
     best = _best_single(singles)
     wins = [a < b for a, b in zip(own, singles[best], strict=True)]
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.of(fmean(own) < fmean(singles[best])),
+        ex.Holds.of(fmean(own) < fmean(singles[best])),
         f"{mean_and_spread(own)} px against {mean_and_spread(singles[best])} px of {best}: "
         f"{fmean(own) / fmean(singles[best]):.2f} times; below it with {sum(wins)} of "
         f"{len(wins)} seeds",
     )
 
 
-def _to_the_end(interpretation: str, found: Mapping[str, Mapping[str, Sequence[bool]]]) -> Finding:
+def _to_the_end(interpretation: str, found: Followed) -> ex.Finding:
     enough, parts = [], []
     for case, of_case in found.items():
-        own = of_case[MFPF.label]
-        best = max((single.label for single in SINGLES), key=lambda label: sum(of_case[label]))
+        own = of_case[mfpf.MFPF.label]
+        best = max((single.label for single in mfpf.SINGLES), key=lambda label: sum(of_case[label]))
         needed = _FOLLOWS if case in mfpf.WITHOUT_HIDING else share(of_case[best])
         enough.append(share(own) >= needed)
         parts.append(f"case {_short(case)} {sum(own)} ({best} {sum(of_case[best])})")
     runs = len(next(iter(next(iter(found.values())).values())))
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.of(all(enough), any(enough)),
+        ex.Holds.of(all(enough), any(enough)),
         f"of {runs} runs: {', '.join(parts)}",
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "mfpf-table1", "MFPF, table I: the RMS error of the four filters in six cases", cells, report
 )

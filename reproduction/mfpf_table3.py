@@ -23,12 +23,6 @@ from reproduction import mfpf_systems as mfpf
 from reproduction.case_figure import Values
 from reproduction.experiment import Claim, Experiment, Finding, Holds, Report, Results, Size
 from reproduction.mfpf_share import ShareWords, share_report
-from reproduction.mfpf_systems import (
-    FOUR,
-    INTERPRETATIONS,
-    MFPF,
-    SINGLES,
-)
 from reproduction.numbers import mean_and_spread
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 
@@ -44,7 +38,8 @@ _PAPER = {
 def report(results: Results, size: Size) -> Report:
     """Take the shares, and judge them."""
     shares = {
-        interpretation: _shares(results, size, interpretation) for interpretation in INTERPRETATIONS
+        interpretation: _shares(results, size, interpretation)
+        for interpretation in mfpf.INTERPRETATIONS
     }
     words = ShareWords(
         f"Percent of the frames with an error below {CLOSE_PX:g} px, mean ± standard deviation "
@@ -65,7 +60,7 @@ def _shares(results: Results, size: Size, interpretation: str) -> dict[str, dict
                     results, size, case, system, interpretation, "p_error_lt_15px"
                 )
             ]
-            for system in FOUR
+            for system in mfpf.FOUR
         }
         for case in mfpf.cases(size)
     }
@@ -91,8 +86,8 @@ def _claims(shares: Mapping[str, Values]) -> tuple[Claim, ...]:
 def _first(interpretation: str, found: Values) -> Finding:
     ahead, parts = [], []
     for case, of_case in found.items():
-        best = max((s.label for s in SINGLES), key=lambda label: fmean(of_case[label]))
-        own = fmean(of_case[MFPF.label])
+        best = max((s.label for s in mfpf.SINGLES), key=lambda label: fmean(of_case[label]))
+        own = fmean(of_case[mfpf.MFPF.label])
         ahead.append(own >= fmean(of_case[best]))
         parts.append(f"{case} {own:.0f} % ({best} {fmean(of_case[best]):.0f} %)")
     return Finding(
@@ -105,13 +100,13 @@ def _over_all(interpretation: str, found: Values) -> Finding:
     means = {
         system.label: [fmean(of) for of in zip(*(c[system.label] for c in found.values()),
                                                strict=True)]
-        for system in FOUR
+        for system in mfpf.FOUR
     }  # fmt: skip
-    best = max((s.label for s in SINGLES), key=lambda label: fmean(means[label]))
+    best = max((s.label for s in mfpf.SINGLES), key=lambda label: fmean(means[label]))
     return Finding(
         interpretation,
-        Holds.of(fmean(means[MFPF.label]) > fmean(means[best])),
-        f"{mean_and_spread(means[MFPF.label])} % against {mean_and_spread(means[best])} % of "
+        Holds.of(fmean(means[mfpf.MFPF.label]) > fmean(means[best])),
+        f"{mean_and_spread(means[mfpf.MFPF.label])} % against {mean_and_spread(means[best])} % of "
         f"{best}",
     )
 

@@ -18,13 +18,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from reproduction.experiment import (
-    QUICK_SEEDS,
-    SEEDS,
-    Experiment,
-    Report,
-    Size,
-)
+from reproduction import experiment as ex
 from vehicle_pf_tracker.evaluation.plots import save
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.offline.run_folder import versions
@@ -32,7 +26,7 @@ from vehicle_pf_tracker.offline.run_folder import versions
 DATA, FIGURE, VERDICT = "data.csv", "figure", "verdict"
 
 
-def write_report(folder: Path, experiment: Experiment, report: Report, size: Size) -> None:
+def write_report(folder: Path, experiment: ex.Experiment, report: ex.Report, size: ex.Size) -> None:
     """Write data, figure and verdict of `experiment` into `folder`.
 
     Raises
@@ -54,7 +48,7 @@ def write_report(folder: Path, experiment: Experiment, report: Report, size: Siz
     write_text(folder / f"{VERDICT}.md", _section(experiment, report, size))
 
 
-def _section(experiment: Experiment, report: Report, size: Size) -> str:
+def _section(experiment: ex.Experiment, report: ex.Report, size: ex.Size) -> str:
     tables = [f"{title}\n\n{table.to_markdown()}" for title, table in report.tables.items()]
     parts = [
         f"## {experiment.name}",
@@ -66,10 +60,10 @@ def _section(experiment: Experiment, report: Report, size: Size) -> str:
     return "\n\n".join(part.rstrip() for part in parts) + "\n"
 
 
-def _command(experiment: Experiment, size: Size) -> str:
+def _command(experiment: ex.Experiment, size: ex.Size) -> str:
     words = ["python -m reproduction", experiment.name]
     words += ["--quick"] if size.quick else []
-    usual = size.of(SEEDS, QUICK_SEEDS)
+    usual = size.of(ex.SEEDS, ex.QUICK_SEEDS)
     words += [] if len(size.seeds) == usual else [f"--seeds {len(size.seeds)}"]
     words += [f"--first-seed {size.seeds.start}"] if size.seeds.start else []
     return " ".join(words)

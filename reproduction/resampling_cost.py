@@ -22,18 +22,8 @@ from statistics import median
 import numpy as np
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction import resampling_systems as resampling
-from reproduction.experiment import (
-    Claim,
-    DataTable,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import INTERPRETATIONS
 from reproduction.timing_cell import TimingCell
@@ -43,12 +33,12 @@ _SEEDS, _QUICK_SEEDS = 3, 1
 """Runs that are timed: each frame of each is a measurement."""
 
 
-def cells(size: Size) -> list[TimingCell]:
+def cells(size: ex.Size) -> list[TimingCell]:
     """Run all in turns, once for each of a few seeds."""
     return [_cell(seed) for seed in _timed(size)]
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Compare the times as ratios to the conventional filter's."""
     seeds = _timed(size)
     times = {seed: results[_cell(seed)]["step_ms"] for seed in seeds}
@@ -69,7 +59,7 @@ def report(results: Results, size: Size) -> Report:
         for seed in seeds
         for frame, step in enumerate(times[seed][system.label], start=2)
     )
-    table = DataTable(
+    table = ex.DataTable(
         ("interpretation", "conventional, ms per frame", "adaptive, ms per frame", "ratio"),
         tuple(
             (interpretation, *(median_and_range(means[system.label], 2) for system in view.pair),
@@ -77,15 +67,15 @@ def report(results: Results, size: Size) -> Report:
             for interpretation, view in INTERPRETATIONS.items()
         ),
     )  # fmt: skip
-    return Report(
-        DataTable(("filter", "seed", "frame", "step_ms"), rows),
+    return ex.Report(
+        ex.DataTable(("filter", "seed", "frame", "step_ms"), rows),
         _figure(means),
         _verdict(ratios, size),
         {"Mean over the frames; median and range over the seeds:": table},
     )
 
 
-def _timed(size: Size) -> range:
+def _timed(size: ex.Size) -> range:
     return size.seeds[: size.of(_SEEDS, _QUICK_SEEDS)]
 
 
@@ -113,16 +103,16 @@ def _figure(means: dict[str, list[float]]) -> Figure:
     return figure
 
 
-def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
-    return ExperimentVerdict(
+def _verdict(ratios: dict[str, list[float]], size: ex.Size) -> ex.ExperimentVerdict:
+    return ex.ExperimentVerdict(
         (
-            Claim(
+            ex.Claim(
                 "the adaptive filter takes no more time than the conventional one",
                 "abstract and section VI",
                 tuple(
-                    Finding(
+                    ex.Finding(
                         interpretation,
-                        Holds.of(max(found) <= 1, median(found) <= 1),
+                        ex.Holds.of(max(found) <= 1, median(found) <= 1),
                         f"{median_and_range(found, 2)} times the conventional filter's time",
                     )
                     for interpretation, found in ratios.items()
@@ -135,7 +125,7 @@ def _verdict(ratios: dict[str, list[float]], size: Size) -> ExperimentVerdict:
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "resampling-cost", "Adaptive resampling: processor time per frame of both filters", cells,
     report,
 )  # fmt: skip

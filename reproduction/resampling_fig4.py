@@ -21,29 +21,10 @@ from statistics import median
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction import resampling_systems as resampling
 from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
-from reproduction.experiment import (
-    PAPER,
-    Claim,
-    DataTable,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.numbers import median_and_range
-from reproduction.resampling_systems import (
-    ADAPTIVE,
-    CONVENTIONAL,
-    HARD,
-    PHASES,
-    VIEWS,
-    View,
-)
 from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
 
 _PLACE = "section VI, figure 4"
@@ -58,24 +39,27 @@ Errors = dict[str, dict[str, list[float]]]
 """RMSE of each seed, by filter and phase."""
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw all seeds' errors, and judge."""
-    errors = {interpretation: _errors(results, size, interpretation) for interpretation in VIEWS}
-    table = DataTable(
-        ("filter", *PHASES, "all"),
+    errors = {
+        interpretation: _errors(results, size, interpretation)
+        for interpretation in resampling.VIEWS
+    }
+    table = ex.DataTable(
+        ("filter", *resampling.PHASES, "all"),
         tuple(
             (
                 f"{variant}, {interpretation}",
-                *(median_and_range(of[name]) for name in (*PHASES, "all")),
+                *(median_and_range(of[name]) for name in (*resampling.PHASES, "all")),
             )
             for interpretation, found in errors.items()
             for variant, of in found.items()
         ),
     )
-    return Report(
+    return ex.Report(
         resampling.data(results, size),
         _figure(results, size),
-        ExperimentVerdict(
+        ex.ExperimentVerdict(
             _claims(errors),
             f"{resampling.SETTING} {len(size.seeds)} seeds. {BANDS_NOTE} Left the paper's timing, "
             "right the harder scene; above on the paper's linear scale, below on a log one.",
@@ -84,11 +68,11 @@ def report(results: Results, size: Size) -> Report:
     )
 
 
-def _errors(results: Results, size: Size, interpretation: str) -> Errors:
+def _errors(results: ex.Results, size: ex.Size, interpretation: str) -> Errors:
     found: Errors = {}
-    view = VIEWS[interpretation]
+    view = resampling.VIEWS[interpretation]
     for system in view.pair:
-        of: dict[str, list[float]] = {name: [] for name in (*PHASES, "all")}
+        of: dict[str, list[float]] = {name: [] for name in (*resampling.PHASES, "all")}
         for seed in size.seeds:
             scored = resampling.run_scores(results, view, system, seed)
             for name, chosen in resampling.phases(scored).items():
@@ -98,13 +82,13 @@ def _errors(results: Results, size: Size, interpretation: str) -> Errors:
     return found
 
 
-def _figure(results: Results, size: Size) -> Figure:
+def _figure(results: ex.Results, size: ex.Size) -> Figure:
     figure = Figure(figsize=(11, 6.4), layout="constrained")
     axes = figure.subplots(2, 2, sharex="col")
-    titles = PAPER, f"{PAPER}{HARD}"
+    titles = ex.PAPER, f"{ex.PAPER}{resampling.HARD}"
     for column, title in zip(axes.T, titles, strict=True):
         for ax, is_log in zip(column, (False, True), strict=True):
-            _draw(ax, results, size, VIEWS[title])
+            _draw(ax, results, size, resampling.VIEWS[title])
             if is_log:
                 log_errors(ax)
         column[0].set(title=title, ylim=(0, None))
@@ -115,16 +99,16 @@ def _figure(results: Results, size: Size) -> Figure:
     return figure
 
 
-def _draw(axes: Axes, results: Results, size: Size, view: View) -> None:
+def _draw(axes: Axes, results: ex.Results, size: ex.Size, view: resampling.View) -> None:
     shade_occlusions(axes, resampling.run_scores(results, view, view.conventional, size.seeds[0]))
     for system, style in zip(reversed(view.pair), STYLES, strict=False):
         runs = [resampling.run_scores(results, view, system, seed) for seed in size.seeds]
         draw_band(axes, runs, style, system.variant)
 
 
-def _claims(errors: dict[str, Errors]) -> tuple[Claim, ...]:
+def _claims(errors: dict[str, Errors]) -> tuple[ex.Claim, ...]:
     return (
-        Claim(
+        ex.Claim(
             "before the occlusion both filters follow the vehicle",
             f"{_PLACE}, case I",
             tuple(
@@ -132,12 +116,12 @@ def _claims(errors: dict[str, Errors]) -> tuple[Claim, ...]:
                 for interpretation, found in errors.items()
             ),
         ),
-        Claim(
+        ex.Claim(
             "while it is partly hidden both have almost the same, low error",
             f"{_PLACE}, case II",
             tuple(_alike(interpretation, found) for interpretation, found in errors.items()),
         ),
-        Claim(
+        ex.Claim(
             "while it is hidden the conventional filter's error is much higher than the adaptive "
             "one's",
             f"{_PLACE}, case III",
@@ -145,13 +129,13 @@ def _claims(errors: dict[str, Errors]) -> tuple[Claim, ...]:
                 _worse(interpretation, found, "full") for interpretation, found in errors.items()
             ),
         ),
-        Claim(
+        ex.Claim(
             "after the occlusion the adaptive filter has the vehicle again, the conventional one "
             "has lost it",
             f"{_PLACE}, case IV",
             tuple(_lost(interpretation, found) for interpretation, found in errors.items()),
         ),
-        Claim(
+        ex.Claim(
             f"(not in the paper in numbers) the adaptive filter's median RMSE is at most "
             f"{_AT_MOST:g} times the conventional one's",
             _PLACE,
@@ -167,54 +151,56 @@ def _numbers_text(found: Errors, phase: str) -> str:
 def _medians(found: Errors, phase: str) -> tuple[float, float]:
     """Conventional's, and adaptive's."""
     return (
-        median(found[CONVENTIONAL][phase]),
-        median(found[ADAPTIVE][phase]),
+        median(found[resampling.CONVENTIONAL][phase]),
+        median(found[resampling.ADAPTIVE][phase]),
     )
 
 
-def _both_low(interpretation: str, found: Errors, phase: str) -> Finding:
+def _both_low(interpretation: str, found: Errors, phase: str) -> ex.Finding:
     low = [value < _LOW for value in _medians(found, phase)]
-    return Finding(interpretation, Holds.of(all(low), any(low)), _numbers_text(found, phase))
+    return ex.Finding(interpretation, ex.Holds.of(all(low), any(low)), _numbers_text(found, phase))
 
 
-def _alike(interpretation: str, found: Errors) -> Finding:
+def _alike(interpretation: str, found: Errors) -> ex.Finding:
     pair = _medians(found, "partial")
     alike = max(pair) <= _ALIKE * min(pair)
-    return Finding(
-        interpretation, Holds.of(alike and max(pair) < _LOW, alike), _numbers_text(found, "partial")
+    return ex.Finding(
+        interpretation,
+        ex.Holds.of(alike and max(pair) < _LOW, alike),
+        _numbers_text(found, "partial"),
     )
 
 
-def _worse(interpretation: str, found: Errors, phase: str) -> Finding:
+def _worse(interpretation: str, found: Errors, phase: str) -> ex.Finding:
     conventional, adaptive = _medians(found, phase)
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.of(conventional >= _HIGHER * adaptive, conventional > _ALIKE * adaptive),
+        ex.Holds.of(conventional >= _HIGHER * adaptive, conventional > _ALIKE * adaptive),
         _numbers_text(found, phase),
     )
 
 
-def _lost(interpretation: str, found: Errors) -> Finding:
+def _lost(interpretation: str, found: Errors) -> ex.Finding:
     back = {variant: [value < _LOW for value in of["after"]] for variant, of in found.items()}
-    ours, others = (sum(back[s]) for s in (ADAPTIVE, CONVENTIONAL))
-    runs = len(back[ADAPTIVE])
-    return Finding(
+    ours, others = (sum(back[s]) for s in (resampling.ADAPTIVE, resampling.CONVENTIONAL))
+    runs = len(back[resampling.ADAPTIVE])
+    return ex.Finding(
         interpretation,
-        Holds.of(ours >= 0.8 * runs and others <= 0.2 * runs, ours > others),
+        ex.Holds.of(ours >= 0.8 * runs and others <= 0.2 * runs, ours > others),
         f"{_numbers_text(found, 'after')}; below {_LOW:g} px in {ours} of {runs} runs of adaptive "
         f"and {others} of conventional",
     )
 
 
-def _no_worse(interpretation: str, found: Errors) -> Finding:
+def _no_worse(interpretation: str, found: Errors) -> ex.Finding:
     conventional, adaptive = _medians(found, "all")
-    return Finding(
-        interpretation, Holds.of(adaptive <= _AT_MOST * conventional),
+    return ex.Finding(
+        interpretation, ex.Holds.of(adaptive <= _AT_MOST * conventional),
         f"{_numbers_text(found, 'all')}: {adaptive / conventional:.2f} times",
     )  # fmt: skip
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "resampling-fig4", "Adaptive resampling, figure 4: the error in the four phases",
     resampling.cells, report,
 )  # fmt: skip

@@ -22,27 +22,9 @@ from statistics import fmean
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from reproduction import experiment as ex
 from reproduction import resampling_systems as resampling
-from reproduction.experiment import (
-    PAPER,
-    PRINTED,
-    Claim,
-    DataTable,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
 from reproduction.numbers import median_and_range
-from reproduction.resampling_systems import (
-    ADAPTIVE,
-    CONVENTIONAL,
-    PHASES,
-    VIEWS,
-)
 from vehicle_pf_tracker.evaluation.plots import STYLES, Style, shade_occlusions
 
 _PLACE = "section VI, figure 5"
@@ -55,25 +37,25 @@ Means = dict[str, dict[str, float]]
 """Mean over the phase's frames and all seeds, by filter and phase."""
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw the means over the seeds, and judge."""
-    passes = {r: _means(results, size, r, "resampling_passes") for r in VIEWS}
-    drawn = {r: _means(results, size, r, "resampled_particles") for r in VIEWS}
-    table = DataTable(
-        ("filter", *PHASES),
+    passes = {r: _means(results, size, r, "resampling_passes") for r in resampling.VIEWS}
+    drawn = {r: _means(results, size, r, "resampled_particles") for r in resampling.VIEWS}
+    table = ex.DataTable(
+        ("filter", *resampling.PHASES),
         tuple(
             (f"{variant}, {interpretation}",
              *(f"{passes[interpretation][variant][name]:.1f} / "
                f"{drawn[interpretation][variant][name]:.0f}"
-               for name in PHASES))
-            for interpretation in VIEWS
+               for name in resampling.PHASES))
+            for interpretation in resampling.VIEWS
             for variant in passes[interpretation]
         ),
     )  # fmt: skip
-    return Report(
+    return ex.Report(
         resampling.data(results, size),
         _figure(results, size),
-        ExperimentVerdict(
+        ex.ExperimentVerdict(
             _claims(results, size, passes),
             f"{resampling.SETTING} {len(size.seeds)} seeds; curves are their means, bands "
             "their ranges. A resampled particle is one that is drawn and weighed anew in a pass.",
@@ -83,11 +65,11 @@ def report(results: Results, size: Size) -> Report:
     )  # fmt: skip
 
 
-def _means(results: Results, size: Size, interpretation: str, scalar: str) -> Means:
+def _means(results: ex.Results, size: ex.Size, interpretation: str, scalar: str) -> Means:
     found: Means = {}
-    view = VIEWS[interpretation]
+    view = resampling.VIEWS[interpretation]
     for system in view.pair:
-        values: dict[str, list[float]] = {name: [] for name in PHASES}
+        values: dict[str, list[float]] = {name: [] for name in resampling.PHASES}
         for seed in size.seeds:
             column = resampling.trace(results, view, system, seed)[scalar]
             scored = resampling.run_scores(results, view, system, seed)
@@ -97,9 +79,9 @@ def _means(results: Results, size: Size, interpretation: str, scalar: str) -> Me
     return found
 
 
-def _figure(results: Results, size: Size) -> Figure:
+def _figure(results: ex.Results, size: ex.Size) -> Figure:
     figure = Figure(figsize=(10, 5.6), layout="constrained")
-    interpretations = {name: VIEWS[name] for name in (PAPER, PRINTED)}
+    interpretations = {name: resampling.VIEWS[name] for name in (ex.PAPER, ex.PRINTED)}
     axes = figure.subplots(2, len(interpretations), sharex=True, sharey="row")
     for column, (interpretation, view) in enumerate(interpretations.items()):
         for row, scalar in enumerate(("resampling_passes", "resampled_particles")):
@@ -129,68 +111,68 @@ def _draw(axes: Axes, runs: Sequence[Sequence[float]], style: Style, label: str)
               label=label)  # fmt: skip
 
 
-def _claims(results: Results, size: Size, passes: dict[str, Means]) -> tuple[Claim, ...]:
+def _claims(results: ex.Results, size: ex.Size, passes: dict[str, Means]) -> tuple[ex.Claim, ...]:
     return (
-        Claim(
+        ex.Claim(
             "the adaptive filter takes fewer passes and resamples fewer particles than the "
             "conventional one, in every phase",
             _PLACE,
-            tuple(_fewer(results, size, interpretation) for interpretation in VIEWS),
+            tuple(_fewer(results, size, interpretation) for interpretation in resampling.VIEWS),
         ),
-        Claim(
+        ex.Claim(
             f"once the vehicle is hidden the conventional filter takes all {_MOST_PASSES} passes, "
             "and goes on to when it can be seen again",
             _PLACE,
             tuple(_endless(interpretation, found) for interpretation, found in passes.items()),
         ),
-        Claim(
+        ex.Claim(
             "the adaptive filter's passes stay few in all phases",
             _PLACE,
             tuple(_few(interpretation, found) for interpretation, found in passes.items()),
         ),
-        Claim(
+        ex.Claim(
             "(not in the paper in numbers) it resamples at most a fifth of the particles that the "
             "conventional one does",
             _PLACE,
-            tuple(_saving(results, size, interpretation) for interpretation in VIEWS),
+            tuple(_saving(results, size, interpretation) for interpretation in resampling.VIEWS),
         ),
     )
 
 
-def _fewer(results: Results, size: Size, interpretation: str) -> Finding:
+def _fewer(results: ex.Results, size: ex.Size, interpretation: str) -> ex.Finding:
     both = [
         _means(results, size, interpretation, s)
         for s in ("resampling_passes", "resampled_particles")
     ]
-    less = [found[ADAPTIVE][name] < found[CONVENTIONAL][name] for found in both for name in PHASES]
+    passes, particles = ((of[resampling.ADAPTIVE], of[resampling.CONVENTIONAL]) for of in both)
+    less = [own[name] < other[name] for own, other in (passes, particles) for name in own]
     parts = "; ".join(
-        f"{name}: {both[0][ADAPTIVE][name]:.1f} passes and "
-        f"{both[1][ADAPTIVE][name]:.0f} particles against "
-        f"{both[0][CONVENTIONAL][name]:.1f} and {both[1][CONVENTIONAL][name]:.0f}"
-        for name in PHASES
+        f"{name}: {passes[0][name]:.1f} passes and {particles[0][name]:.0f} particles against "
+        f"{passes[1][name]:.1f} and {particles[1][name]:.0f}"
+        for name in resampling.PHASES
     )
-    return Finding(interpretation, Holds.of(all(less), any(less)), parts)
+    return ex.Finding(interpretation, ex.Holds.of(all(less), any(less)), parts)
 
 
-def _endless(interpretation: str, found: Means) -> Finding:
-    own = found[CONVENTIONAL]
+def _endless(interpretation: str, found: Means) -> ex.Finding:
+    own = found[resampling.CONVENTIONAL]
     full = [own[name] >= 0.95 * _MOST_PASSES for name in ("full", "after")]
     rises = own["full"] > own["before"]
-    parts = ", ".join(f"{name} {own[name]:.1f}" for name in PHASES)
-    return Finding(
-        interpretation, Holds.of(all(full) and rises, any(full)), f"passes a frame: {parts}"
+    parts = ", ".join(f"{name} {own[name]:.1f}" for name in resampling.PHASES)
+    return ex.Finding(
+        interpretation, ex.Holds.of(all(full) and rises, any(full)), f"passes a frame: {parts}"
     )
 
 
-def _few(interpretation: str, found: Means) -> Finding:
-    own = found[ADAPTIVE]
-    few = [own[name] <= _LOW for name in PHASES]
-    parts = ", ".join(f"{name} {own[name]:.1f}" for name in PHASES)
-    return Finding(interpretation, Holds.of(all(few), any(few)), f"passes a frame: {parts}")
+def _few(interpretation: str, found: Means) -> ex.Finding:
+    own = found[resampling.ADAPTIVE]
+    few = [own[name] <= _LOW for name in resampling.PHASES]
+    parts = ", ".join(f"{name} {own[name]:.1f}" for name in resampling.PHASES)
+    return ex.Finding(interpretation, ex.Holds.of(all(few), any(few)), f"passes a frame: {parts}")
 
 
-def _saving(results: Results, size: Size, interpretation: str) -> Finding:
-    view = VIEWS[interpretation]
+def _saving(results: ex.Results, size: ex.Size, interpretation: str) -> ex.Finding:
+    view = resampling.VIEWS[interpretation]
     ratios, counts = [], []
     for seed in size.seeds:
         own = resampling.resampled(results, view, view.adaptive, seed)
@@ -198,14 +180,14 @@ def _saving(results: Results, size: Size, interpretation: str) -> Finding:
         counts.append((own, others))
         ratios.append(own / max(others, 1))
     ours, theirs = (fmean(of) for of in zip(*counts, strict=True))
-    return Finding(
+    return ex.Finding(
         interpretation,
-        Holds.of(max(ratios) <= _AT_MOST, ours / max(theirs, 1) <= _AT_MOST),
+        ex.Holds.of(max(ratios) <= _AT_MOST, ours / max(theirs, 1) <= _AT_MOST),
         f"{ours:.0f} against {theirs:.0f} a run; by seed {median_and_range(ratios, 3)} times",
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "resampling-fig5", "Adaptive resampling, figure 5: passes and resampled particles",
     resampling.cells, report,
 )  # fmt: skip

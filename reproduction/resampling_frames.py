@@ -16,59 +16,46 @@
 
 from __future__ import annotations
 
+from reproduction import experiment as ex
 from reproduction import resampling_systems as resampling
-from reproduction.experiment import (
-    OURS,
-    PAPER,
-    PRINTED,
-    Claim,
-    Experiment,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-    Report,
-    Results,
-    Size,
-)
-from reproduction.resampling_systems import (
-    ADAPTIVE,
-    CONVENTIONAL,
-    HARD,
-    PHASES,
-    VIEWS,
-)
 from reproduction.strips import strip_figure
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _PLACE = "section VI, figures 2 and 3"
-_SHOWN = PAPER, f"{PAPER}{HARD}"
-_JUDGED = PAPER, OURS, PRINTED, f"{PAPER}{HARD}", f"{PRINTED}{HARD}"
+_SHOWN = ex.PAPER, f"{ex.PAPER}{resampling.HARD}"
+_JUDGED = (
+    ex.PAPER,
+    ex.OURS,
+    ex.PRINTED,
+    f"{ex.PAPER}{resampling.HARD}",
+    f"{ex.PRINTED}{resampling.HARD}",
+)
 
 
-def report(results: Results, size: Size) -> Report:
+def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Show the first seed in the middle of each phase, and judge all seeds there."""
     seed = size.seeds[0]
     rows = {}
     for interpretation in _SHOWN:
-        view = VIEWS[interpretation]
+        view = resampling.VIEWS[interpretation]
         runs = {
             system.variant: resampling.run_scores(results, view, system, seed)
             for system in view.pair
         }
-        numbers = [index + 1 for index in _middles(runs[CONVENTIONAL])]
+        numbers = [index + 1 for index in _middles(runs[resampling.CONVENTIONAL])]
         rows[interpretation] = (view.scene.seeded(seed), runs, numbers)
-    return Report(
+    return ex.Report(
         resampling.data(results, size),
         strip_figure(rows),
-        ExperimentVerdict(
+        ex.ExperimentVerdict(
             (
-                Claim(
+                ex.Claim(
                     "the adaptive filter is on the vehicle in all four phases",
                     _PLACE,
-                    tuple(_on_it(results, size, r, ADAPTIVE) for r in _JUDGED),
+                    tuple(_on_it(results, size, r, resampling.ADAPTIVE) for r in _JUDGED),
                 ),
-                Claim(
+                ex.Claim(
                     "the conventional filter is on it before and while it is partly hidden, and "
                     "stays at the parked vehicle afterwards",
                     _PLACE,
@@ -85,14 +72,17 @@ def report(results: Results, size: Size) -> Report:
 def _middles(scored: Scores) -> list[int]:
     """Return the index of the middle frame of each phase; of the last one the end."""
     found = resampling.phases(scored)
-    return [*(found[name][len(found[name]) // 2] for name in PHASES[:-1]), found["after"][-1]]
+    return [
+        *(found[name][len(found[name]) // 2] for name in resampling.PHASES[:-1]),
+        found["after"][-1],
+    ]
 
 
-def _hits(results: Results, size: Size, interpretation: str, variant: str) -> list[int]:
+def _hits(results: ex.Results, size: ex.Size, interpretation: str, variant: str) -> list[int]:
     """Count the seeds whose estimate is within the true box, by phase."""
-    view = VIEWS[interpretation]
+    view = resampling.VIEWS[interpretation]
     (system,) = (s for s in view.pair if s.variant == variant)
-    hits = [0] * len(PHASES)
+    hits = [0] * len(resampling.PHASES)
     for seed in size.seeds:
         scored = resampling.run_scores(results, view, system, seed)
         for place, index in enumerate(_middles(scored)):
@@ -109,30 +99,32 @@ def _contains(box: Box, position: tuple[float, float] | None) -> bool:
     return box.x <= x <= box.x + box.width and box.y <= y <= box.y + box.height
 
 
-def _numbers_text(hits: list[int], size: Size) -> str:
-    phases = ", ".join(f"{name} {count}" for name, count in zip(PHASES, hits, strict=True))
+def _numbers_text(hits: list[int], size: ex.Size) -> str:
+    phases = ", ".join(
+        f"{name} {count}" for name, count in zip(resampling.PHASES, hits, strict=True)
+    )
     return f"within the true box, of {len(size.seeds)} runs: {phases}"
 
 
-def _on_it(results: Results, size: Size, interpretation: str, variant: str) -> Finding:
+def _on_it(results: ex.Results, size: ex.Size, interpretation: str, variant: str) -> ex.Finding:
     hits = _hits(results, size, interpretation, variant)
     enough = [count >= 0.8 * len(size.seeds) for count in hits]
-    return Finding(
-        interpretation, Holds.of(all(enough), all(enough[:2])), _numbers_text(hits, size)
+    return ex.Finding(
+        interpretation, ex.Holds.of(all(enough), all(enough[:2])), _numbers_text(hits, size)
     )
 
 
-def _stuck(results: Results, size: Size, interpretation: str) -> Finding:
-    hits = _hits(results, size, interpretation, CONVENTIONAL)
+def _stuck(results: ex.Results, size: ex.Size, interpretation: str) -> ex.Finding:
+    hits = _hits(results, size, interpretation, resampling.CONVENTIONAL)
     runs = len(size.seeds)
     on_it = all(count >= 0.8 * runs for count in hits[:2])
     lost = hits[-1] <= 0.2 * runs
-    return Finding(
-        interpretation, Holds.of(on_it and lost, on_it or lost), _numbers_text(hits, size)
+    return ex.Finding(
+        interpretation, ex.Holds.of(on_it and lost, on_it or lost), _numbers_text(hits, size)
     )
 
 
-EXPERIMENT = Experiment(
+EXPERIMENT = ex.Experiment(
     "resampling-frames", "Adaptive resampling, figures 2 and 3: frames of the four phases",
     resampling.cells, report,
 )  # fmt: skip

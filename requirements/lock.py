@@ -14,8 +14,8 @@
 
 """Write the lock files anew: `python requirements/lock.py python3.10 python3.11 python3.12 ...`.
 
-`--only baselines` before the interpreters writes that lock alone; `--hashes` and no interpreters
-keep all versions and write the hashes anew.
+`--only NAME` before the interpreters writes that lock alone (docs needs none); `--hashes` and no
+interpreters keep all versions and write the hashes anew.
 
 For every interpreter and every lock file, pip resolves the extras of setup.py in a throw-away
 environment. A version that all interpreters share is written once; where they differ, each line
@@ -48,9 +48,13 @@ COLCON = (
     "colcon-ros",
     "colcon-test-result",
 )
+DOCS = ("mkdocs-material", "mkdocstrings[python]", "build", "twine")
 NOBLE = (  # what Ubuntu 24.04 has from apt; its Python is 3.12
     SETUPTOOLS,
-    f"{ROOT}[test,evaluation]",
+    f"{ROOT}[test]",
+    "matplotlib",
+    "scipy",
+    "jinja2",
     "numpy==1.26.4",
     "opencv-python-headless==4.6.0.66",
     "PyYAML==6.0.1",
@@ -75,27 +79,50 @@ for found in distributions():
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", choices=["baselines"])
+    parser.add_argument("--only", choices=["baselines", "docs"])
     parser.add_argument("--hashes", action="store_true")
     parser.add_argument("interpreters", nargs="*")
     args = parser.parse_args()
     if args.hashes:
-        for path in sorted(HERE.glob("*.txt")):
+        for path in (*sorted(HERE.glob("*.txt")), path_of("baselines")):
             header, *pins = pins_of(path)
             path.write_text(hashed(header, pins))
         return
+    if args.only != "docs":
+        lock_by_interpreters(args.interpreters, args.only)
+    if args.only != "baselines":
+        lock_docs()
+
+
+def lock_by_interpreters(interpreters: list[str], only: str | None) -> None:
+    """Write every lock but docs, or the one that is named."""
     locks: dict[str, dict[str, set[str]]] = {}
-    for interpreter in args.interpreters:
+    for interpreter in interpreters:
         version = run(interpreter, "-c", "import sys; print('%d.%d' % sys.version_info[:2])")[0]
         baselines = resolve(interpreter, BASELINES)
         pins = {"baselines": {pin for pin in baselines if not pin.startswith(OVERWRITES_CONTRIB)}}
-        if args.only is None:
+        if only is None:
             pins |= own_pins(interpreter, version)
         for lock, found in pins.items():
             locks.setdefault(lock, {})[version] = found
     for lock, by_version in locks.items():
         header = f"# Written by requirements/lock.py for Python {', '.join(by_version)}."
-        (HERE / f"{lock}.txt").write_text(hashed(header, merged(by_version)))
+        path_of(lock).write_text(hashed(header, merged(by_version)))
+
+
+def path_of(lock: str) -> Path:
+    """Return the file of a lock; that of the baselines is installed with the package."""
+    folder = ROOT / "vehicle_pf_tracker" / "evaluation" if lock == "baselines" else HERE
+    return folder / f"{lock}.txt"
+
+
+def lock_docs() -> None:
+    """Write the lock of what is installed beside locked.txt, resolved for all Pythons at once."""
+    base = pins_of(HERE / "locked.txt")[1:]
+    found = compiled([*base, *DOCS], "--no-annotate")
+    known = {key_of(pin) for pin in base}
+    pins = [pin for pin in found if key_of(pin) not in known]
+    (HERE / "docs.txt").write_text(hashed("# Written by requirements/lock.py.", pins))
 
 
 def own_pins(interpreter: str, version: str) -> dict[str, set[str]]:
@@ -140,16 +167,21 @@ def pins_of(path: Path) -> list[str]:
     return [line for line in lines if not line.startswith("    --hash")]
 
 
-def hashed(header: str, pins: list[str]) -> str:
-    """Write a lock: each pin with the hashes of every file of its version."""
+def compiled(requirements: list[str], *options: str) -> list[str]:
+    """Let uv write requirements for every Python that is supported."""
     with tempfile.TemporaryDirectory() as folder:
         run(sys.executable, "-m", "venv", folder)
         run(str(Path(folder, "bin", "pip")), "install", "--quiet", "uv")
         wanted = Path(folder, "pins.in")
-        wanted.write_text("\n".join(pins) + "\n")
-        options = "--quiet --no-deps --universal --generate-hashes --no-header --no-annotate"
+        wanted.write_text("\n".join(requirements) + "\n")
         uv = (str(Path(folder, "bin", "uv")), "pip", "compile", "--python-version", "3.10")
-        found = hashes_by_pin(run(*uv, *options.split(), str(wanted)))
+        return run(*uv, "--quiet", "--universal", "--no-header", *options, str(wanted))
+
+
+def hashed(header: str, pins: list[str]) -> str:
+    """Write a lock: each pin with the hashes of every file of its version."""
+    lines = compiled(pins, "--no-deps", "--generate-hashes", "--no-annotate")
+    found = hashes_by_pin(lines)
     entries = (" \\\n    ".join([pin, *sorted(found[key_of(pin)])]) for pin in pins)
     return "\n".join([header, *entries]) + "\n"
 

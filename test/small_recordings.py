@@ -16,6 +16,7 @@
 
 import cv2
 import numpy as np
+from mcap.writer import CompressionType
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
@@ -45,7 +46,7 @@ def truth_of(index):
     return Truth(stamp_of(index), box_of(index), Occlusion.NONE, 1.0)
 
 
-def record(folder, *, truths=range(COUNT), count=COUNT, compression="lz4"):
+def record(folder, *, truths=range(COUNT), count=COUNT, compression=CompressionType.LZ4):
     """Write a recording with truth for the frames `truths`."""
     with RecordingWriter(folder, compression=compression) as writer:
         for index in range(count):

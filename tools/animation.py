@@ -29,7 +29,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from vehicle_pf_tracker.cli.demo import CONTESTANTS, IN_VIDEO, SCENE, SCENE_SEED, SHOWN_SEED
+from vehicle_pf_tracker.cli.demo import CONTESTANTS, SCENE, SCENE_SEED, SHOWN_SEED
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.offline.drawing import COLOURS, Annotator, write_words
 from vehicle_pf_tracker.offline.driver import OfflineTracker
@@ -54,7 +54,7 @@ _GAP = 4
 
 def pictures(frames: Sequence[SceneFrame]) -> Iterator[Frame]:
     """Track through `frames` with both variants; give every picture, one above the other."""
-    shown = [_annotated(name, frames) for name in IN_VIDEO]
+    shown = [_annotated(name, frames) for name in CONTESTANTS]
     for above, below in zip(*shown, strict=True):
         line = np.full((_GAP, above.shape[1], 3), 255, np.uint8)
         yield np.vstack([above, line, below])

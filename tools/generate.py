@@ -15,8 +15,8 @@
 """Files that follow from the registry and the parameter tables: `make config` writes them.
 
 These are config/ (parameter files and the SROS 2 policy), docs/parameters.md, the picture of the
-rooms in docs/development.md, and the tables of variants between the markers in README.md,
-docs/choosing.md and docs/variants.md.
+rooms in docs/development.md, and the tables of variants between the markers in docs/choosing.md
+and docs/variants.md.
 """
 
 from __future__ import annotations
@@ -26,8 +26,10 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from tools import rooms
+from tools.parameters_page import parameters_page
 from tools.sros2_policy import policy
-from vehicle_pf_tracker.cli.params import all_markdown, default_yaml
+from vehicle_pf_tracker.cli.params import default_yaml
+from vehicle_pf_tracker.ros.transport import LAUNCHED_SEGMENT, profile
 from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -40,7 +42,6 @@ _NAME: Column = lambda variant: f"`{variant.name}`"  # noqa: E731 - a column is 
 _SUMMARY: Column = lambda variant: variant.summary  # noqa: E731
 
 TABLES: Mapping[str, Mapping[str, Column]] = {
-    "README.md": {"variant": _NAME, "method": _SUMMARY},
     "docs/choosing.md": {"variant": _NAME, "choose it for": lambda variant: variant.suits},
     "docs/variants.md": {
         "variant": _NAME,
@@ -59,7 +60,8 @@ def generated_files(root: Path = ROOT) -> dict[Path, str]:
     variants, nodes = VARIANTS.values(), NODES.values()
     files = {root / "config" / f"{one.name}.yaml": default_yaml(one) for one in nodes}
     files[root / "config" / "sros2_policy.xml"] = policy(nodes)
-    files[root / "docs" / "parameters.md"] = all_markdown()
+    files[root / "config" / "large_images.xml"] = profile(LAUNCHED_SEGMENT)
+    files[root / "docs" / "parameters.md"] = parameters_page()
     for page, columns in TABLES.items():
         text = (root / page).read_text(encoding="utf-8")
         files[root / page] = replace_table(text, markdown_table(columns, variants))

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
     from vehicle_pf_tracker.trackers.registry import make_tracker
 
-__version__ = "0.1.0"
+__version__: str
 __all__ = ["Box", "Estimate", "InputError", "Mode", "make_tracker", "open_source"]
 
 _HOMES = {
@@ -44,7 +44,19 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name."""
+    """Import a public name, or look up the version."""
+    if name == "__version__":
+        return _version()
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+
+
+def _version() -> str:
+    """Return the version that package.xml states and the installation has recorded."""
+    from importlib import metadata  # noqa: PLC0415 - 20 ms that only the version costs
+
+    try:
+        return metadata.version(__name__)
+    except metadata.PackageNotFoundError:
+        return "0+unknown"  # run from a folder of sources that nobody installed

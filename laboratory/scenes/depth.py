@@ -47,7 +47,7 @@ class ScaleParameters(DriveParameters):
 
     factor: float = parameter(
         2.5, "how many times larger the target is at its nearest than at its farthest",
-        minimum=1.2, maximum=3.0,
+        bounds=(1.2, 3.0),
     )  # fmt: skip
     way: str = parameter("away", "shrink by driving away, or grow", choices=("away", "towards"))
 

@@ -38,7 +38,7 @@ class ShadowParameters(DriveParameters):
     """Parameters of static shadows."""
 
     depth: float = parameter(
-        0.55, "deeper shadows change the target's colours more", minimum=0.1, maximum=0.8
+        0.55, "deeper shadows change the target's colours more", bounds=(0.1, 0.8)
     )
 
 
@@ -47,7 +47,7 @@ class IlluminationParameters(DriveParameters):
     """Parameters of changing light."""
 
     dimming: float = parameter(
-        0.45, "the share of the light that the cloud takes away", minimum=0.05, maximum=0.8
+        0.45, "the share of the light that the cloud takes away", bounds=(0.05, 0.8)
     )
 
 
@@ -135,7 +135,7 @@ class AccelerationParameters(DriveParameters):
     """Parameters of a change of speed while visible."""
 
     change: float = parameter(
-        2.2, "highest speed over the speed at the start and at the end", minimum=1.0, maximum=3.0
+        2.2, "highest speed over the speed at the start and at the end", bounds=(1.0, 3.0)
     )
 
 

@@ -74,7 +74,7 @@ class RoadSceneParameters:
 
     speed: float = parameter(
         70.0, "faster vehicles move farther between two frames, and the video gets shorter",
-        minimum=20.0, maximum=130.0, unit="km/h",
+        bounds=(20.0, 130.0), unit="km/h",
     )  # fmt: skip
     vehicle: str = parameter("car", "the kind of vehicle that is followed", choices=_VEHICLES)
     heading: str = parameter(
@@ -89,10 +89,10 @@ class RoadSceneParameters:
     lens: str = parameter("none", "barrel bends straight lines outwards", choices=_LENSES)
     noise: float = parameter(
         2.0, "more makes histograms differ from frame to frame",
-        minimum=0.0, maximum=60.0, unit="levels of 255",
+        bounds=(0.0, 60.0), unit="levels of 255",
     )  # fmt: skip
     frame_rate: float = parameter(
-        25.0, "more frames on the same way", minimum=5.0, maximum=240.0, unit="frames/s"
+        25.0, "more frames on the same way", bounds=(5.0, 240.0), unit="frames/s"
     )
 
 

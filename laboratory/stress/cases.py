@@ -22,10 +22,10 @@ from typing import NamedTuple
 
 from laboratory.stress.changes import Change
 from laboratory.stress.footage import StressSource, open_footage
+from laboratory.stress.starts import USUAL, Start
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.grid.cells import USUAL, Start
 from vehicle_pf_tracker.recordings.footage import stamp_of
 from vehicle_pf_tracker.scenes.compositing import stream
 
@@ -124,7 +124,7 @@ class Case:
         footage = open_footage(self.origin.source)
         truth = self._truth(footage.truth[self.first], self.first, 0)
         assert truth is not None, "a case begins in a frame with truth"
-        return self.start.on([truth]).box
+        return self.start.box(truth.box)
 
     def play(self) -> Iterator[StressFrame]:
         """Make the frames, one after the other."""

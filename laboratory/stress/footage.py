@@ -20,7 +20,7 @@ import csv
 import functools
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -190,7 +190,7 @@ def _describe(name: str, path: Path) -> Source:
             _digest(recording_files(path)[0]),
         )  # fmt: skip
     width, height = frame_size(_first_frame(unsized, path))
-    return Source(**{**unsized.to_json(), "width": width, "height": height})
+    return replace(unsized, width=width, height=height)
 
 
 def _first_frame(source: Source, path: Path) -> Frame:

@@ -27,8 +27,8 @@ from laboratory.stress.cases import Case
 from laboratory.stress.changes import Change
 from laboratory.stress.footage import StressSource, open_footage
 from laboratory.stress.occlusion_cases import lorries, poles, walls
+from laboratory.stress.starts import later_starts, shifted_starts
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts, start_frames
 
 LATER_STARTS = 20
 """As in OTB's temporal robustness evaluation."""
@@ -114,11 +114,7 @@ def _dropped(origin: StressSource, seed: int) -> Iterator[Case]:
 
 def _later_start(origin: StressSource, seed: int) -> Iterator[Case]:
     truths = open_footage(origin.source).truth
-    known = [(index, truth) for index, truth in enumerate(truths) if truth is not None]
-    index_of = {truth.stamp_ns: index for index, truth in known}
-    for start in start_frames([truth for _, truth in known], LATER_STARTS):
-        assert start.stamp_ns is not None
-        first = index_of[start.stamp_ns]
+    for first in later_starts(truths, LATER_STARTS):
         if len(truths) - first >= _LEAST_FRAMES:
             count = len(truths) - first
             yield Case(origin, "later_start", f"{first + 1:06d}", first, count, 1, seed)

@@ -12,14 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Every command on a page is one that its program takes, and the README's are run."""
+"""Every command on a page is one that its program takes, and the README's example is run."""
 
 import importlib.util
 import re
 import shlex
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 
@@ -142,47 +141,13 @@ def test_the_executables_on_pages_are_installed():
     assert {"fusion_tracker", "video_source"} <= named <= installed
 
 
-@pytest.fixture(scope="module")
-def readme_commands(tmp_path_factory):
-    """Run the README's commands in order, but those that need ROS or a minute; give the folder."""
-    folder = tmp_path_factory.mktemp("readme")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        for line in code_lines(README.read_text(encoding="utf-8")):
-            if line.startswith(PROGRAM):
-                words = words_of(line)[1:]
-                if words[0] not in {"replay", "evaluate"}:
-                    assert main(words) == 0, line
-    return folder
-
-
-@pytest.mark.slow
-def test_the_readme_commands_write_what_it_says(readme_commands):
-    for name in ("traffic.mp4", "traffic.csv", "out/summary.png", "out/estimates.csv"):
-        assert (readme_commands / name).is_file()
-    video = cv2.VideoCapture(str(readme_commands / "seen.mp4"))
-    assert video.get(cv2.CAP_PROP_FRAME_COUNT) == make_scene("highway").frame_count
-    assert (readme_commands / "rec" / "metadata.yaml").is_file()
-
-
-@pytest.mark.slow
-def test_the_readme_evaluation_writes_its_report(readme_commands, monkeypatch):
-    monkeypatch.chdir(readme_commands)
-    (line,) = [
-        line
-        for line in code_lines(README.read_text(encoding="utf-8"))
-        if line.startswith(f"{PROGRAM} evaluate")
-    ]
-    assert main(words_of(line)[1:]) == 0
-    assert (readme_commands / "results" / "report.html").is_file()
-
-
 @pytest.mark.slow
 def test_the_readme_example_follows_the_vehicle_through_both_occlusions(
-    readme_commands, monkeypatch, capsys
+    tmp_path, monkeypatch, capsys
 ):
     (code,) = re.findall(r"```python\n(.*?)```", README.read_text(), re.DOTALL)
-    monkeypatch.chdir(readme_commands)
+    monkeypatch.chdir(tmp_path)
+    assert main(["synth", "highway", "traffic.mp4"]) == 0
     capsys.readouterr()
     exec(compile(code, "README.md", "exec"), {})
     lines = capsys.readouterr().out.splitlines()

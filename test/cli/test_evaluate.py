@@ -18,7 +18,7 @@ import pytest
 from small_recordings import frame_folder, record
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation.grid.tracking import run_cell
+from vehicle_pf_tracker.evaluation.grid.running import run_cell
 from vehicle_pf_tracker.offline.processes import Turn
 
 
@@ -106,7 +106,7 @@ def test_a_baseline_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_pa
     assert evaluate(tmp_path / "out", bags / "one", *words) == 1
     assert "baseline:csrt cannot run: there is no interpreter" in capsys.readouterr().err
     failed = tmp_path / "out" / "cells" / "one" / "baseline_csrt" / "seed-0" / "failed.json"
-    assert "make baselines" in json.loads(failed.read_text())["reason"]
+    assert "python3 -m venv" in json.loads(failed.read_text())["reason"]
 
 
 def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
@@ -125,13 +125,17 @@ def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
         (["--set", "sgima=2"], 1, "no parameter 'sgima' (did you mean 'sigma'?)"),
         (["--set", "seed=2"], 1, "no parameter 'seed'"),
         (["--set", "target.x=2"], 1, "no parameter 'target.x'"),
-        (["--variants", "pf", "--set", "ms@few:iterations=2"], 1, "not among --variants pf"),
+        (
+            ["--variants", "pf", "--set", "ms@few:iterations=2"],
+            1,
+            "is for no variant among --variants",
+        ),
         (["--set", "pf@a:sigma=wide"], 1, "sigma must be a number"),
         (["--params", "mine.yaml"], 2, "--params expects LABEL=FILE"),
         (["--params", "pf@a=none.yaml"], 1, "cannot read the parameter file none.yaml"),
         (["--params", "a=none.yaml"], 1, "cannot read the parameter file none.yaml"),
         (["--set", "a:sgima=2"], 1, "apf is not run with a: there is no parameter 'sgima'"),
-        (["--variants", "baseline:csrt", "--set", "a:sigma=2"], 1, "is for no variant"),
+        (["--variants", "baseline:csrt", "--set", "a:sigma=2"], 1, "is for no variant among"),
         (["--params", "@=none.yaml"], 2, "not a label of a parameter set"),
         (["--baseline-model", "vit=a"], 2, "--baseline-model expects BASELINE:NAME=FILE"),
         (["--seeds", "0"], 2, "'0' is not an integer >= 1"),

@@ -54,6 +54,12 @@ def test_every_verb_has_help_of_its_own(capsys, verb):
     assert f"usage: vehicle-pf-tracker {verb}" in capsys.readouterr().out
 
 
+def test_a_parser_of_all_verbs_has_their_options():
+    parser = command.make_parser()
+    assert parser.parse_args(["import", "a", "b", "--fps", "5"]).fps == 5.0
+    assert parser.parse_args(["road", "calibrate", "a"]).action == "calibrate"
+
+
 def test_help_loads_nothing_heavy():
     code = (
         "import sys; from vehicle_pf_tracker.cli.main import main; main(['--help']);"
@@ -95,7 +101,7 @@ def test_errors_become_one_line_and_a_status(capsys, failing, error, status, lin
     [
         ("rclpy", "pip install 'vehicle_pf_tracker[ros]'"),
         ("sensor_msgs.msg", "module sensor_msgs is not there: source ROS's setup.bash"),
-        ("onnxruntime", "install the extra [onnx], pip install 'vehicle_pf_tracker[onnx]'"),
+        ("onnxruntime", "install the extra [video], pip install 'vehicle_pf_tracker[video]'"),
         ("av", "pip install 'vehicle_pf_tracker[video]'"),
         ("mcap.writer", "the Python module mcap is not there: it belongs to every installation"),
     ],

@@ -19,8 +19,8 @@ import time
 
 import pytest
 
-from vehicle_pf_tracker.cli.console import counting, shown_progress, stages, telling
-from vehicle_pf_tracker.cli.replay import ReplayWords
+from vehicle_pf_tracker.cli.console import counting, stages, telling
+from vehicle_pf_tracker.cli.replay import shown_replay
 from vehicle_pf_tracker.offline import processes
 from vehicle_pf_tracker.ros.replay import replay_options
 
@@ -52,14 +52,10 @@ def report_stages(stream, clock):
     return stages("report", stream, clock)
 
 
-def replay(stream, clock):
-    return shown_progress(ReplayWords(), stream, clock)
-
-
 def replayed(*moments):
     """Lines of a replay that lasts 20 s at (time, frames, position)."""
     reports = [(at, (replay_options.Progress(n, where, 20.0),)) for at, n, where in moments]
-    return lines(replay, reports)
+    return lines(shown_replay, reports)
 
 
 def test_plain_lines_come_after_two_seconds_and_every_five():
@@ -81,9 +77,9 @@ def test_runs_are_told_with_the_time_left_and_those_under_way():
         processes.Progress(7, 8, tuple("abcdef")),
     ]
     assert lines(runs, [(10.0 * n, (one,)) for n, one in enumerate(reports, start=1)]) == [
-        "apf-fig1: 0 of 8 runs done, time left unknown; running bar PF",
-        "apf-fig1: 4 of 8 runs done, about 20 s left; running bar PF, bar MS",
-        "apf-fig1: 7 of 8 runs done, about 4 s left; running a, b, c, d, 2 more",
+        "apf-fig1: 0 of 8 runs done; running bar PF",
+        "apf-fig1: 4 of 8 runs done; running bar PF, bar MS, about 10 s left",
+        "apf-fig1: 7 of 8 runs done; running a, b, c, d, 2 more, about 3 s left",
     ]
 
 
@@ -96,13 +92,13 @@ def test_stages_of_quick_work_are_not_told():
 def test_the_rate_of_a_replay_begins_with_its_first_frame():
     assert replayed((100.0, 1, 0.0), (102.0, 21, 2.0), (106.0, 61, 6.0)) == [
         "1 frame",
-        " 30%, 61 frames, 10.0 frames/s, about 14 s left",
+        "61 frames, 10.0 frames/s, about 14 s left",
     ]
 
 
 def test_the_time_left_is_that_of_the_present_pass_of_a_loop():
-    assert replayed((0.0, 1, 0.0), (1.5, 16, 20.0), (1.6, 17, 0.0), (3.6, 37, 10.0)) == [
-        " 50%, 37 frames, 10.0 frames/s, about 2 s left"
+    assert replayed((0.0, 1, 0.0), (1.5, 16, 20.0), (1.6, 17, 1.0), (3.4, 35, 10.0)) == [
+        "35 frames, 10.0 frames/s, about 2 s left"
     ]
 
 
@@ -116,7 +112,7 @@ def test_a_recording_of_one_moment_has_no_end_to_wait_for():
         (frames, (3, 12), "tracked 3 of 12 frames"),
         (runs, (processes.Progress(1, 2, ("[a]",)),), "running [a]"),
         (report_stages, ("drawing the page",), "report: drawing the page"),
-        (replay, (replay_options.Progress(41, 10.0, 20.0),), "50%, 41 frames"),
+        (shown_replay, (replay_options.Progress(41, 10.0, 20.0),), "41 frames"),
     ],
 )
 def test_a_terminal_shows_a_bar(view, report, shown):

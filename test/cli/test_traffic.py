@@ -170,7 +170,6 @@ def test_the_summary_is_for_people(run, capsys):
     run()
     out, err = capsys.readouterr()
     assert "2 vehicles in 20 frames, at most 2 at once (2 car)" in out
-    assert "longest: vehicle 1, for 0:00.8 (frames 1 to 20)" in out
     assert "1 occlusion survived under the same number; 0 vehicles not seen again" in out
     assert [line for line in err.splitlines() if not line.startswith("tracked")] == []
 
@@ -278,7 +277,7 @@ def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, sai
 def test_without_scipy_the_extra_is_named(run, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "scipy", None)
     out = run(status=1)
-    assert "pip install 'vehicle_pf_tracker[traffic]'" in capsys.readouterr().err
+    assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err
     assert not out.exists()
 
 

@@ -19,10 +19,10 @@ import pytest
 from small_recordings import record
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation.grid.tracking import run_cell
+from vehicle_pf_tracker.evaluation.grid.running import run_cell
 from vehicle_pf_tracker.offline.processes import Turn
 
-pytest.importorskip("optuna", reason="the extra [tune] is not installed")
+pytest.importorskip("optuna", reason="the extra [evaluation] is not installed")
 
 QUICK = ["--variant", "pf", "--trials", "3", "--seeds", "2", "--set", "num_particles=20"]
 

@@ -15,6 +15,8 @@
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
@@ -57,3 +59,23 @@ def test_boxes_no_tracker_can_start_on(box):
 )
 def test_boxes_at_the_border_are_targets(box):
     assert check_target(box, 64, 48) is box
+
+
+sides = st.floats(0.5, 200)
+boxes = st.builds(Box, st.floats(-300, 300), st.floats(-300, 300), sides, sides)
+
+
+def test_overlap_by_hand():
+    square = Box(0, 0, 10, 10)
+    assert square.iou(square) == 1
+    assert square.iou(Box(5, 0, 10, 10)) == pytest.approx(50 / 150)
+    assert square.iou(Box(5, 5, 10, 10)) == pytest.approx(25 / 175)
+    assert square.iou(Box(2, 2, 5, 5)) == pytest.approx(0.25)
+    assert square.iou(Box(10, 0, 10, 10)) == square.iou(Box(0, 30, 10, 10)) == 0
+
+
+@given(boxes, boxes)
+def test_overlap_is_symmetric_and_a_share(one, other):
+    assert one.iou(other) == pytest.approx(other.iou(one), abs=1e-12)
+    assert 0 <= one.iou(other) <= 1 + 1e-12
+    assert one.iou(one) == pytest.approx(1)

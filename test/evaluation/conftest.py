@@ -12,6 +12,8 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
+import shutil
+
 import pytest
 from evaluation_samples import make_evaluation
 
@@ -20,3 +22,9 @@ from evaluation_samples import make_evaluation
 def made_evaluation(tmp_path_factory):
     """An evaluation's folder that nobody writes to; the recordings stand beside it."""
     return make_evaluation(tmp_path_factory.mktemp("made"))
+
+
+@pytest.fixture
+def evaluation_copy(made_evaluation, tmp_path):
+    """A copy of the evaluation that may be written to."""
+    return shutil.copytree(made_evaluation, tmp_path / "evaluation")

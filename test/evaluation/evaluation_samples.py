@@ -12,115 +12,101 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A small evaluation folder: two recordings, three variants and a baseline that could not run."""
+"""A small grid: two recordings of a vehicle, one hidden for a while; run in this process."""
 
+import csv
 import json
 
-from drive import HEIGHT, WIDTH, box_of, frame_of, stamp_of
+from drive import box_of, frame_of, stamp_of
 
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import cell_folder, write_truth
-from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.offline.driver import OfflineTracker
-from vehicle_pf_tracker.offline.output_files import make_folder, write_json
-from vehicle_pf_tracker.offline.run_folder import RunFolder, RunInfo, describe_run, seal, versions
+from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, Plan, VariantSystem
+from vehicle_pf_tracker.evaluation.grid.running import complete, run_cell
+from vehicle_pf_tracker.evaluation.grid.sources import describe
+from vehicle_pf_tracker.offline.output_files import write_json
+from vehicle_pf_tracker.offline.processes import Turn
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 FRAMES = 36
-HIDDEN = {"under_a_bridge": range(8, 14), "free": range(0)}
+HIDDEN = {"bridge": range(8, 14), "free": range(0)}
 VARIANTS = ("pf", "ms", "apf")
 SEEDS = (0, 1)
 ALONE = {"ms": SEEDS[:1]}
 """Seeds of those that draw nothing."""
 NO_BASELINES = "the environment of the baselines is not there; make it with `make baselines`"
+NOT_DECIDED_BY_THE_INPUT = ("step_ms", "step_ms_p50", "step_ms_p95", "made", "command")
 
 
 def make_evaluation(folder):
     """Make the folder's `evaluation`, and the recordings beside it; returns the former."""
     made = folder / "evaluation"
-    truths = {name: _record(folder / name, hidden) for name, hidden in HIDDEN.items()}
-    for name, truth in truths.items():
-        make_folder(made / "recordings" / name)
-        write_truth(made / "recordings" / name / "truth.csv", dict(enumerate(truth, start=1)))
-        for seed in SEEDS:
-            for variant in VARIANTS:
-                if seed in ALONE.get(variant, SEEDS):
-                    _run(
-                        cell_folder(made, name, variant, seed), folder / name, truth, variant, seed
-                    )
-            failed = make_folder(cell_folder(made, name, "baseline:csrt", seed)) / "failed.json"
-            write_json(failed, {"reason": NO_BASELINES})
-    write_json(made / "evaluation.json", _plan(folder))
+    systems = [*map(system, VARIANTS), BaselineSystem("csrt", str(folder / "none"))]
+    complete(make_plan(write_recordings(folder), systems, SEEDS), made, here, silent)
+    for path in made.rglob("failed.json"):
+        write_json(path, {"reason": NO_BASELINES})
     return made
 
 
-def _frame(index, hidden):
-    frame = frame_of(index)
-    if index in hidden:
-        frame[20:40] = 70
-    return frame
-
-
-def _record(path, hidden):
-    truths = [
-        Truth(stamp_of(i), box_of(i), Occlusion.TOTAL if i in hidden else Occlusion.NONE)
-        for i in range(FRAMES)
-    ]
+def write_recording(path, hidden=range(0)):
+    path.parent.mkdir(parents=True, exist_ok=True)
     with RecordingWriter(path) as writer:
-        for index, truth in enumerate(truths):
-            writer.write_image(truth.stamp_ns, _frame(index, hidden))
-            writer.write_truth(truth)
-    return truths
+        for index in range(FRAMES):
+            frame = frame_of(index)
+            occlusion = Occlusion.NONE
+            if index in hidden:
+                frame[20:40] = 70
+                occlusion = Occlusion.TOTAL
+            writer.write_image(stamp_of(index), frame)
+            writer.write_truth(Truth(stamp_of(index), box_of(index), occlusion))
+    return path
 
 
-def _parameters(variant, seed):
-    values = {"seed": seed}
-    if "num_particles" in to_mapping(variant.parameters()):
-        values["num_particles"] = 40
-    return from_mapping(variant.parameters, values)
+def write_recordings(folder):
+    return [write_recording(folder / name, hidden) for name, hidden in HIDDEN.items()]
 
 
-def _run(folder, recording, truth, name, seed):
-    variant = find_variant(name)
-    tracker = OfflineTracker(variant, _parameters(variant, seed), first_truth=truth[0])
-    hidden = HIDDEN[recording.name]
-    rows = list(tracker.rows([(stamp_of(i), _frame(i, hidden)) for i in range(FRAMES)]))
-    results = RunFolder(folder)
-    info = RunInfo([], str(recording), "/camera/image_raw", tracker.start_frame, [])
-    results.write_run(rows, describe_run(info, tracker.session))
-    results.write_metrics(measure(score_frames(rows, truth)).to_json())
-    seal(folder)
+def system(name, label=None, **changed):
+    kind = find_variant(name).parameters
+    if "num_particles" in to_mapping(kind()):
+        changed = {"num_particles": 40, **changed}
+    values = {**to_mapping(from_mapping(kind, changed)), **to_mapping(SessionParameters())}
+    own = [(n, v) for n, v in values.items() if n != "seed" and not n.startswith("target.")]
+    return VariantSystem(label or name, name, "", tuple(changed.items()), tuple(own))
 
 
-def _plan(folder):
-    systems = [
-        {
-            "label": name, "variant": name, "parameter_set": "", "overrides": {"num_particles": 40},
-            "parameters": to_mapping(_parameters(find_variant(name), 0)),
-            "seeds": ALONE.get(name, SEEDS),
-        }
-        for name in VARIANTS
-    ]  # fmt: skip
-    systems.append(
-        {"label": "baseline:csrt", "baseline": "csrt", "overrides": {}, "parameters": {}}
-    )
-    recordings = [
-        {
-            "name": name, "path": str(folder / name), "topic": "/camera/image_raw",
-            "frames": FRAMES, "width": WIDTH, "height": HEIGHT, "digest": "0" * 64,
-        }
-        for name in HIDDEN
-    ]  # fmt: skip
-    plan = {
-        "format": 2,
-        "command": ["vehicle-pf-tracker", "evaluate", "free", "-o", "evaluation"],
-        "recordings": recordings,
-        "systems": systems,
-        "seeds": SEEDS,
-        "versions": versions(),
-        "options": {"max_diff": 0.01},
-    }
-    return json.loads(json.dumps(plan))
+def make_plan(paths, systems=None, seeds=SEEDS):
+    described = dict(describe([str(path) for path in paths], None, 0.01))
+    systems = [system("pf"), system("ms")] if systems is None else systems
+    command = ["vehicle-pf-tracker", "evaluate", "free", "-o", "evaluation"]
+    return Plan(described, systems, seeds, command)
+
+
+def here(cells):
+    """Run cells in this process, one after the other."""
+    for cell in cells:
+        yield Turn(None, (cell,))
+        yield Turn((cell, run_cell(cell)), ())
+
+
+def silent(progress):
+    pass
+
+
+def results(folder):
+    """Everything in an evaluation's folder that the input decides, by path."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        name = str(path.relative_to(folder))
+        if path.name == "estimates.csv":
+            rows = list(csv.DictReader(path.open()))
+            found[name] = [{k: v for k, v in row.items() if k != "step_ms"} for row in rows]
+        elif path.suffix == ".json" and path.name != "digests.json":
+            document = json.loads(path.read_text())
+            left = {k: v for k, v in document.items() if k not in NOT_DECIDED_BY_THE_INPUT}
+            found[name] = left
+        elif path.is_file() and path.name != "digests.json":
+            found[name] = path.read_bytes()
+    return found

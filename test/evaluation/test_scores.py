@@ -19,13 +19,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scoring_samples import PERIOD_NS, row, truth
 
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
-
-sides = st.floats(0.5, 200)
-boxes = st.builds(Box, st.floats(-300, 300), st.floats(-300, 300), sides, sides)
 
 
 def silent(frame, mode=REJECTED):
@@ -35,22 +31,6 @@ def silent(frame, mode=REJECTED):
 def errors(rows):
     scores = score_frames(rows, [truth(r.frame, centre=(100.0 + r.frame, 100.0)) for r in rows])
     return [frame.error for frame in scores.frames]
-
-
-def test_overlap_by_hand():
-    square = Box(0, 0, 10, 10)
-    assert square.iou(square) == 1
-    assert square.iou(Box(5, 0, 10, 10)) == pytest.approx(50 / 150)
-    assert square.iou(Box(5, 5, 10, 10)) == pytest.approx(25 / 175)
-    assert square.iou(Box(2, 2, 5, 5)) == pytest.approx(0.25)
-    assert square.iou(Box(10, 0, 10, 10)) == square.iou(Box(0, 30, 10, 10)) == 0
-
-
-@given(boxes, boxes)
-def test_overlap_is_symmetric_and_a_share(one, other):
-    assert one.iou(other) == pytest.approx(other.iou(one), abs=1e-12)
-    assert 0 <= one.iou(other) <= 1 + 1e-12
-    assert one.iou(one) == pytest.approx(1)
 
 
 def test_normalised_error_is_in_sizes_of_the_true_box():

@@ -35,7 +35,7 @@ def test_means_over_seeds_and_then_sequences(made_evaluation):
             json.loads((made_evaluation / f"cells/{name}/pf/seed-{seed}/metrics.json").read_text())
             for seed in (0, 1)
         ]
-        for name in ("under_a_bridge", "free")
+        for name in ("bridge", "free")
     }
     means = [statistics.fmean(run["rmse_visible_px"] for run in runs) for runs in values.values()]
     cells = cells_of(text, "RMSE of the centre", "pf")

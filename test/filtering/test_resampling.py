@@ -119,20 +119,6 @@ def test_expected_counts_are_proportional_to_the_weights(scheme):
     assert np.all(np.abs(share - weights) < 5 * error)
 
 
-def test_even_schemes_vary_less_than_multinomial():
-    weights = np.random.default_rng(4).dirichlet(np.ones(20))
-
-    def variance(scheme):
-        rng = np.random.default_rng(5)
-        counts = [np.bincount(scheme(weights, 100, rng), minlength=20) for _ in range(300)]
-        return np.var(counts, axis=0).sum()
-
-    baseline = variance(multinomial)
-    assert variance(residual) < 0.7 * baseline
-    assert variance(stratified) < 0.5 * baseline
-    assert variance(systematic) < 0.5 * baseline
-
-
 @given(
     weights=hnp.arrays(np.float64, st.integers(1, 60), elements=st.floats(0, 1)),
     count=st.integers(1, 80),

@@ -59,12 +59,6 @@ def test_beyond_the_border_the_outermost_pixels_are_repeated(zoom, centre):
     assert np.abs(patch.grey - expected(patch)).max() < (1.1 if zoom >= 1 else 2.3)
 
 
-def test_whole_pixels_are_copied():
-    original = np.random.default_rng(0).integers(0, 256, (40, 50, 3)).astype(np.uint8)
-    patch = cut_patch(original, np.array([25.0, 18.0]), np.ones(2), 16)
-    assert np.array_equal(patch.image, original[10:26, 17:33])
-
-
 def test_reduction_averages_instead_of_skipping_pixels():
     """All of small blocks, some of large ones."""
     for zoom, width in ((0.35, 3), (0.25, 4)):

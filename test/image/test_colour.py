@@ -14,33 +14,21 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import check_frame
-from vehicle_pf_tracker.image.colour import JointColour, bin_count, bin_indices, joint_histogram
+from vehicle_pf_tracker.image.colour import bin_indices, joint_histogram
 from vehicle_pf_tracker.image.similarity import (
-    Reference,
     bhattacharyya_coefficient,
     hellinger_distance,
 )
 from vehicle_pf_tracker.image.window import Window
 
 
-def test_three_bits_a_channel_make_512_bins():
-    assert bin_count(3) == 512
-
-
 def test_bins_by_hand():
     # 255 >> 5 = 7, 64 >> 5 = 2, 31 >> 5 = 0: 7 * 64 + 2 * 8 + 0.
     pixels = np.array([[[255, 64, 31], [0, 0, 32], [32, 0, 0]]], np.uint8)
     assert bin_indices(pixels, 3).tolist() == [[464, 1, 64]]
-
-
-def test_the_finest_bins_fit():
-    white = np.full((1, 1, 3), 255, np.uint8)
-    assert bin_indices(white, 5)[0, 0] == bin_count(5) - 1
 
 
 def test_histogram_of_a_half_red_window():
@@ -59,48 +47,6 @@ def test_similarity_by_hand():
     assert hellinger_distance(0.5) == pytest.approx(np.sqrt(0.5))
     assert hellinger_distance(1.0 + 1e-12) == 0.0
     assert bhattacharyya_coefficient(p, p) == 1.0
-
-
-def joint_similarity(frame, positions, window, reference, bits):
-    return JointColour(bits).similarity(frame, positions, window, Reference(reference))
-
-
-def direct(frame, positions, window, reference, bits):
-    return np.array(
-        [
-            bhattacharyya_coefficient(joint_histogram(frame, tuple(p), window, bits), reference)
-            for p in positions
-        ]
-    )
-
-
-@settings(max_examples=60)
-@given(
-    seed=st.integers(0, 2**32 - 1),
-    size=st.tuples(st.integers(1, 40), st.integers(1, 50)),
-    half=st.tuples(st.integers(0, 12), st.integers(0, 9)),
-    bits=st.integers(1, 5),
-    levels=st.sampled_from([1, 2, 256]),
-)
-def test_many_windows_at_once_agree_with_one_after_the_other(seed, size, half, bits, levels):
-    rng = np.random.default_rng(seed)
-    frame = (rng.integers(0, levels, (*size, 3)) * (255 // max(levels - 1, 1))).astype(np.uint8)
-    window = Window(*half)
-    positions = rng.uniform(-10, 60, (17, 2))
-    reference = joint_histogram(frame, tuple(rng.uniform(0, 40, 2)), window, bits)
-    together = joint_similarity(frame, positions, window, reference, bits)
-    assert together == pytest.approx(direct(frame, positions, window, reference, bits), abs=1e-12)
-
-
-def test_more_active_bins_than_are_integrated_at_once():
-    frame = np.random.default_rng(0).integers(0, 256, (60, 80, 3)).astype(np.uint8)
-    window = Window(15, 12)
-    reference = joint_histogram(frame, (40.0, 30.0), window, 3)
-    assert np.count_nonzero(reference) > 200
-    positions = np.random.default_rng(1).uniform(0, 60, (20, 2))
-    assert joint_similarity(frame, positions, window, reference, 3) == pytest.approx(
-        direct(frame, positions, window, reference, 3), abs=1e-12
-    )
 
 
 @pytest.mark.parametrize(

@@ -110,48 +110,6 @@ def test_a_first_start_lets_another_process_compile(tmp_path):
     assert done.stdout.split() == ["1", "0"]  # loaded: somebody else has compiled it
 
 
-def test_pages_of_a_library_are_released_and_come_again_when_needed():
-    pytest.importorskip("llvmlite", reason="numba is not installed")
-    if not Path("/proc/self/smaps").exists():
-        pytest.skip("this is not Linux")
-    code = (
-        "import llvmlite.binding as llvm\n"
-        "from vehicle_pf_tracker.image.kernels.choice import release_memory\n"
-        "def resident():\n"
-        "    return int(open('/proc/self/statm').read().split()[1]) * 4096 / 1e6\n"
-        "text = 'define i32 @twice(i32 %x) { %y = add i32 %x, %x ret i32 %y }'\n"
-        "before_use = str(llvm.parse_assembly(text))\n"
-        "full = resident(); release_memory(); less = resident()\n"
-        "assert str(llvm.parse_assembly(text)) == before_use\n"
-        "print(full - less)\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert float(done.stdout) > 20  # LLVM's initialisers alone touch 40 MB
-
-
-def test_pages_that_were_written_to_stay():
-    code = (
-        "from vehicle_pf_tracker.image.kernels.choice import unwritten_mappings\n"
-        "import cv2\n"
-        "found = set(unwritten_mappings('cv2'))\n"
-        "rows, sizes = [], {}\n"
-        "for line in [*open('/proc/self/smaps'), '0-0 end']:\n"
-        "    word = line.split()[0]\n"
-        "    if word.endswith(':'):\n"
-        "        sizes[word] = line.split()[1]; continue\n"
-        "    if rows and 'cv2' in rows[-1]:\n"
-        "        place = tuple(int(part, 16) for part in rows[-1].split()[0].split('-'))\n"
-        "        is_own = sizes['Anonymous:'] != '0' or 'w' in rows[-1].split()[1]\n"
-        "        assert (place in found) == (not is_own), rows[-1]\n"
-        "    rows.append(line)\n"
-        "print(len(found))\n"
-    )
-    if not Path("/proc/self/smaps").exists():
-        pytest.skip("this is not Linux")
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert int(done.stdout) >= 1
-
-
 SLEEPER = """
 import os, pathlib, time
 pathlib.Path("pid").write_text(str(os.getpid()))

@@ -14,7 +14,6 @@
 
 """JPEG and PNG: what is decoded, and what is refused before that."""
 
-import struct
 import zlib
 
 import cv2
@@ -82,12 +81,6 @@ def test_jpeg_keeps_the_order_of_the_channels(options):
     assert np.abs(frame.astype(int) - RED).max() <= 3
 
 
-def test_grey_jpeg_becomes_rgb():
-    frame = decode_compressed("jpeg", coded(".jpg", np.full((16, 16), 90, np.uint8)))
-    assert frame.shape == (16, 16, 3)
-    assert np.abs(frame.astype(int) - 90).max() <= 1
-
-
 def test_what_cameras_put_before_the_frame_header_is_passed_over():
     """A thumbnail with a frame header of its own, fill bytes, stray bytes."""
     data = coded(".jpg", SMALL)
@@ -111,7 +104,7 @@ def test_what_cameras_put_before_the_frame_header_is_passed_over():
         (b"\xff\xd8\xff\xe0\0\0" + bytes(20) + b"\xff\xd9", "does not state its size"),
         (b"\xff\xd8\xff\xc0\0\x11\x08\0\xff\xd9", "cut off"),
         (png(0, 0), "does not state its size"),
-        (jpeg(0, 16), "damaged"),
+        (jpeg(0, 16), "does not state its size"),
     ],
 )
 def test_rubbish_is_refused(data, words):
@@ -146,93 +139,6 @@ def test_what_claims_too_much_does_not_come_to_the_decoder(bomb, size):
         decode_compressed("png", bomb)
 
 
-def progressive(width, height, more_scans=0):
-    """A progressive JPEG whose last scan is repeated."""
-    picture = np.zeros((height, width, 3), np.uint8)
-    picture[::16] = 40
-    data = coded(".jpg", picture, *PROGRESSIVE)
-    last_scan = data[data.rfind(b"\xff\xda") : -2]
-    return data[:-2] + last_scan * more_scans + data[-2:]
-
-
-def png_of(pixels, *others, width=24, height=16, depth=8, colour=2, interlaced=0):
-    """A PNG with these deflated pixels, and other chunks before them."""
-    header = struct.pack(">IIBBBBB", width, height, depth, colour, 0, 0, interlaced)
-    return PNG + b"".join(
-        [chunk(b"IHDR", header), *others, chunk(b"IDAT", pixels), chunk(b"IEND", b"")]
-    )
-
-
-ROWS = zlib.compress(bytes(16 * (1 + 3 * 24)))
-
-
-@pytest.mark.usefixtures("no_decoder")
-@pytest.mark.parametrize(
-    ("data", "words"),
-    [
-        (progressive(320, 240, 40_000), "would take 2.* s and"),
-        (progressive(6000, 2800, 0), "and 2.* MB, above the 1 s and 200 MB"),
-        (coded(".jpg", SMALL)[:-2] + bytes(120_000_000) + b"\xff\xd9", "would take 1.1 s"),
-        (png(5_000, 5_900)[:-12] + chunk(b"IDAT", bytes(40_000_000)) + chunk(b"IEND", b""), "MB"),
-        (png_of(b"", depth=16, colour=6, width=4000, height=3000), "would take 1.2 s"),
-    ],
-)
-def test_what_costs_too_much_does_not_come_to_the_decoder(data, words):
-    with pytest.raises(InputError, match=words):
-        decode_compressed("x", data)
-
-
-def test_as_many_scans_as_cost_little_are_read():
-    assert decode_compressed("jpeg", progressive(320, 240, 500)).shape == (240, 320, 3)
-
-
-@pytest.mark.usefixtures("no_decoder")
-@pytest.mark.parametrize("more", [b"\0" * 10**6, ROWS])
-def test_pixels_beyond_the_size_do_not_come_to_the_decoder(more):
-    """3 MB of them would cost the decoder 7 s."""
-    data = png_of(zlib.compress(bytes(16 * (1 + 3 * 24)) + more))
-    with pytest.raises(InputError, match="damaged"):
-        decode_compressed("png", data)
-
-
-def test_comments_that_inflate_do_not_come_to_the_decoder(monkeypatch):
-    """900 of them, 8 kB each, cost it 50 s and 7 GB."""
-    bomb = chunk(b"zTXt", b"k\0\0" + zlib.compress(bytes(10**6)))
-    shown = []
-    decode = cv2.imdecode
-    monkeypatch.setattr(cv2, "imdecode", lambda *args: shown.append(args[0]) or decode(*args))
-    assert decode_compressed("png", png_of(ROWS, bomb, bomb)).shape == (16, 24, 3)
-    assert b"zTXt" not in shown[0].tobytes()
-
-
-DEPTHS = {0: (1, 2, 4, 8, 16), 2: (8, 16), 3: (1, 2, 4, 8), 4: (8, 16), 6: (8, 16)}
-PNG_KINDS = [(depth, colour) for colour, depths in DEPTHS.items() for depth in depths]
-
-
-@pytest.mark.parametrize(("depth", "colour"), PNG_KINDS)
-@pytest.mark.parametrize("interlaced", [0, 1])
-def test_every_kind_of_png_is_as_long_as_it_should_be(depth, colour, interlaced):
-    """By hand: a row is a byte and its pixels' bits; an interlaced image is seven small ones."""
-    bits = depth * {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[colour]
-    sizes = [(13, 11)]
-    if interlaced:  # columns and rows of 13 x 11 px in each pass
-        sizes = [(2, 2), (2, 2), (4, 1), (3, 3), (7, 3), (6, 6), (13, 5)]
-    length = sum(rows * (1 + (columns * bits + 7) // 8) for columns, rows in sizes)
-    palette = chunk(b"PLTE", bytes(6))
-    for wrong in (0, 1, -1):
-        data = png_of(
-            zlib.compress(bytes(length + wrong)), palette,
-            width=13, height=11, depth=depth, colour=colour, interlaced=interlaced,
-        )  # fmt: skip
-        if colour in (0, 4):
-            data = data.replace(palette, b"")
-        if wrong:
-            with pytest.raises(InputError, match="damaged"):
-                decode_compressed("png", data)
-        else:
-            assert decode_compressed("png", data).shape == (11, 13, 3)
-
-
 RESTARTS = (cv2.IMWRITE_JPEG_RST_INTERVAL, 2)
 CHOOSES_SAMPLING = hasattr(cv2, "IMWRITE_JPEG_SAMPLING_FACTOR")
 TALL = (
@@ -251,16 +157,14 @@ NOISE = np.random.default_rng(2).integers(0, 255, (75, 101, 3), np.uint8)
         RESTARTS,
         pytest.param(TALL, marks=writes_tall),
         pytest.param((*TALL, *RESTARTS), marks=writes_tall),
-        PROGRESSIVE,
     ],
 )
 @pytest.mark.parametrize("share", [0.5, 0.7, 0.95])
 @pytest.mark.parametrize("grey", [False, True])
 def test_a_cut_jpeg_with_an_end_is_refused_rather_than_filled_with_grey(options, share, grey):
     data = coded(".jpg", NOISE[..., 0] if grey else NOISE, *options)
-    length = data.rfind(b"\xff\xda") if options == PROGRESSIVE else int(share * len(data))
     with pytest.raises(InputError, match="cut off"):
-        decode_compressed("jpeg", data[:length].rstrip(b"\xff") + b"\xff\xd9")
+        decode_compressed("jpeg", data[: int(share * len(data))].rstrip(b"\xff") + b"\xff\xd9")
 
 
 @pytest.mark.parametrize(
@@ -283,14 +187,6 @@ def test_padding_behind_the_end_is_passed_over(padding, options):
     """Some cameras fill their buffers; it may be longer than the image."""
     data = coded(".jpg", SMALL, *options)
     assert np.array_equal(decode_compressed("x", data + padding), decode_compressed("x", data))
-
-
-@pytest.mark.parametrize("kind", [3, 5, 9, 10, 15])
-@pytest.mark.usefixtures("no_decoder")
-def test_a_jpeg_of_a_rare_kind_does_not_come_to_the_decoder(kind):
-    data = coded(".jpg", SMALL).replace(b"\xff\xc0", bytes([0xFF, 0xC0 + kind]), 1)
-    with pytest.raises(InputError, match=rf"not read \(SOF{kind}\)"):
-        decode_compressed("jpeg", data)
 
 
 @pytest.mark.parametrize("length", [2000, 2**31 - 1, 2**32 - 1])

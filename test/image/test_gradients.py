@@ -15,14 +15,13 @@
 import cv2
 import numpy as np
 import pytest
-from feature_samples import checkerboard, ramp, step_edge
+from feature_samples import step_edge
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.image.gradients import (
     GradientDirections,
     direction_bins,
-    squared_limits,
     squared_strength,
 )
 from vehicle_pf_tracker.image.window import Window, bounds
@@ -58,37 +57,10 @@ def test_strength_by_hand_and_exact_at_its_largest():
     assert squared_strength(np.array([1020]), np.array([1019]))[0] == 1020**2 + 1019**2
 
 
-def test_no_gradient_makes_no_edge_point():
-    assert squared_limits(np.array([0, 100], np.float32), 0.5).tolist() == [np.inf, 25]
-    assert squared_limits(np.array([0, 100], np.float32), 0.5, 6.0).tolist() == [np.inf, 36]
-
-
-@pytest.mark.parametrize("in_frame", [True, False])
-def test_a_step_edge_points_from_dark_to_light(in_frame):
-    lighter_right = directions(step_edge(), in_frame=in_frame)
-    assert lighter_right[32] == 1.0
-    assert directions(step_edge()[:, ::-1], position=(5.5, 4.5), in_frame=in_frame)[0] == 1.0
-    assert directions(step_edge().transpose(1, 0, 2), position=(4.5, 6.5))[48] == 1.0
-
-
 def test_reading_13_folded_directions_know_no_light_and_dark():
     forward = directions(step_edge(), signed=False)
     backward = directions(step_edge()[:, ::-1], position=(5.5, 4.5), signed=False)
     assert np.array_equal(forward, backward)
-
-
-def test_a_flat_window_has_no_edge():
-    flat = np.full((9, 9, 3), 70, np.uint8)
-    assert not directions(flat, position=(4.5, 4.5)).any()
-
-
-def test_a_checkerboard_has_no_gradient():
-    # Left and right neighbours are equal everywhere, above and below as well.
-    assert not directions(checkerboard(), position=(4.5, 4.5)).any()
-
-
-def test_a_gradient_is_one_direction():
-    assert directions(ramp(), position=(8.5, 4.5))[32] == 1.0
 
 
 def test_reading_14_the_threshold_is_a_share_of_the_strongest():

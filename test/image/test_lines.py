@@ -54,12 +54,6 @@ def test_lengths_inside_by_hand():
     assert inside[1] == pytest.approx([10.0, 20.0, 8 * np.sqrt(2), 10.0])
 
 
-def test_direction_of_a_segment_does_not_depend_on_its_ends():
-    segment = np.array([[1.0, 2.0, 9.0, 5.0]])
-    turned = segment[:, [2, 3, 0, 1]]
-    assert direction_shares(segment, 8) == pytest.approx(direction_shares(turned, 8))
-
-
 def test_directions_share_between_the_bins_beside_them():
     # Four bins of 45 degrees. 22.5 degrees is halfway; 157.5 lies between the last and the first.
     angle = np.deg2rad([0.0, 45.0, 90.0, 22.5, 157.5])
@@ -91,17 +85,6 @@ def test_finds_a_drawn_rectangle():
     assert found[2] == pytest.approx(1 / 3, abs=0.1)
 
 
-def test_segments_are_in_the_frames_coordinates():
-    frame = drawn()
-    frame[30:, :] = 255  # an edge at y = 30
-    whole = DETECTOR.detect(frame, windows((0, 0, 80, 60)))
-    part = DETECTOR.detect(frame, windows((40, 20, 70, 40), (45, 25, 75, 45)))
-    assert whole[:, [1, 3]] == pytest.approx(30, abs=1.0)
-    assert part[:, [1, 3]] == pytest.approx(30, abs=1.0)
-    assert part[:, [0, 2]].min() == pytest.approx(40, abs=4)
-    assert part[:, [0, 2]].max() == pytest.approx(75, abs=4)
-
-
 def test_a_blank_frame_has_no_lines():
     rectangle = windows((0, 0, 80, 60))
     segments = DETECTOR.detect(drawn(), rectangle)
@@ -122,3 +105,14 @@ def test_segments_go_through_the_centres_of_pixels():
     assert len(segments)
     assert np.all(segments % 1 == 0.5)
     assert set(segments[:, [0, 2]].ravel()) <= {39.5, 40.5}
+
+
+def test_segments_are_in_the_frames_coordinates():
+    frame = drawn()
+    frame[30:, :] = 255  # an edge at y = 30
+    whole = DETECTOR.detect(frame, windows((0, 0, 80, 60)))
+    part = DETECTOR.detect(frame, windows((40, 20, 70, 40), (45, 25, 75, 45)))
+    assert whole[:, [1, 3]] == pytest.approx(30, abs=1.0)
+    assert part[:, [1, 3]] == pytest.approx(30, abs=1.0)
+    assert part[:, [0, 2]].min() == pytest.approx(40, abs=4)
+    assert part[:, [0, 2]].max() == pytest.approx(75, abs=4)

@@ -64,14 +64,6 @@ def test_cells_of_a_part_have_the_spectrum_of_the_whole():
     assert complex_spectrum(spectrum) == pytest.approx(expected, abs=1e-5)
 
 
-def test_a_spectrum_gives_the_cells_of_the_part():
-    whole = np.random.default_rng(1).normal(size=(3, SIDE, SIDE))
-    part = PartialFourier(SIDE, ROWS, COLUMNS)
-    found = part.cells_of(transformed(whole))
-    assert found.dtype == np.float32
-    assert found == pytest.approx(whole[:, ROWS, COLUMNS], abs=1e-5)
-
-
 def test_a_wave_is_interpolated_between_cells():
     """A wave of 3 and -2 periods has its crest in the middle, and is known everywhere."""
     places = np.arange(SIDE)

@@ -41,12 +41,6 @@ def test_the_pixel_of_a_position_is_half_rounded_to_even():
     ]
 
 
-def test_a_box_and_its_window_cover_the_same_pixels():
-    # The box from 10 to 51 has its centre at 30.5, in the middle of pixel 30.
-    left, _, right, _ = bounds(FRAME, np.array([[30.5, 20.5]]), Window(20, 15))
-    assert (left[0], right[0]) == (10, 51)
-
-
 def test_windows_over_the_border_keep_the_pixels_that_exist():
     at_corner = bounds(FRAME, np.array([[0.5, 0.5]]), Window(3, 2))
     assert [int(side[0]) for side in at_corner] == [0, 0, 4, 3]

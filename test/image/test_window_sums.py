@@ -20,7 +20,6 @@ from hypothesis import strategies as st
 from vehicle_pf_tracker.image.window import (
     Bounds,
     Window,
-    areas,
     bin_counts,
     bounds,
     covered_region,
@@ -29,13 +28,6 @@ from vehicle_pf_tracker.image.window import (
 
 def rectangles(*rows):
     return Bounds(*np.asarray(rows, dtype=np.intp).T)
-
-
-def test_counts_by_hand():
-    indices = np.array([[0, 1, 1], [2, 1, 0]], np.uint8)
-    windows = rectangles((0, 0, 3, 2), (1, 0, 2, 2), (2, 1, 3, 2))
-    assert bin_counts(indices, np.array([0, 1]), 3, windows).tolist() == [[2, 3], [0, 2], [1, 0]]
-    assert areas(windows).tolist() == [6, 2, 1]
 
 
 def test_an_image_without_pixels_counts_nothing():

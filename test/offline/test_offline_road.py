@@ -43,7 +43,7 @@ def test_columns_of_the_road():
     half = box_of(0).height / 2
     assert columns["road_y"] == pytest.approx([(row.y + half) / 10 for row in rows])
     assert all(one > 0 for one in columns["speed_sd_kmh"])
-    assert tracker.road_notices == []
+    assert tracker.notices == []
 
 
 def test_estimates_are_the_same_to_the_bit_with_and_without():
@@ -65,7 +65,7 @@ def test_frames_outside_the_area_are_empty_and_told():
     assert speeds[0] is None
     count = sum(one is None for one in speeds)
     assert f"no place on the road in {count} frames: outside the calibrated area" in (
-        tracker.road_notices
+        tracker.notices
     )
     assert len(speeds) == len(rows)
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, identity_colour
-from vehicle_pf_tracker.offline.traffic_results import TrafficSummary, limited
+from vehicle_pf_tracker.offline.traffic_results import TrafficSummary
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 MODES = {
@@ -39,9 +39,9 @@ def estimate(identity, mode, box=None, label=""):
 def summed(*lives):
     """Add the lives of vehicles 1, 2, ...: a letter per frame, - where it is not followed."""
     summary = TrafficSummary()
-    for index, modes in enumerate(zip(*lives, strict=True)):
+    for modes in zip(*lives, strict=True):
         found = [estimate(k, mode) for k, mode in enumerate(modes, start=1) if mode != "-"]
-        summary.add(index + 1, index * 100_000_000, found, {})
+        summary.add(found, {})
     return summary
 
 
@@ -60,21 +60,11 @@ def test_a_vehicle_that_is_never_confirmed_is_none():
     assert summary.to_json()["vehicles"] == 0
 
 
-def test_the_longest_is_by_what_was_seen():
-    summary = summed("TTOOOOOOOO", "-TTTTTTTT-")
-    assert "longest: vehicle 2, for 0:00.7 (frames 2 to 9)" in summary.sentences()
-
-
 def test_a_late_class_counts():
     summary = TrafficSummary()
-    summary.add(1, 0, [estimate(1, "T")], {})
-    summary.add(2, 1, [estimate(1, "T", label="bus")], {})
+    summary.add([estimate(1, "T")], {})
+    summary.add([estimate(1, "T", label="bus")], {})
     assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences()
-
-
-def test_many_notices_are_cut_short():
-    assert limited(["a"] * 3, 2) == ["a", "a", "and 1 more notices"]
-    assert limited(["a"] * 2, 2) == ["a", "a"]
 
 
 def drive(picture, count=30, width=320):
@@ -111,9 +101,3 @@ def test_frames_of_another_size_begin_the_picture_anew(tmp_path):
     drive(picture, width=320)
     assert picture.write(tmp_path / "paths.png")
     assert cv2.imread(str(tmp_path / "paths.png")).shape == (480, 640, 3)
-
-
-def test_memory_of_a_path_does_not_grow_with_its_length():
-    picture = PathPicture()
-    drive(picture, count=500)
-    assert all(len(path.places) <= 16 for path in picture.paths.values())

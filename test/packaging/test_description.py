@@ -25,6 +25,7 @@ import setuptools
 
 import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.main import EVALUATION_MODULES, EXTRAS
+from vehicle_pf_tracker.evaluation.baselines import LOCK
 from vehicle_pf_tracker.ros import executables
 from vehicle_pf_tracker.trackers.registry import NODES
 
@@ -62,8 +63,9 @@ def test_name_version_and_licence_are_the_same_everywhere(setup, package):
     version = package.findtext("version")
     assert setup["version"] == vehicle_pf_tracker.__version__ == version
     assert re.search(rf"^{re.escape(version)}\n-+$", (ROOT / "CHANGELOG.rst").read_text(), re.M)
-    assert package.findtext("name") == setup["name"] == vehicle_pf_tracker.__name__
-    assert package.findtext("license") == setup["license"] == "Apache-2.0"
+    assert f"version: {version}" in (ROOT / "CITATION.cff").read_text()
+    assert setup["name"] == vehicle_pf_tracker.__name__
+    assert setup["license"] == "Apache-2.0"
     assert "Apache License" in (ROOT / package.find("license").get("file")).read_text()
 
 
@@ -116,13 +118,19 @@ def test_pip_installs_the_libraries(monkeypatch, command):
 
 def test_the_extra_of_evaluations_is_what_its_verbs_ask_for(setup):
     extra = setup["extras_require"]["evaluation"]
-    names = tuple(re.match(r"[\w-]+", line)[0] for line in extra)
-    assert names == EVALUATION_MODULES
-    assert set(extra) <= set(setup["extras_require"]["tune"])
+    assert {re.match(r"[\w-]+", line)[0] for line in extra} >= {*EVALUATION_MODULES, "optuna"}
+
+
+def test_three_extras_bring_what_the_readme_shows(setup):
+    extras = setup["extras_require"]
+    assert set(extras) == {"video", "ros", "evaluation", "numba", "test", "lint", "dev"}
+    assert set(extras["video"]) <= set(extras["evaluation"])
+    for extra in ("video", "ros"):
+        assert {"scipy>=1.11", "onnxruntime>=1.17"} <= set(extras[extra])
 
 
 @pytest.mark.parametrize(
-    "path", sorted((ROOT / "requirements").glob("*.txt")), ids=lambda p: p.stem
+    "path", [*sorted((ROOT / "requirements").glob("*.txt")), LOCK], ids=lambda p: p.stem
 )
 def test_every_pin_has_hashes_and_no_lock_names_an_index(path):
     pins = re.findall(r"^\S+==.*(?:\n    .*)*", path.read_text(), re.M)
@@ -139,6 +147,7 @@ def test_the_ros_extra_is_locked_at_the_same_versions(setup):
     pins = {
         (re.match(r"[\w-]+", line)[0], re.search(r"==([\d.]+);", line)[1])
         for line in setup["extras_require"]["ros"]
+        if "ros-" in line
     }
     assert pins <= locked("ros-jazzy")
 

@@ -15,6 +15,7 @@
 """Every way to install the package, tried for real: the code and its files are found in each."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -34,12 +35,7 @@ SHARE = Path("share", "vehicle_pf_tracker")
 EXECUTABLES = {
     "vehicle-pf-tracker", "bag_replay", "video_source", *(f"{name}_tracker" for name in NODES),
 }  # fmt: skip
-ASK = """
-import vehicle_pf_tracker
-from vehicle_pf_tracker.cli.config_files import config_path
-print(vehicle_pf_tracker.__file__)
-print(config_path("trial"))
-"""
+ASK = "import vehicle_pf_tracker; print(vehicle_pf_tracker.__file__)"
 
 needs_colcon = pytest.mark.skipif(
     find_spec("colcon_core") is None, reason="needs colcon: `make .venv/colcon`"
@@ -65,9 +61,8 @@ def pip(*words, cwd, python=None, **variables):
 
 
 def asked(python, cwd, **variables):
-    """Where this Python finds the package and the file config/trial.yaml."""
-    code, config = run(python, "-c", ASK, cwd=cwd, **variables).splitlines()
-    return Path(code), Path(config)
+    """Where this Python finds the package."""
+    return Path(run(python, "-c", ASK, cwd=cwd, **variables).strip())
 
 
 @pytest.fixture(scope="module")
@@ -97,9 +92,8 @@ def bare(folder, *, system_site_packages=False):
 def test_pip(wheel, tmp_path):
     python = bare(tmp_path / "env")
     pip("install", "--no-deps", wheel, cwd=tmp_path, python=python)
-    code, config = asked(python, tmp_path)
+    code = asked(python, tmp_path)
     assert code.is_relative_to(tmp_path / "env" / "lib")
-    assert config == tmp_path / "env" / SHARE / "config" / "trial.yaml"
     assert {path.name for path in (tmp_path / "env" / "bin").iterdir()} >= EXECUTABLES
     assert_share_is_complete(tmp_path / "env")
 
@@ -107,8 +101,9 @@ def test_pip(wheel, tmp_path):
 def test_pip_target(wheel, tmp_path):
     python = bare(tmp_path / "env")
     pip("install", "--no-deps", "--target", tmp_path / "lib", wheel, cwd=tmp_path)
-    _, config = asked(python, tmp_path, PYTHONPATH=tmp_path / "lib")
-    assert config == tmp_path / "lib" / SHARE / "config" / "trial.yaml"
+    code = asked(python, tmp_path, PYTHONPATH=tmp_path / "lib")
+    assert code.is_relative_to(tmp_path / "lib")
+    assert_share_is_complete(tmp_path / "lib")
 
 
 def test_pip_user(wheel, tmp_path):
@@ -116,8 +111,9 @@ def test_pip_user(wheel, tmp_path):
     home = {"PYTHONUSERBASE": tmp_path / "home"}
     pip("install", "--no-deps", "--user", "--ignore-installed", wheel,
         cwd=tmp_path, python=python, **home)  # fmt: skip
-    _, config = asked(python, tmp_path, **home)
-    assert config == tmp_path / "home" / SHARE / "config" / "trial.yaml"
+    code = asked(python, tmp_path, **home)
+    assert code.is_relative_to(tmp_path / "home")
+    assert_share_is_complete(tmp_path / "home")
 
 
 def test_pip_editable(source, tmp_path):
@@ -125,18 +121,16 @@ def test_pip_editable(source, tmp_path):
     builder = {"PYTHONPATH": Path(setuptools.__file__).parents[1]}
     pip("install", "--no-deps", "--no-build-isolation", "--ignore-installed", "--editable", source,
         cwd=tmp_path, python=python, **builder)  # fmt: skip
-    code, config = asked(python, tmp_path)
+    code = asked(python, tmp_path)
     assert code == source / "vehicle_pf_tracker" / "__init__.py"
-    assert config == source / "config" / "trial.yaml"
     assert {path.name for path in (tmp_path / "env" / "bin").iterdir()} >= EXECUTABLES
 
 
 @needs_colcon
 def test_colcon(source, tmp_path):
     prefix = colcon_build(source, tmp_path)
-    code, config = asked_in_workspace(tmp_path)
+    code = asked_in_workspace(tmp_path)
     assert code.is_relative_to(prefix / "lib")
-    assert config == prefix / SHARE / "config" / "trial.yaml"
     assert_share_is_complete(prefix)
     assert_ros_finds(prefix)
 
@@ -144,9 +138,8 @@ def test_colcon(source, tmp_path):
 @needs_colcon
 def test_colcon_symlink_install(source, tmp_path):
     prefix = colcon_build(source, tmp_path, "--symlink-install")
-    code, config = asked_in_workspace(tmp_path)
+    code = asked_in_workspace(tmp_path)
     assert code.resolve() == source / "vehicle_pf_tracker" / "__init__.py"
-    assert config.resolve() == source / "config" / "trial.yaml"
     assert_share_is_complete(prefix)
     assert_ros_finds(prefix)
 
@@ -158,17 +151,17 @@ def colcon_build(source, workspace, *options):
 
 
 def asked_in_workspace(workspace):
-    """Where a shell that sourced the workspace finds the package and its parameter file."""
+    """Where a shell that sourced the workspace finds the package."""
     command = '. install/setup.sh && exec "$0" -c "$1"'
-    code, config = run("sh", "-c", command, sys.executable, ASK, cwd=workspace).splitlines()
-    return Path(code), Path(config)
+    return Path(run("sh", "-c", command, sys.executable, ASK, cwd=workspace).strip())
 
 
 def assert_share_is_complete(prefix):
     marker = prefix / "share" / "ament_index" / "resource_index" / "packages" / SHARE.name
     files = {str(path.relative_to(prefix / SHARE)) for path in (prefix / SHARE).rglob("*.*")}
     assert marker.is_file()
-    assert {"package.xml", "launch/tracker.launch.py", "launch/replay.launch.py"} <= files
+    wanted = "package.xml", "launch/tracker.launch.py", "launch/replay.launch.py"
+    assert {*wanted, "config/trial.yaml"} <= files
 
 
 def assert_ros_finds(prefix):
@@ -178,3 +171,40 @@ def assert_ros_finds(prefix):
     stated = "import pkg_resources as p; print(p.get_distribution('vehicle_pf_tracker').requires())"
     command = f'. {prefix.parent}/setup.sh && exec "$0" -W ignore -c "$1"'
     assert run("sh", "-c", command, sys.executable, stated, cwd=prefix).strip() == "[]"
+
+
+WRITTEN = {
+    "video": (
+        "grid.png",
+        "seen.mp4",
+        "out/summary.png",
+        "out/estimates.csv",
+        "vehicles/tracks.csv",
+    ),
+    "ros": ("rec/metadata.yaml", "replayed/estimates.csv"),
+    "evaluation": ("recordings/bridge/metadata.yaml", "results/report.html"),
+}
+"""What the README's commands leave, by the extra that they need."""
+
+
+def readme_commands(extra):
+    """The commands after `pip install '.[EXTRA]'` in the README."""
+    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    first = f"pip install '.[{extra}]'\n"
+    (commands,) = [block.removeprefix(first) for block in blocks if block.startswith(first)]
+    return commands
+
+
+@pytest.mark.parametrize("extra", WRITTEN)
+def test_an_extra_brings_all_that_the_readme_shows_for_it(wheel, extra, tmp_path):
+    python = bare(tmp_path / "env")
+    pip("install", f"{wheel}[{extra}]", cwd=tmp_path, python=python)
+    script = f"trap 'kill $(jobs -p) || true' EXIT\nset -e\n{readme_commands(extra)}"
+    variables = {
+        "PATH": f"{python.parent}:{os.environ['PATH']}",
+        "ROS_DOMAIN_ID": 1 + os.getpid() % 100,  # not that of the tests beside this one
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+    run("bash", "-c", script, cwd=tmp_path, **variables)
+    for name in WRITTEN[extra]:
+        assert (tmp_path / name).stat().st_size > 0

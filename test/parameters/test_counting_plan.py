@@ -98,11 +98,6 @@ def test_a_mistake_is_one_sentence_that_names_the_file(read, text, said):
     assert "\n" not in str(error.value)
 
 
-def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(InputError, match="cannot read the counting lines"):
-        read_counting_plan(tmp_path / "none.yaml")
-
-
 def test_lines_beyond_the_image_are_found(read):
     assert read(GOOD).outside(320, 240) == []
     assert read(GOOD).outside(320, 100) == ["stop line"]

@@ -33,7 +33,7 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 @dataclass(frozen=True)
 class Inner:
-    sigma: float = parameter(2.0, "Spread.", minimum=0.5, maximum=9.0, unit="px")
+    sigma: float = parameter(2.0, "Spread.", bounds=(0.5, 9.0), unit="px")
     scheme: str = parameter("one", "Which.", choices=("one", "two"))
 
     def validate(self):
@@ -43,7 +43,7 @@ class Inner:
 
 @dataclass(frozen=True)
 class Outer:
-    count: int = parameter(3, "How many.", minimum=1)
+    count: int = parameter(3, "How many.", bounds=(1, 100))
     quick: bool = parameter(True, "Whether.")
     inner: Inner = group(Inner, sigma=4.0)
 
@@ -80,7 +80,7 @@ def test_a_whole_number_does_for_a_real_one():
     ("values", "told"),
     [
         ({"cuont": 1}, "did you mean 'count'"),
-        ({"count": 0}, "at least 1"),
+        ({"count": 0}, "from 1 to 100"),
         ({"count": 1.5}, "an integer"),
         ({"count": True}, "an integer"),
         ({"quick": 1}, "true or false"),

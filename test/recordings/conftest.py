@@ -15,6 +15,7 @@
 """Small recordings to read, cut and damage."""
 
 import pytest
+from mcap.writer import CompressionType
 from recording_samples import BareMcap, frame_of, stamp_of, truth_of
 
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
@@ -24,7 +25,7 @@ from vehicle_pf_tracker.recordings.writer import RecordingWriter
 def record(tmp_path):
     """Write a recording of `count` frames with truth and return its folder."""
 
-    def record(count=10, name="bag", compression="lz4", size=(24, 32)):
+    def record(count=10, name="bag", compression=CompressionType.LZ4, size=(24, 32)):
         folder = tmp_path / name
         with RecordingWriter(folder, compression=compression) as writer:
             for index in range(count):

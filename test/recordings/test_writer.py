@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 import yaml
 from mcap.reader import make_reader
+from mcap.writer import CompressionType
 from recording_samples import frame_of, stamp_of, truth_of
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
@@ -28,7 +29,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings import writer as writing
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import COMPRESSIONS, RecordingWriter
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 
 def only_mcap(folder):
@@ -47,7 +48,7 @@ def test_messages_of_a_topic_are_numbered(record):
         assert [number for name, number in found if name == topic] == [0, 1, 2, 3]
 
 
-@pytest.mark.parametrize("compression", COMPRESSIONS)
+@pytest.mark.parametrize("compression", CompressionType)
 def test_other_readers_find_every_message(record, compression):
     folder = record(7, compression=compression)
     with Reader(folder) as reader:
@@ -198,12 +199,10 @@ def test_an_empty_folder_may_be_used(tmp_path):
     assert Recording(tmp_path / "out").frame_count == 1
 
 
-def test_unwritable_folder_and_unknown_compression_are_input_errors(tmp_path):
+def test_an_unwritable_folder_is_an_input_error(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="cannot write the recording"):
+    with pytest.raises(InputError, match="cannot write"):
         RecordingWriter(tmp_path / "file" / "out")
-    with pytest.raises(InputError, match="lz4, zstd, none"):
-        RecordingWriter(tmp_path / "out", compression="rar")
 
 
 def test_a_full_disk_is_an_input_error(tmp_path, monkeypatch):

@@ -81,7 +81,7 @@ def test_table_1_judges_by_the_best_single_feature(results):
         "8.0 ± 0.0 px against 10.0 ± 0.0 px of RGB"
     )
     assert over_all["the paper's rule, single features with their defaults"].holds is Holds.YES
-    assert findings(report, 6)["the paper's rule"].holds is Holds.YES  # glcm is the best
+    assert findings(report, 5)["the paper's rule"].holds is Holds.YES  # glcm is the best
 
 
 @pytest.mark.slow
@@ -93,17 +93,6 @@ def test_table_1_counts_runs_that_end_close(results):
     assert rows["Edge"] == (0, 0)
     assert rows["MFPF, as printed"] == (0, 0)
     assert findings(report, 4)["the paper's rule"].holds is Holds.YES
-
-
-@pytest.mark.slow
-def test_table_1_sets_runs_apart_that_lost_the_vehicle(results):
-    report = EXPERIMENTS["mfpf-table1"].report(results, SIZE)
-    (kept,) = (t for title, t in report.tables.items() if title.startswith("Runs that never"))
-    rows = {row[0]: row[1:] for row in kept.rows}
-    assert rows["MFPF"] == ("8.0 (2) / –", "8.0 (2) / –")
-    assert rows["Edge"] == ("– / 20.0 (2)", "– / 20.0 (2)")
-    # The edge filter loses the vehicle with every seed.
-    assert findings(report, 5)["the paper's rule"].numbers == "in no case is there such a seed"
 
 
 def test_the_papers_rule_differs_from_ours_in_what_is_printed():

@@ -16,16 +16,7 @@ import json
 
 import pytest
 
-from reproduction.experiment import (
-    OURS,
-    PAPER,
-    PRINTED,
-    Claim,
-    DataTable,
-    ExperimentVerdict,
-    Finding,
-    Holds,
-)
+from reproduction import experiment as ex
 from reproduction.numbers import (
     counted,
     mean_and_spread,
@@ -34,7 +25,7 @@ from reproduction.numbers import (
     share,
 )
 
-YES, PARTLY, NO = Holds.YES, Holds.PARTLY, Holds.NO
+YES, PARTLY, NO = ex.Holds.YES, ex.Holds.PARTLY, ex.Holds.NO
 
 
 @pytest.mark.parametrize(
@@ -43,18 +34,18 @@ YES, PARTLY, NO = Holds.YES, Holds.PARTLY, Holds.NO
      ([YES, PARTLY], PARTLY), ([NO, PARTLY], PARTLY)],
 )  # fmt: skip
 def test_claims_are_joined(parts, joined):
-    assert Holds.all(parts) is joined
+    assert ex.Holds.all(parts) is joined
 
 
 @pytest.mark.parametrize(("value", "holds"), [(1, YES), (0.95, YES), (0.5, PARTLY), (0.49, NO)])
 def test_shares_are_judged(value, holds):
-    assert Holds.share(value) is holds
+    assert ex.Holds.share(value) is holds
 
 
 def verdict():
-    findings = Finding("our interpretation", YES, "3 px"), Finding("as printed", NO, "300 px")
-    return ExperimentVerdict(
-        (Claim("it follows", "figure 1", findings),), "A bar.", ("Mind the gap.",)
+    findings = ex.Finding("our interpretation", YES, "3 px"), ex.Finding("as printed", NO, "300 px")
+    return ex.ExperimentVerdict(
+        (ex.Claim("it follows", "figure 1", findings),), "A bar.", ("Mind the gap.",)
     )
 
 
@@ -64,14 +55,16 @@ def test_the_first_finding_decides():
 
 def test_claims_are_joined_under_each_interpretation():
     claims = (
-        Claim("one", "figure 1", (Finding(PAPER, YES, ""), Finding(PRINTED, NO, ""))),
-        Claim("two", "figure 1", (Finding("their defaults", NO, ""),)),
+        ex.Claim(
+            "one", "figure 1", (ex.Finding(ex.PAPER, YES, ""), ex.Finding(ex.PRINTED, NO, ""))
+        ),
+        ex.Claim("two", "figure 1", (ex.Finding("their defaults", NO, ""),)),
     )
-    found = ExperimentVerdict(claims, "")
+    found = ex.ExperimentVerdict(claims, "")
     assert found.holds is PARTLY
-    assert found.under(PRINTED) is NO
-    assert found.under(OURS) is None
-    assert found.to_json()["under"] == {OURS: None, PRINTED: "no"}
+    assert found.under(ex.PRINTED) is NO
+    assert found.under(ex.OURS) is None
+    assert found.to_json()["under"] == {ex.OURS: None, ex.PRINTED: "no"}
 
 
 def test_a_verdict_is_plain_json():
@@ -92,7 +85,7 @@ def test_a_verdict_is_a_text_with_a_table_for_each_claim():
 
 
 def test_tables_keep_every_digit_for_programs_and_few_for_the_eye():
-    table = DataTable(("name", "px"), (("a", 1 / 3), ("b", None)))
+    table = ex.DataTable(("name", "px"), (("a", 1 / 3), ("b", None)))
     assert table.to_csv() == "name,px\na,0.3333333333333333\nb,\n"
     assert table.to_markdown() == "| name | px |\n| --- | ---: |\n| a | 0.3 |\n| b | – |\n"
 

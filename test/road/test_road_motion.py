@@ -39,13 +39,6 @@ def test_covariance_of_the_speed_is_along_its_direction():
     assert RoadMotion(np.zeros(4), covariance).speed_deviation == pytest.approx(3.0)
 
 
-def test_acceleration_widens_the_speed_as_a_random_walk():
-    motion = RoadMotion(np.zeros(4), np.zeros((4, 4))).predicted(4.0, 1.5)
-    assert np.diag(motion.covariance) == pytest.approx([1.5**2 * 64 / 3] * 2 + [1.5**2 * 4] * 2)
-    in_halves = RoadMotion(np.zeros(4), np.zeros((4, 4))).predicted(2.0, 1.5).predicted(2.0, 1.5)
-    assert in_halves.covariance == pytest.approx(motion.covariance)
-
-
 def test_deviation_is_that_of_many_runs():
     rng = np.random.default_rng(5)
     covariance = np.array([[0.04, 0.01], [0.01, 0.09]])

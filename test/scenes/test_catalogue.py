@@ -22,7 +22,6 @@ import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import check_frame
-from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 
 ALL = sorted(SCENES)
@@ -62,27 +61,11 @@ def test_truth_is_complete_and_plain(name):
         assert 0 <= truth.visible_fraction <= 1
 
 
-@pytest.mark.parametrize("name", ALL)
-def test_every_parameter_says_what_turning_it_does(name):
-    for spec in specs(SCENES[name].parameters).values():
-        assert spec.doc
-        assert spec.choices or None not in (spec.minimum, spec.maximum)
-    assert SCENES[name].summary
-
-
 def test_settings_as_words_and_as_mapping_are_the_same():
     words = make_scene("bar", settings=["speed=8", "width=60"])
     mapping = make_scene("bar", settings={"speed": 8, "width": 60.0})
     assert list(words.truths()) == list(mapping.truths())
     assert words.frame_count < make_scene("bar").frame_count
-
-
-def test_frame_rate_changes_the_stamps_only():
-    slow, fast = (
-        list(make_scene("bar", settings={"frame_rate": rate}).truths()) for rate in (15, 30)
-    )
-    assert [t.box for t in slow] == [t.box for t in fast]
-    assert fast[30].stamp_ns == slow[15].stamp_ns == 2_000_000_000
 
 
 @pytest.mark.parametrize(

@@ -59,13 +59,6 @@ def test_half_opacity_mixes_with_what_is_behind():
     np.testing.assert_allclose(picture[0, 2], 100)
 
 
-@pytest.mark.parametrize("corner", [(-60, 5), (5, -60), (41, 5), (5, 31)])
-def test_painting_outside_the_image_changes_nothing(corner):
-    picture = canvas()
-    paint(picture, WHITE, Box(*corner, 20, 20))
-    assert not picture.any()
-
-
 @given(PLACES, PLACES, SIZES, SIZES)
 def test_painted_light_is_the_area_inside_the_image(x, y, width, height):
     picture = canvas()
@@ -73,23 +66,6 @@ def test_painted_light_is_the_area_inside_the_image(x, y, width, height):
     across = max(0.0, min(x + width, 40) - max(x, 0))
     down = max(0.0, min(y + height, 30) - max(y, 0))
     assert picture[..., 0].sum() / 255 == pytest.approx(across * down, rel=1e-4, abs=1e-3)
-
-
-@given(st.floats(2, 20), st.floats(2, 15))
-def test_centre_of_mass_is_the_centre_of_the_box(x, y):
-    picture = canvas()
-    box = Box(x, y, 9.3, 7.1)
-    paint(picture, WHITE, box)
-    rows, columns = np.indices(picture.shape[:2]) + 0.5
-    light = picture[..., 0].astype(np.float64)
-    found = (light * columns).sum() / light.sum(), (light * rows).sum() / light.sum()
-    # Light in a pixel counts at its middle, wherever in it the edge runs: at most 1/8 px / 7.1.
-    assert found == pytest.approx(box.centre, abs=0.02)
-
-
-def test_window_of_a_box_is_clipped_to_the_image():
-    assert PixelWindow.of(Box(-2.5, 3.2, 5, 1.5), 40, 30) == PixelWindow(0, 3, 3, 5)
-    assert PixelWindow.of(Box(50, 3, 5, 1), 40, 30).empty
 
 
 def filled(corners, rows=8, columns=10):
@@ -127,11 +103,3 @@ def test_what_lies_outside_the_grid_is_clipped():
     window, inside = cells_inside(np.array([(2.2, 3.1), (4.2, 3.1), (4.2, 3.3)]), 8, 10)
     assert window == PixelWindow(2, 3, 5, 4)
     assert not inside.any()
-
-
-@given(st.floats(1, 30), st.floats(1, 30))
-def test_area_of_an_ellipse(across, down):
-    turns = np.linspace(0, 2 * np.pi, 90, endpoint=False)
-    outline = np.stack([35 + across * np.cos(turns), 35 + down * np.sin(turns)], axis=1)
-    _, inside = cells_inside(outline, 70, 70)
-    assert inside.sum() == pytest.approx(np.pi * across * down, abs=2.2 * (across + down))

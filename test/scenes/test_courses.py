@@ -16,7 +16,6 @@
 
 import math
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -28,7 +27,6 @@ from vehicle_pf_tracker.scenes.models import (
     Model,
     Pace,
     Pose,
-    Still,
     Straight,
     Swaying,
     Wave,
@@ -72,10 +70,6 @@ def test_a_right_turn_of_one_who_drives_left_goes_away_too():
     assert (end.x, end.y) == pytest.approx((10, 200 - SLANT * 70))
 
 
-def test_before_its_start_a_course_goes_straight_on_backwards():
-    assert Bend(START, Pace.steady(2.0))(-10).x == pytest.approx(80)
-
-
 def test_swaying_adds_its_swings():
     pose = Swaying(Bend(START, Pace.steady(1.0)), Wave(2, 40, 0), Wave(0.5, 20, math.pi / 2))(10)
     assert (pose.x, pose.y) == pytest.approx((112, 199.5))
@@ -95,28 +89,6 @@ def test_the_box_of_a_model_is_tight_at_any_heading(degrees):
     assert box.width == pytest.approx(across, abs=1.2)
     assert box.x + box.width / 2 == pytest.approx(50.3, abs=0.8)
     assert 0.55 < sprite.area(box) / box.area <= 1
-
-
-def test_a_model_shows_its_other_side_when_it_turns_round():
-    model = Model(car((200.0, 60.0, 60.0)), 10.0)
-    right, left = (
-        model.on(lambda _, heading=heading: Pose(50, 60, heading, 10.0))[1]
-        for heading in (0.0, math.pi)
-    )
-    areas = [actor.seen(0).area(actor.path(0)) for actor in (right, left)]
-    assert areas[0] == pytest.approx(areas[1], rel=0.03)
-    assert np.subtract(right.path(0).centre, left.path(0).centre) == pytest.approx((0, 0), abs=0.3)
-
-
-def test_still_and_straight():
-    assert Still(BOX)(7) == BOX
-    assert Straight(BOX, (2.5, -1))(4) == Box(20, 16, 4, 3)
-
-
-def test_wave_is_a_sine_of_the_frame():
-    wave = Wave(amplitude=2, period=40, phase=0)
-    assert [wave(frame) for frame in (0, 10, 20, 30)] == pytest.approx([0, 2, 0, -2], abs=1e-12)
-    assert Wave(2, 40, math.pi / 2)(0) == pytest.approx(2)
 
 
 def test_attached_keeps_its_offset_and_its_own_size():

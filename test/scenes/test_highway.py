@@ -14,7 +14,7 @@
 
 """The highway: the two total occlusions for every seed, and what the demo relies on."""
 
-from itertools import groupby, islice
+from itertools import groupby
 
 import numpy as np
 import pytest
@@ -54,29 +54,12 @@ def test_the_demo_scene_stays_as_it_was_fixed_before_any_tuning(truths_by_seed):
     assert truths[-1].box.centre == pytest.approx((607.6648, 109.2185), abs=1e-3)
 
 
-def test_each_total_occlusion_has_fifteen_frames_without_a_pixel_or_nearly(truths_by_seed):
-    for truths in truths_by_seed:
-        dark = [truth.visible_fraction < 0.03 for truth in truths]
-        runs = [len(list(run)) for hidden, run in groupby(dark) if hidden]
-        assert len(runs) == 2
-        assert min(runs) >= 15
-
-
 def test_target_stays_whole_inside_the_image_at_one_size(truths_by_seed):
     for truths in truths_by_seed:
         boxes = [truth.box for truth in truths]
         assert min(box.x for box in boxes) >= 0
         assert max(box.x + box.width for box in boxes) <= 640
         assert {(round(box.width, 4), round(box.height, 4)) for box in boxes} == {(45.88, 26.2704)}
-
-
-def test_target_drives_on_at_a_steady_pace(truths_by_seed):
-    for truths in truths_by_seed:
-        centres = np.array([truth.box.centre for truth in truths])
-        steps = np.diff(centres, axis=0)
-        assert steps[:, 0].min() > 2.7
-        assert steps[:, 0].max() < 3.1
-        assert np.abs(steps[:, 1]).max() < 0.1
 
 
 def test_the_target_looks_like_itself_again_after_each_occlusion():
@@ -95,11 +78,3 @@ def test_the_target_looks_like_itself_again_after_each_occlusion():
 def _window(shot):
     x, y = (round(value) for value in shot.truth.box.centre)
     return shot.frame[y - 10 : y + 10, x - 18 : x + 18].astype(float)
-
-
-def test_there_is_other_traffic_on_both_carriageways():
-    scene = make_scene("highway", seed=1, settings=["noise=0"])
-    one, two = (shot.frame.astype(int) for shot in islice(scene.frames(), 0, 21, 20))
-    moved = np.abs(one - two).max(axis=2) > 25
-    for top, bottom in ((95, 123), (125, 151), (152, 176), (230, 256), (290, 316)):
-        assert moved[top:bottom].sum() > 200

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.scenes.compositing import Sprite
 from vehicle_pf_tracker.scenes.models import Still, Straight
 from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene
@@ -38,11 +38,6 @@ def test_stamps_start_at_one_second_and_do_not_drift():
     stamps = [truth.stamp_ns for truth in scene().truths()]
     assert stamps[:3] == [1_000_000_000, 1_033_333_333, 1_066_666_667]
     assert stamps[6] == 1_200_000_000
-
-
-def test_truth_of_a_free_vehicle():
-    truth = list(scene().truths())[3]
-    assert truth == Truth(1_100_000_000, Box(8, 3, 10, 4), Occlusion.NONE, 1.0)
 
 
 def test_what_is_painted_later_hides_and_what_is_painted_earlier_does_not():
@@ -82,10 +77,3 @@ def test_noise_has_its_standard_deviation_and_each_frame_its_own():
 def test_levels_are_clipped_and_rounded_not_wrapped():
     picture = np.array([[[-3.0, 254.6, 300.0]]], np.float32)
     np.testing.assert_array_equal(Camera(0.0, 0).capture(picture, 0), [[[0, 255, 255]]])
-
-
-def test_frames_can_be_asked_for_twice():
-    made = scene(noise=5.0)
-    for one, two in zip(made.frames(), made.frames(), strict=True):
-        np.testing.assert_array_equal(one.frame, two.frame)
-        assert one.truth == two.truth

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.scenes.compositing import check_seed, stream
-from vehicle_pf_tracker.scenes.scenery import asphalt, concrete, foliage, grass, plain, value_noise
+from vehicle_pf_tracker.scenes.scenery import asphalt, concrete, foliage, grass, value_noise
 
 SURFACES = (asphalt, concrete, foliage, grass)
 
@@ -38,10 +38,6 @@ def test_surfaces_have_contrast_within_the_levels(surface):
     assert image.min() >= 0
     assert image.max() <= 255
     assert image.std(axis=(0, 1)).min() > 3
-
-
-def test_plain_is_nearly_even():
-    assert plain((120, 160), (168.0, 170.0, 166.0), stream(2, "surface")).std(axis=(0, 1)).max() < 6
 
 
 def test_streams_do_not_depend_on_each_other():

@@ -55,7 +55,7 @@ class ToyParameters(ColourParameters):
     """Parameters of `toy`."""
 
     trust: float = parameter(
-        0.8, "Higher: spreads less.", minimum=0.0, maximum=0.9, tuned=(0.2, 0.8)
+        0.8, "Higher: spreads less.", bounds=(0.0, 0.9), tuned=(0.2, 0.8)
     )
 
 
@@ -140,7 +140,7 @@ def test_its_generated_files_are_there(checkout):
     assert '<enclave path="/vehicle_pf_tracker/toy">' in policy
     assert 'node="toy_tracker"' in policy
     assert "\n## toy\n" in (checkout / "docs/parameters.md").read_text()
-    for page in ("README.md", "docs/choosing.md", "docs/variants.md"):
+    for page in ("docs/choosing.md", "docs/variants.md"):
         assert "\n| `toy` | " in (checkout / page).read_text()
 
 

@@ -63,13 +63,6 @@ def test_lost_after_the_time_without_evidence_until_it_is_back():
     assert modes(judge, [0.9, 0.1]) == [Mode.TRACKING, Mode.OCCLUDED]
 
 
-def test_lost_counts_seconds_not_frames():
-    judge = EvidenceJudge()
-    modes(judge, [1.0])
-    found = [judge.judge(0.1, 0.25, PARAMETERS, lost_after=1.0, left_image=False) for _ in range(5)]
-    assert found == [Mode.OCCLUDED] * 3 + [Mode.LOST] * 2
-
-
 def test_leaving_the_image_without_evidence_is_lost_at_once():
     judge = EvidenceJudge()
     modes(judge, [1.0])

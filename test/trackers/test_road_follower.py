@@ -143,13 +143,6 @@ def test_time_that_goes_back_or_leaps_begins_the_speed_anew():
     assert repeated.speed == 0
 
 
-def test_a_new_start_begins_the_speed_anew():
-    follower = RoadFollower(TENTH, 1.0)
-    drive(follower, [(50 + 4 * index, 80) for index in range(40)])
-    one = estimate((400.0, 80.0), regime=START)
-    assert follower.follow(one, np.eye(2), 40 * PERIOD).speed == 0
-
-
 PAIRS = "0,0=0,0; 1000,0=100,0; 1000,1000=100,100; 0,1000=0,100"
 
 
@@ -187,6 +180,13 @@ def test_localisation_waits_for_lens_and_pose():
     local.set_pose(turned)
     follow(2 * PERIOD)
     assert local.road.position[1] < 38
+
+
+def test_a_new_start_begins_the_speed_anew():
+    follower = RoadFollower(TENTH, 1.0)
+    drive(follower, [(50 + 4 * index, 80) for index in range(40)])
+    one = estimate((400.0, 80.0), regime=START)
+    assert follower.follow(one, np.eye(2), 40 * PERIOD).speed == 0
 
 
 def test_parameters_that_ask_for_nothing_from_outside_take_nothing():

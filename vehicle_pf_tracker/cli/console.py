@@ -20,8 +20,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TextIO, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, TextIO, TypeAlias
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -95,131 +94,110 @@ def megabytes(count: int) -> str:
 
 OnFrames: TypeAlias = Callable[[int, int | None], None]
 """Takes the numbers of frames done and of all, None if unknown."""
+Show: TypeAlias = Callable[[str, float | None], None]
+"""Takes words about work under way, and its share done (0 to 1), None if unknown."""
 Clock: TypeAlias = Callable[[], float]
-ReportT = TypeVar("ReportT")
 
 _FIRST_SECONDS, _LINE_SECONDS = 2.0, 5.0
 """Seconds before the first plain line and between two: quick work prints none, and long work does
 not fill a log."""
 
 
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """Words about work under way, and its share done (0 to 1), None if unknown."""
-
-    words: str
-    share: float | None = None
-
-
 @contextmanager
-def shown_progress(
-    describe: Callable[[ReportT, float], Progress],
-    stream: TextIO | None = None,
-    clock: Clock = time.monotonic,
-) -> Iterator[Callable[[ReportT], None]]:
-    """Return a function that shows reports: as a bar on a terminal, as plain lines elsewhere.
+def shown_progress(stream: TextIO | None = None, clock: Clock = time.monotonic) -> Iterator[Show]:
+    """Return a function that shows progress: as a bar on a terminal, as plain lines elsewhere.
 
     Parameters
     ----------
-    describe : callable
-        Makes the progress of a report and of the time since the beginning, s.
     stream : text stream or None
         Where to show it; None is standard error.
     clock : callable
         The monotonic clock in s.
     """
-    stream, began = stream or sys.stderr, clock()
+    stream, time_left = stream or sys.stderr, _TimeLeft(clock)
     if not stream.isatty():
-        next_line = _FIRST_SECONDS
+        next_line = clock() + _FIRST_SECONDS
 
-        def print_line(report: ReportT) -> None:
+        def print_line(words: str, share: float | None) -> None:
             nonlocal next_line
-            elapsed = clock() - began
-            progress = describe(report, elapsed)
-            if elapsed >= next_line:
-                next_line = elapsed + _LINE_SECONDS
-                print(progress.words, file=stream, flush=True)
+            left = time_left(share)
+            if clock() >= next_line:
+                next_line = clock() + _LINE_SECONDS
+                print(f"{words}{left}", file=stream, flush=True)
 
         yield print_line
         return
     from rich.console import Console
-    from rich.progress import BarColumn, TextColumn
-    from rich.progress import Progress as ProgressBar
+    from rich.progress import BarColumn, Progress, TextColumn
 
     columns = BarColumn(), TextColumn("{task.description}", markup=False)
-    with ProgressBar(*columns, console=Console(file=stream), transient=True) as bar:
+    with Progress(*columns, console=Console(file=stream), transient=True) as bar:
         task = bar.add_task("", total=None)
 
-        def move_bar(report: ReportT) -> None:
-            progress = describe(report, clock() - began)
-            total = None if progress.share is None else 1.0
-            bar.update(task, completed=progress.share, total=total, description=progress.words)
+        def move_bar(words: str, share: float | None) -> None:
+            total = None if share is None else 1.0
+            bar.update(task, completed=share, total=total, description=words + time_left(share))
 
         yield move_bar
+
+
+class _TimeLeft:
+    """Words about the time that the rest takes, by the pace since the first share known."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self._first: tuple[float, float] | None = None
+        self._last = 0.0
+
+    def __call__(self, share: float | None) -> str:
+        if share is None:
+            return ""
+        if self._first is None or share < self._last:  # a loop begins again
+            self._first = self._clock(), share
+        self._last, (began, first) = share, self._first
+        if share >= 1 or share <= first:
+            return ""
+        left = (self._clock() - began) * (1 - share) / (share - first)
+        return f", about {left:.0f} s left" if left < 100 else f", about {left / 60:.0f} min left"
 
 
 @contextmanager
 def counting(
     verb: str, stream: TextIO | None = None, clock: Clock = time.monotonic
 ) -> Iterator[OnFrames]:
-    """Return a function that shows how many frames are done; see `shown_progress`.
+    """Return a function that shows how many frames are done; `verb` is a participle."""
+    with shown_progress(stream, clock) as show:
 
-    Parameters
-    ----------
-    verb : str
-        Participle of the work, as in ``tracked``.
-    stream : text stream or None
-        Where to show it; None is standard error.
-    clock : callable
-        The monotonic clock in s.
-    """
+        def count(done: int, total: int | None) -> None:
+            if total:
+                show(f"{verb} {done} of {total} frames", done / total)
+            else:
+                show(f"{verb} {done} frames", None)
 
-    def describe(report: tuple[int, int | None], elapsed: float) -> Progress:
-        done, total = report
-        if not total:
-            return Progress(f"{verb} {done} frames")
-        left = f", {time_left(done / total, elapsed)}" if done < total else ""
-        return Progress(f"{verb} {done} of {total} frames{left}", done / total)
-
-    with shown_progress(describe, stream, clock) as show:
-        yield lambda done, total: show((done, total))
+        yield count
 
 
 @contextmanager
 def telling(
     name: str, stream: TextIO | None = None, clock: Clock = time.monotonic
 ) -> Iterator[OnProgress]:
-    """Return a function that shows the runs done and running; see `shown_progress`."""
+    """Return a function that shows the runs done and running."""
+    with shown_progress(stream, clock) as show:
 
-    def describe(report: WorkProgress, elapsed: float) -> Progress:
-        share = report.done / report.total if report.total else 1.0
-        shown, beyond = report.running[:_SHOWN_RUNS], len(report.running) - _SHOWN_RUNS
-        names = ", ".join([*shown, *([f"{beyond} more"] if beyond > 0 else [])])
-        running = f"; running {names}" if names else ""
-        left = time_left(share, elapsed)
-        words = f"{name}: {report.done} of {report.total} runs done, {left}{running}"
-        return Progress(words, share)
+        def tell(work: WorkProgress) -> None:
+            shown, beyond = work.running[:_SHOWN_RUNS], len(work.running) - _SHOWN_RUNS
+            names = ", ".join([*shown, *([f"{beyond} more"] if beyond > 0 else [])])
+            running = f"; running {names}" if names else ""
+            words = f"{name}: {work.done} of {work.total} runs done{running}"
+            show(words, work.done / work.total if work.total else 1.0)
 
-    with shown_progress(describe, stream, clock) as show:
-        yield show
+        yield tell
 
 
 @contextmanager
 def stages(
     name: str, stream: TextIO | None = None, clock: Clock = time.monotonic
 ) -> Iterator[Callable[[str], None]]:
-    """Return a function that shows the present stage of a work; see `shown_progress`."""
-
-    def describe(stage: str, _elapsed: float) -> Progress:
-        return Progress(f"{name}: {stage}")
-
-    with shown_progress(describe, stream, clock) as show:
-        yield show
-
-
-def time_left(share: float, seconds: float) -> str:
-    """Return the time that the rest takes, as words, if `share` (0 to 1) took `seconds`."""
-    if not share:
-        return "time left unknown"
-    left = seconds * (1 / share - 1)
-    return f"about {left:.0f} s left" if left < 100 else f"about {left / 60:.0f} min left"
+    """Return a function that shows the present stage of a work."""
+    with shown_progress(stream, clock) as show:
+        yield lambda stage: show(f"{name}: {stage}", None)

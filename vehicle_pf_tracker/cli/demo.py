@@ -25,13 +25,19 @@ from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 
-from vehicle_pf_tracker.cli.console import OnFrames, counting, show, shown_progress, tell_notice
-from vehicle_pf_tracker.cli.replay import ReplayWords
-from vehicle_pf_tracker.cli.requests import OverwriteOption, natural, option
+from vehicle_pf_tracker.cli.console import (
+    OnFrames,
+    counting,
+    show,
+    tell_notice,
+    tell_notices,
+)
+from vehicle_pf_tracker.cli.replay import shown_replay
+from vehicle_pf_tracker.cli.requests import OverwriteOption, option
 from vehicle_pf_tracker.cli.synth import record_scene
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
+from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.plots import overview_figure, save
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.evaluation.tables import Comparison, MetricRow, comparison
@@ -40,42 +46,27 @@ from vehicle_pf_tracker.offline.driver import Numbered, OfflineTracker, follow
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import write_with_estimates
 from vehicle_pf_tracker.offline.output_files import make_folder, write_text
-from vehicle_pf_tracker.offline.pictures import NO_ENCODER, Pictures, has_encoder
+from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import RunFolder, RunInfo, describe_run
-from vehicle_pf_tracker.offline.traffic_following import TrafficRun
-from vehicle_pf_tracker.offline.traffic_results import track_files
 from vehicle_pf_tracker.parameters.table import Value, from_mapping
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.trackers.registry import find_variant
-from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
-from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 SHOWN_SEED = 0
-"""Seed of the runs that are shown; the others are counted only."""
 _PATIENCE = 600.0
 """Patience with a busy machine, s; a quiet one needs a few, and a node that ends is noticed at
 once."""
 
-# `fusion` is as it ships. Of the other two, particles and features are the same, and each has its
-# own best sigma, found on other scenes and seeds: `python -m reproduction.demo_sigma`.
+# `fusion` is as it ships. `pf` has its best sigma, found on other scenes and seeds: `python -m
+# reproduction.demo_sigma`.
 CONTESTANTS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
     {
         "fusion": {},
-        "apf": {"num_particles": 200, "histogram_bits": 3, "motion.sigma_w": 5.0},
         "pf": {"num_particles": 200, "histogram_bits": 3, "sigma": 2.0},
     }
 )
 """Parameters over the defaults, by variant."""
-
-
-@dataclass(frozen=True, slots=True)
-class Run:
-    """A tracker and its rows, one for each frame."""
-
-    tracker: OfflineTracker
-    rows: Sequence[EstimateRow]
 
 
 def absence_of_ros() -> str:
@@ -92,30 +83,14 @@ def absence_of_ros() -> str:
     return ""
 
 
-def offline_tracker(recording: Recording, name: str, seed: int = SHOWN_SEED) -> OfflineTracker:
+def _tracker(recording: Recording, name: str) -> OfflineTracker:
     """Make a contestant's tracker, to start on the recording's first true box."""
     variant = find_variant(name)
-    parameters = from_mapping(variant.parameters, {**CONTESTANTS[name], "seed": seed})
+    parameters = from_mapping(variant.parameters, {**CONTESTANTS[name], "seed": SHOWN_SEED})
     return OfflineTracker(variant, parameters, first_truth=recording.first_truth())
 
 
-def track_offline(recording: Recording, more_seeds: int) -> dict[str, list[Run]]:
-    """Track with every contestant, first with the seed shown; each frame is decoded once."""
-    trackers = {
-        f"{name} {seed}": offline_tracker(recording, name, seed)
-        for name in CONTESTANTS
-        for seed in range(SHOWN_SEED, SHOWN_SEED + 1 + more_seeds)
-    }
-    with counting("tracked") as progress:
-        rows = follow(trackers, numbered(recording, progress), Pictures())
-    runs: dict[str, list[Run]] = {name: [] for name in CONTESTANTS}
-    for key, tracker in trackers.items():
-        runs[tracker.session.variant.name].append(Run(tracker, rows[key]))
-    return runs
-
-
-def numbered(recording: Recording, progress: OnFrames) -> Numbered:
-    """Yield the frames of a recording with their numbers."""
+def _numbered(recording: Recording, progress: OnFrames) -> Numbered:
     for number, found in enumerate(recording.frames(), start=1):
         yield number, found
         progress(number, recording.frame_count)
@@ -136,10 +111,11 @@ def track_through_ros(recording: Recording) -> dict[str, Sequence[EstimateRow]]:
     nodes = {f"/{name}_tracker": name for name in CONTESTANTS}
     options = ReplayOptions(lockstep=True, nodes=tuple(nodes), timeout=_PATIENCE)
     with ExitStack() as stack:
-        on_progress = stack.enter_context(shown_progress(ReplayWords()))
+        on_progress = stack.enter_context(shown_replay())
+        fixed = {"seed": SHOWN_SEED, "queue_depth": 10}
         trackers = [
-            stack.enter_context(tracker_process(name, _for_node(name), recording.image_topic))
-            for name in CONTESTANTS
+            stack.enter_context(tracker_process(name, {**own, **fixed}, recording.image_topic))
+            for name, own in CONTESTANTS.items()
         ]
 
         def check() -> None:
@@ -157,10 +133,6 @@ def track_through_ros(recording: Recording) -> dict[str, Sequence[EstimateRow]]:
     return {name: rows[name] for name in CONTESTANTS}
 
 
-def _for_node(name: str) -> dict[str, Value]:
-    return {**CONTESTANTS[name], "seed": SHOWN_SEED, "queue_depth": 10}
-
-
 def _stay_local() -> None:
     """Choose a ROS domain of its own, away from robots and other demos, unless the user has."""
     os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 101))
@@ -168,11 +140,8 @@ def _stay_local() -> None:
 
 
 SCENE, SCENE_SEED = "highway", 0
-IN_VIDEO = ("fusion", "pf")
-"""Contestants drawn in the video: a third box would hide the other two."""
 PICTURE, VIDEO, ESTIMATES = "demo.png", "demo.mp4", "with_estimates"
-ALL_VEHICLES = "all_vehicles.png"
-PRODUCTS = ("recording", PICTURE, VIDEO, ESTIMATES, ALL_VEHICLES, "summary.*")
+PRODUCTS = ("recording", PICTURE, VIDEO, ESTIMATES, "summary.*")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,11 +150,8 @@ class Request(OverwriteOption):
 
     output: Path = option(
         "-o", type=Path, default=Path("results/demo"), metavar="DIR",
-        help="folder for recordings, results, pictures and video (default: results/demo)",
+        help="folder for recordings, results, picture and video (default: results/demo)",
     )  # fmt: skip
-    seeds: int = option(
-        type=natural, default=5, metavar="N", help="how many more seeds to run offline (default: 5)"
-    )
 
 
 def run(request: Request) -> int:
@@ -205,30 +171,33 @@ def _run_chain(request: Request, folder: Path, absence: str) -> int:
         load_kernels("auto")
     _announce(steps, f"a recording of the scene {SCENE!r} with exact truth")
     recording = record(folder / "recording")
-    answers: Mapping[str, Sequence[EstimateRow]] | None = None
+    answers: Mapping[str, Sequence[EstimateRow]] = {}
     if not absence:
         nodes = ", ".join(f"{name}_tracker" for name in CONTESTANTS)
         _announce(steps, f"the nodes {nodes}, fed in lock-step through ROS")
         answers = track_through_ros(recording)
-    _announce(steps, f"{', '.join(CONTESTANTS)} offline, and {request.seeds} more seeds of each")
-    runs = track_offline(recording, request.seeds)
-    rows = answers or {name: of_seed[0].rows for name, of_seed in runs.items()}
-    same = {name: _numbers(rows[name]) == _numbers(runs[name][0].rows) for name in rows}
-    _announce(steps, "the picture and the video")
-    scores = {name: score_frames(found, recording.truth()) for name, found in rows.items()}
-    _write_runs(folder, recording, runs, scores, request.command, bool(answers))
-    _draw(folder, recording, scores, bool(answers))
-    _announce(steps, "every vehicle of the scene, found by motion, and a picture of all paths")
-    found = _follow_all(recording, folder / "traffic", folder / ALL_VEHICLES)
-    table = _table(scores, same if answers else {}, _recoveries(recording, runs))
+    _announce(steps, f"{', '.join(CONTESTANTS)} offline, and the video")
+    trackers = {name: _tracker(recording, name) for name in CONTESTANTS}
+    pictures = Pictures(folder / VIDEO)
+    with counting("tracked") as progress:
+        offline = follow(trackers, _numbered(recording, progress), pictures)
+    tell_notices(pictures.notices)
+    same = [_numbers(rows) == _numbers(offline[name]) for name, rows in answers.items()]
+    found = {name: score_frames(r, recording.truth()) for name, r in (answers or offline).items()}
+    _announce(steps, "the picture and the scores")
+    _write_runs(folder, recording, trackers, found, request.command, bool(answers))
+    _draw(folder, recording, found, bool(answers))
+    table = comparison({name: measure(scored) for name, scored in found.items()})
+    if same:
+        first = MetricRow("same numbers offline", "", tuple(same))
+        table = Comparison(table.columns, (*table.lines, first))
     show(table)
     write_text(folder / "summary.md", table.to_markdown())
     write_text(folder / "summary.csv", table.to_csv())
     print(f"the picture is {folder / PICTURE}")
     print(f"the video is {folder / VIDEO}")
     print(f"the recording {folder / ESTIMATES} opens in Foxglove and evo; all else is in {folder}")
-    print(f"the picture of all vehicles is {folder / ALL_VEHICLES}: {found[0]}")
-    return 0 if all(same.values()) else 1
+    return 0 if all(same) else 1
 
 
 def _announce(steps: Iterator[int], what: str) -> None:
@@ -249,7 +218,7 @@ def _numbers(rows: Sequence[EstimateRow]) -> list[tuple[object, ...]]:
 def _write_runs(
     folder: Path,
     recording: Recording,
-    runs: Mapping[str, Sequence[Run]],
+    trackers: Mapping[str, OfflineTracker],
     scores: Mapping[str, Scores],
     command: Sequence[str],
     through_ros: bool,
@@ -257,61 +226,20 @@ def _write_runs(
     """Write a folder for each contestant, and the recording with the estimates of all."""
     notices = ["estimated through ROS"] if through_ros else []
     rows = {name: [frame.row for frame in scored.frames] for name, scored in scores.items()}
-    for name, scored in scores.items():
-        tracker = runs[name][0].tracker
+    for name, tracker in trackers.items():
         info = RunInfo(command, str(recording.path), "", tracker.start_frame, notices)
         results = RunFolder(folder / name)
         results.write_run(rows[name], describe_run(info, tracker.session))
-        results.write_metrics(measure(scored).to_json())
-    by_node = {f"{name}_tracker": found for name, found in rows.items()}
+        results.write_metrics(measure(scores[name]).to_json())
+    by_node = {f"{name}_tracker": of_name for name, of_name in rows.items()}
     write_with_estimates(folder / ESTIMATES, recording, by_node, overwrite=True)
 
 
 def _draw(
     folder: Path, recording: Recording, scores: Mapping[str, Scores], through_ros: bool
 ) -> None:
-    """Draw the paths over a frame from the middle and the errors below; write the video."""
+    """Draw the paths over a frame from the middle, and the errors below."""
     middle = next(recording.frames(recording.duration_ns / 2e9)).frame
     assert middle is not None, "it was written by this command"
     title = "through ROS, in lock-step" if through_ros else "offline"
     save(overview_figure(middle, scores, title), folder / PICTURE)
-    trackers = {name: offline_tracker(recording, name) for name in scores if name in IN_VIDEO}
-    follow(trackers, iter(enumerate(recording.frames(), start=1)), Pictures(folder / VIDEO))
-    if not has_encoder():
-        tell_notice(NO_ENCODER)
-
-
-def _follow_all(recording: Recording, folder: Path, picture: Path) -> list[str]:
-    """Follow all vehicles with the defaults, as `traffic` does; return what was found in lines."""
-    tracking = TrafficRun(TrafficSession(TrafficTracker(), MotionDetector))
-    with track_files(make_folder(folder)) as files:
-        tracking.follow(enumerate(recording.frames(), start=1), files)
-    tracking.paths.write(picture)
-    return tracking.summary.sentences()
-
-
-def _recoveries(
-    recording: Recording, runs: Mapping[str, Sequence[Run]]
-) -> dict[str, tuple[int, int]]:
-    """Count the other seeds that recovered every time, and all other seeds, by contestant."""
-    truth = recording.truth()
-    counts = {}
-    for name, (_, *others) in runs.items():
-        metrics = [measure(score_frames(run.rows, truth)) for run in others]
-        counts[name] = sum(all(one.recovered) for one in metrics), len(metrics)
-    return counts
-
-
-def _table(
-    scores: Mapping[str, Scores],
-    same: Mapping[str, bool],
-    recoveries: Mapping[str, tuple[int, int]],
-) -> Comparison:
-    """Compare the runs shown, and count over the other seeds."""
-    metrics: dict[str, Metrics] = {name: measure(scored) for name, scored in scores.items()}
-    table = comparison(metrics)
-    recovered = tuple("{} of {}".format(*counts) for counts in recoveries.values())
-    extra = [MetricRow("other seeds that recovered every time", "", recovered)]
-    if same:
-        extra.insert(0, MetricRow("same numbers offline", "", tuple(same.values())))
-    return Comparison(table.columns, (*table.lines, *extra))

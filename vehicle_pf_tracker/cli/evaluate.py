@@ -19,7 +19,6 @@ With `--traffic`, trackers of many vehicles on folders as MOTChallenge has them.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,19 +38,15 @@ from vehicle_pf_tracker.cli.console import (
 from vehicle_pf_tracker.cli.report import ReportParts
 from vehicle_pf_tracker.cli.requests import (
     MaxDiffOption,
-    VerbRequest,
-    natural,
     option,
-    positive,
     switch,
 )
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.grid.plan import Plan, Robustness
-from vehicle_pf_tracker.evaluation.grid.running import Runner, complete, on_this_machine
+from vehicle_pf_tracker.evaluation.grid.cells import Plan
+from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
-from vehicle_pf_tracker.evaluation.grid.tracking import time_systems
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
@@ -60,9 +55,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
 _GRID_ONLY = (
-    "params", "without_defaults", "baseline_model", "scheduler", "timing", "shifted_starts",
-    "start_frames", "restarts", "max_rmse", "topic", "video", "recordings", "trajectories",
-    "figures",
+    "params", "without_defaults", "baseline_model", "max_rmse", "topic", "recordings",
 )  # fmt: skip
 """Options of the grid that do not apply."""
 
@@ -158,60 +151,24 @@ def _parameters(request: TrafficRequest) -> TrafficParameters:
     return parameters
 
 
-TIMING_FRAMES = 200
 _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")
 """Metrics of the table on the terminal, few enough for its width."""
-_STRESS_MOVED = (
-    "the stress battery is no option of evaluate: in a clone of the repository, run "
-    "`python -m laboratory stress REC… -o DIR`"
-)
 
 
 @dataclass(frozen=True, kw_only=True)
-class RobustnessOptions(VerbRequest):
-    """Runs in addition to the grid."""
-
-    GROUP = "robustness runs, in addition to the grid"
-
-    shifted_starts: bool = switch(
-        help="also start on twelve shifted and scaled boxes, with the first seed"
-    )
-    start_frames: int = option(
-        type=natural, default=0, metavar="N",
-        help="also start in N other frames, with the first seed",
-    )  # fmt: skip
-    restarts: bool = switch(help="also run with a new start after each failure, and count those")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Request(RobustnessOptions, TrafficRequest, ReportParts, MaxDiffOption):
+class Request(TrafficRequest, ReportParts, MaxDiffOption):
     """Request of `evaluate`."""
 
-    stress: str | None = option(nargs="?", const="", help=argparse.SUPPRESS)
-    scheduler: str | None = option(
-        metavar="URL",
-        help="run on the Dask cluster of this scheduler, as tcp://host:8786; the workers read the "
-        "recordings at the same paths or URLs",
-    )  # fmt: skip
     topic: str | None = option(help="the image topic, where recordings have several")
     max_rmse: float | None = option(
         type=float, metavar="PX",
         help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
-    )  # fmt: skip
-    timing: bool = switch(
-        help="afterwards measure the speed of each system in turn, on an otherwise idle machine"
-    )
-    timing_frames: int = option(
-        type=positive, default=TIMING_FRAMES, metavar="N",
-        help="frames per recording for --timing (default: %(default)s)",
     )  # fmt: skip
 
 
 def run(request: Request) -> int:
     """Run the missing cells, write the report, and print the table."""
     check(request)
-    if request.stress is not None:
-        raise UsageError(_STRESS_MOVED)
     sources = request.sources if request.traffic else find_recordings(request.sources)
     try:
         with claimed([Products(request.output)], sources, overwrite=True):
@@ -225,10 +182,7 @@ def run(request: Request) -> int:
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
     plan = _plan(request, sources)
     with telling("evaluate") as on_progress:
-        complete(plan, request.output, _runner(request), on_progress, tell_notice)
-    if request.timing:
-        with telling("timing") as on_progress:
-            time_systems(plan, request.output, request.timing_frames, on_progress)
+        complete(plan, request.output, on_this_machine(request.workers), on_progress, tell_notice)
     return _judge(report.write(request.output, request), request.max_rmse)
 
 
@@ -243,16 +197,7 @@ def _plan(request: Request, sources: Sequence[str]) -> Plan:
         range(request.first_seed, request.first_seed + (request.seeds or system_options.SEEDS)),
         list(request.command),
         request.max_diff,
-        Robustness(request.shifted_starts, request.start_frames, request.restarts),
     )
-
-
-def _runner(request: Request) -> Runner:
-    if request.scheduler is None:
-        return on_this_machine(request.workers)
-    from vehicle_pf_tracker.evaluation.grid.running import on_cluster
-
-    return on_cluster(request.scheduler)
 
 
 def _judge(written: Report, limit: float | None) -> int:

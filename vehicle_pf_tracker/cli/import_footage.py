@@ -22,12 +22,7 @@ from pathlib import Path
 from vehicle_pf_tracker.cli.console import counting, megabytes, tell_notices
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional
 from vehicle_pf_tracker.core.outputs import claimed
-from vehicle_pf_tracker.recordings.importing import (
-    FORMATS,
-    ExpectedSize,
-    expected_size,
-    import_recording,
-)
+from vehicle_pf_tracker.recordings.importing import FORMATS, import_recording
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,9 +50,6 @@ class Request(OverwriteOption):
 
 def run(request: Request) -> int:
     """Import the footage, and print a summary of the recording."""
-    expected = expected_size(request.source, fps=request.fps, format=request.format)
-    if expected is not None:
-        print(f"{request.out} will take {_words(expected)}", flush=True)
     with (
         claimed([request.out], [request.source, request.truth], overwrite=request.overwrite),
         counting("imported") as progress,
@@ -77,10 +69,3 @@ def run(request: Request) -> int:
         f"at {made.fps:g} frames/s, {made.truths} with truth; {megabytes(made.size)}"
     )
     return 0
-
-
-def _words(expected: ExpectedSize) -> str:
-    about = "up to" if expected.is_raw else "about"
-    if expected.images is None:
-        return f"{about} {megabytes(expected.image)} for each image"
-    return f"{about} {megabytes(expected.image * expected.images)}"

@@ -40,22 +40,20 @@ from vehicle_pf_tracker.cli.console import (
 )
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
-from vehicle_pf_tracker.core.errors import InputError, check_address_space, suggestion
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 EXTRAS: Mapping[str, str] = MappingProxyType(
     {
         "matplotlib": "evaluation",
         "jinja2": "evaluation",
-        "scipy": "traffic",  # `evaluation` brings it too, and says so before
-        "numba": "numba",
+        "optuna": "evaluation",
+        "scipy": "video",  # `evaluation` brings it too, and says so before
         "av": "video",
-        "onnxruntime": "onnx",
-        "distributed": "cluster",
-        "fsspec": "cluster",
-        "optuna": "tune",
+        "onnxruntime": "video",
+        "numba": "numba",
     }
 )
-"""The extra that brings a module, by its name."""
+"""The smallest extra that brings a module, by its name."""
 
 _ROS_ENDINGS = ("_msgs", "_interfaces", "_srvs")
 
@@ -102,15 +100,7 @@ EVALUATING = frozenset({"demo", "evaluate", "tune", "report"})
 """Verbs that need the extra `evaluation`: nodes, `replay`, `run` and `import` do without it."""
 
 EVALUATION_MODULES = ("matplotlib", "scipy", "jinja2")
-"""Modules that the extra `evaluation` brings."""
-
-_COMPLETION: Mapping[str, str] = MappingProxyType(
-    {
-        "--install-completion": "write the completion for bash or zsh (default: that of $SHELL)",
-        "--print-completion": "print it",
-    }
-)
-"""Options that come alone, with their help."""
+"""Modules of the extra `evaluation` that each of these verbs needs."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -157,11 +147,6 @@ def bag_replay(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(words: list[str]) -> int:
-    check_address_space()
-    if words and words[0] in _COMPLETION:
-        from vehicle_pf_tracker.cli import completion
-
-        return completion.run(words, VERBS)
     try:
         args = make_parser(words).parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
@@ -170,12 +155,13 @@ def _run(words: list[str]) -> int:
     return status
 
 
-def make_parser(words: list[str]) -> argparse.ArgumentParser:
-    """Make the parser, with the options of the verb that `words` ask for.
+def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
+    """Make the parser, with the options of the verb that `words` ask for, or of all if None.
 
     No other verb is loaded, so that help is quick and nothing needs ROS but what uses it.
+    All of them are for programs that write a shell's completion.
     """
-    asked = next((word for word in words if not word.startswith("-")), None)
+    asked = next((word for word in words or () if not word.startswith("-")), None)
     if asked is not None and asked not in VERBS:
         raise UsageError(
             f"there is no verb {asked!r}{suggestion(asked, VERBS)}; the verbs are "
@@ -183,17 +169,15 @@ def make_parser(words: list[str]) -> argparse.ArgumentParser:
         )
     parser = argparse.ArgumentParser(prog=PROGRAM, description=_summary)
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {__version__}")
-    for name, line in _COMPLETION.items():
-        parser.add_argument(name, metavar="SHELL", help=line)
     verbs = parser.add_subparsers(metavar="VERB", required=True)
     for name, (module_name, line) in VERBS.items():
         description = f"{line[0].upper()}{line[1:]}."
         verb = verbs.add_parser(name, help=line, description=description)
-        if name == asked:
+        if words is None or name == asked:
             _check_extra(name)
             module = importlib.import_module(f"vehicle_pf_tracker.cli.{module_name}")
             add_options(verb, module.Request)
-            verb.set_defaults(module=module, command=[PROGRAM, *words])
+            verb.set_defaults(module=module, command=[PROGRAM, *(words or ())])
     return parser
 
 

@@ -12,125 +12,33 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`params`: the default parameters of a variant, as a ROS parameter file or as a table."""
+"""`params`: the default parameters of a variant, as a ROS parameter file."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.cli.config_files import config_path
-from vehicle_pf_tracker.cli.requests import VerbRequest, positional, switch
+from vehicle_pf_tracker.cli.requests import VerbRequest, positional
+from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
-from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec
-from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant, find_node
-
-ALL = "all"
-
-_PREFACE = """# Parameters
-
-Names, defaults and ranges are those of the nodes, of the files in config/ and of `--set`; integers
-are accepted for doubles. `vehicle-pf-tracker params all --markdown` prints this page. A parameter
-of several variants stands once, under [Several variants](#several-variants).
-
-The last column says what a change does while a target is followed:
-
-"""
+from vehicle_pf_tracker.trackers.registry import Variant, find_node
 
 
 @dataclass(frozen=True, kw_only=True)
 class Request(VerbRequest):
     """Request of `params`."""
 
-    variant: str = positional(
-        help="name of the variant, apf for instance; with --markdown, all for every one"
-    )
-    path: bool = switch(exclusive="form", help="print where the installed parameter file is")
-    markdown: bool = switch(exclusive="form", help="print a table for documents, not YAML")
+    variant: str = positional(help="name of the variant, apf for instance")
 
 
 def run(request: Request) -> int:
-    """Print what is asked for."""
-    if request.markdown and request.variant == ALL:
-        print(all_markdown(), end="")
-        return 0
-    variant = find_node(request.variant)
-    if request.path:
-        print(config_path(variant.name))
-    elif request.markdown:
-        print(default_markdown(variant), end="")
-    else:
-        print(default_yaml(variant), end="")
+    """Print the parameters."""
+    print(default_yaml(find_node(request.variant)), end="")
     return 0
 
 
 def default_yaml(variant: Variant) -> str:
     """Write the defaults of the node of `variant` as a commented ROS parameter file."""
-    from vehicle_pf_tracker.parameters.configuration import Configuration
-
     defaults = Configuration.of(variant)
     title = f"{variant.name}: {variant.summary}. Printed by `vehicle-pf-tracker params`."
     return to_yaml(defaults.specs(), defaults.to_mapping(), title)
-
-
-def default_markdown(variant: Variant) -> str:
-    """Write the parameters of the node of `variant` as a Markdown table."""
-    from vehicle_pf_tracker.parameters.configuration import Configuration
-
-    return _table(Configuration.of(variant).specs().values())
-
-
-def all_markdown() -> str:
-    """Write docs/parameters.md: what every node has, what several have, and each one's own."""
-    from vehicle_pf_tracker.parameters.configuration import Configuration
-
-    tables = {name: Configuration.of(variant).specs() for name, variant in NODES.items()}
-    owners: dict[ParameterSpec, list[str]] = {}
-    for name in VARIANTS:
-        for spec in tables[name].values():
-            owners.setdefault(spec, []).append(name)
-    common = {spec.name for spec, names in owners.items() if len(names) == len(VARIANTS)}
-    every = {spec for spec in owners if spec.name in common}
-    shared = {spec: names for spec, names in owners.items() if len(names) > 1 and spec not in every}
-    effects = "".join(f"- *{name}*: {words}.\n" for name, words in EFFECTS.items())
-    parts = [_PREFACE, effects, "\n## Every node\n\n", _table(s for s in owners if s in every)]
-    parts += ["\n## Several variants\n\n", _table(shared, map(_listed, shared.values()))]
-    for name, table in tables.items():
-        own = [spec for spec in table.values() if spec not in every and spec not in shared]
-        elsewhere = [spec.name for spec in table.values() if spec in shared]
-        words = f"{NODES[name].summary}." + _also(elsewhere) + _lacking(table, common)
-        parts.append(f"\n## {name}\n\n{words}\n" + (f"\n{_table(own)}" if own else ""))
-    return "".join(parts)
-
-
-def _listed(names: Iterable[str]) -> str:
-    return ", ".join(f"`{name}`" for name in names)
-
-
-def _also(names: Sequence[str]) -> str:
-    """Name the parameters of a variant that are in the table of several variants."""
-    return f" It shares {_listed(names)} with other variants." if names else ""
-
-
-def _lacking(table: Iterable[str], common: Iterable[str]) -> str:
-    """Name the parameters of every node that this one does not have: `traffic` lacks some."""
-    names = sorted(set(common).difference(table))
-    return f" It does not have {_listed(names)}." if names else ""
-
-
-def _table(table: Iterable[ParameterSpec], variants: Iterable[str] | None = None) -> str:
-    """Write a row for each parameter, with the variants that have it where these are given."""
-    head = "parameter", "default", "range", "unit", "what turning it does", "source", "at run time"
-    rows = [head, ("---",) * len(head), *map(_row, table)]
-    if variants is not None:
-        column = ["variants", "---", *variants]
-        rows = [(*row, cell) for row, cell in zip(rows, column, strict=True)]
-    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
-
-
-def _row(spec: ParameterSpec) -> tuple[str, ...]:
-    default = str(spec.default).lower() if spec.kind is bool else str(spec.default)
-    values = ", ".join(spec.choices) or spec.bounds
-    effect = "start-up only" if spec.read_only else spec.effect
-    cells = (f"`{spec.name}`", default, values, spec.unit, spec.doc, spec.source, effect)
-    return tuple(cell.replace("|", "\\|") for cell in cells)

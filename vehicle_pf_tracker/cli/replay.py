@@ -16,20 +16,19 @@
 
 from __future__ import annotations
 
-import argparse
-import re
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from vehicle_pf_tracker.cli.console import (
-    Progress,
+    Clock,
     UsageError,
     shown_progress,
     tell_notice,
     tell_notices,
-    time_left,
 )
 from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
@@ -42,6 +41,7 @@ from vehicle_pf_tracker.cli.requests import (
 )
 from vehicle_pf_tracker.cli.tracking_options import parse_box
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.estimates import write_estimates
 from vehicle_pf_tracker.offline.output_files import make_folder
@@ -52,30 +52,25 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay.replay_options import Progress as ReplayProgress
 
 
-class ReplayWords:
-    """Describes the progress of a replay; rates begin with its first image."""
+@contextmanager
+def shown_replay(
+    stream: TextIO | None = None, clock: Clock = time.monotonic
+) -> Iterator[Callable[[ReplayProgress], None]]:
+    """Return a function that shows a replay's progress; rates begin with its first image."""
+    with shown_progress(stream, clock) as show:
+        began = clock()
 
-    def __init__(self) -> None:
-        self._began = self._pass_began = self._position = 0.0
+        def tell(progress: ReplayProgress) -> None:
+            nonlocal began
+            if progress.frames == 1:
+                began = clock()
+            count, seconds = progress.frames, clock() - began
+            words = f"{count} frame{'s' * (count > 1)}"
+            if seconds > 0:
+                words += f", {(count - 1) / seconds:.1f} frames/s"
+            show(words, progress.position / progress.length if progress.position else None)
 
-    def __call__(self, progress: ReplayProgress, elapsed: float) -> Progress:
-        """Describe the replay `elapsed` s after its beginning."""
-        if progress.frames == 1:
-            self._began = elapsed
-        if progress.frames == 1 or progress.position < self._position:  # a loop begins again
-            self._pass_began = elapsed
-        self._position = progress.position
-        words, seconds = (
-            f"{progress.frames} frame{'s' * (progress.frames > 1)}",
-            elapsed - self._began,
-        )
-        if seconds > 0:
-            words += f", {(progress.frames - 1) / seconds:.1f} frames/s"
-        if not progress.position:
-            return Progress(words)
-        share = progress.position / progress.length
-        left = time_left(share, elapsed - self._pass_began)
-        return Progress(f"{share:4.0%}, {words}, {left}", share)
+        yield tell
 
 
 ANSWERS = ("estimates.csv", "*/estimates.csv")
@@ -85,22 +80,14 @@ ANSWERS = ("estimates.csv", "*/estimates.csv")
 def _seconds(text: str) -> float:
     value = number(text)
     if value < 0:
-        raise argparse.ArgumentTypeError(f"{text} is less than 0")
+        raise InputError(f"{text} is less than 0")
     return value
-
-
-def _pattern(text: str) -> str:
-    try:
-        re.compile(text)
-    except re.error as error:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a pattern: {error}") from None
-    return text
 
 
 def _remapping(text: str) -> tuple[str, str]:
     old, separator, new = text.partition(":=")
     if not (separator and old and new):
-        raise argparse.ArgumentTypeError(f"{text!r} is not FROM:=TO")
+        raise InputError(f"{text!r} is not FROM:=TO")
     return _absolute(old), new
 
 
@@ -128,18 +115,9 @@ class Request(RosOption, OverwriteOption):
     topics: Sequence[str] = option(
         type=_absolute, nargs="+", default=[], metavar="TOPIC", help="play these topics only"
     )
-    regex: str = option("-e", type=_pattern, default="", help="play topics that match this whole")
     exclude: Sequence[str] = option(
         "--exclude", "--exclude-topics", type=_absolute, nargs="+", default=[], metavar="TOPIC",
         help="play all but these topics",
-    )  # fmt: skip
-    exclude_regex: str = option(
-        "-x", type=_pattern, default="", metavar="REGEX",
-        help="play all but topics that match this whole",
-    )  # fmt: skip
-    qos_profile_overrides_path: Path | None = option(
-        type=Path, metavar="FILE",
-        help="YAML of QoS by recorded topic; others are published as recorded, but reliably",
     )  # fmt: skip
     remap: Sequence[tuple[str, str]] = option(
         "-m", nargs="+", action="extend", default=[], type=_remapping,
@@ -163,11 +141,10 @@ class Request(RosOption, OverwriteOption):
     )  # fmt: skip
     target: Box | None = option(
         type=parse_box, metavar="X,Y,W,H",
-        exclusive="target",
         help="box to start on in px, top-left corner and size; otherwise the first true box",
     )  # fmt: skip
     set_target: bool = option(
-        "--no-target", action="store_false", exclusive="target",
+        "--no-target", action="store_false",
         help="neither set the nodes' targets nor reset them",
     )  # fmt: skip
     timeout: float = option(
@@ -188,20 +165,22 @@ def run(request: Request) -> int:
     UsageError
         If options contradict each other, or there is no target to start on.
     """
+    if request.target is not None and not request.set_target:
+        raise UsageError("--target is not allowed with --no-target; leave one out")
     if request.loop and request.output:
         raise UsageError("-o cannot be combined with --loop, which never ends")
-    from vehicle_pf_tracker.ros.replay.replaying import NoTargetError, noted_interrupts, replay
+    from vehicle_pf_tracker.ros.replay.player import NoTargetError
+    from vehicle_pf_tracker.ros.replay.replaying import noted_interrupts, replay
 
     recording = Recording(request.recording, request.topic)
     told = recording.notices
     tell_notices(told)
     outputs = [Products(request.output, ANSWERS)] if request.output else []
-    inputs = (request.recording, request.qos_profile_overrides_path)
-    with claimed(outputs, inputs, overwrite=request.overwrite), noted_interrupts():
+    with claimed(outputs, (request.recording,), overwrite=request.overwrite), noted_interrupts():
         if request.output:
             make_folder(request.output)
         try:
-            with shown_progress(ReplayWords()) as on_progress:
+            with shown_replay() as on_progress:
                 report = replay(recording, options_of(request), on_progress, tell_notice)
         except NoTargetError as error:
             raise UsageError(str(error)) from None
@@ -215,13 +194,11 @@ def run(request: Request) -> int:
 
 def options_of(request: Request) -> ReplayOptions:
     """Return the options of the player, most of which are fields of the request."""
-    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, read_qos_overrides
+    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
     names = {one.name for one in fields(ReplayOptions)} & {one.name for one in fields(request)}
     shared = {name: getattr(request, name) for name in names}
-    qos_file = request.qos_profile_overrides_path
-    qos = read_qos_overrides(qos_file) if qos_file else {}
-    return ReplayOptions(**{**shared, "qos": qos, "remap": dict(request.remap)})
+    return ReplayOptions(**{**shared, "remap": dict(request.remap)})
 
 
 def write_answers(folder: Path, nodes: Sequence[NodeReport]) -> list[Path]:

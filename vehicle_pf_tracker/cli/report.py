@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,20 +27,6 @@ from vehicle_pf_tracker.core.outputs import Products, claimed
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report import Report
 
-FIGURE_FORMATS = ("pdf", "svg", "png")
-"""Those of `evaluation.report.writing.FORMATS`, which loads matplotlib."""
-
-
-def _formats(text: str) -> tuple[str, ...]:
-    """Read ``pdf,svg,png``."""
-    formats = tuple(dict.fromkeys(text.split(",")))
-    for name in formats:
-        if name not in FIGURE_FORMATS:
-            raise argparse.ArgumentTypeError(
-                f"{name!r} is not a format of figures; choose from {', '.join(FIGURE_FORMATS)}"
-            )
-    return formats
-
 
 @dataclass(frozen=True, kw_only=True)
 class ReportParts(VerbRequest):
@@ -51,17 +36,8 @@ class ReportParts(VerbRequest):
         "--no-images", action="store_false",
         help="leave the stills of the recordings out of report.html",
     )  # fmt: skip
-    video: bool = switch(help="write videos with the boxes to DIR/videos")
     recordings: bool = switch(
         help="write the recordings with truth and all estimates to DIR/estimates, for Foxglove"
-    )
-    figures: tuple[str, ...] = option(
-        type=_formats, default=(), metavar="FORMATS",
-        help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
-        "pdf, svg or png, several with commas",
-    )  # fmt: skip
-    trajectories: bool = switch(
-        help="write truth and estimates as TUM files to DIR/trajectories, for evo"
     )
 
 
@@ -85,12 +61,15 @@ def run(request: Request) -> int:
 
 def write(folder: Path, request: ReportParts) -> Report:
     """Write the report of `folder` with the parts that are asked for."""
-    from vehicle_pf_tracker.evaluation.report import ReportOptions, write_report
+    from vehicle_pf_tracker.evaluation.report import write_report
 
-    options = ReportOptions(
-        request.images, request.video, request.recordings, request.trajectories, request.figures
-    )
     with stages("report") as on_stage:
-        report = write_report(folder, options, tell_notice, on_stage)
+        report = write_report(
+            folder,
+            images=request.images,
+            recordings=request.recordings,
+            notify=tell_notice,
+            on_stage=on_stage,
+        )
     print(f"the report is {report.paths[0]}")
     return report

@@ -26,7 +26,7 @@ from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.console import UsageError, counting
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional, positive
 from vehicle_pf_tracker.core.outputs import claimed
-from vehicle_pf_tracker.offline.drawing import draw_pixel_grid, draw_road_grid
+from vehicle_pf_tracker.offline.drawing import draw_road_grid
 from vehicle_pf_tracker.offline.output_files import write_picture, write_text
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.files import to_yaml
@@ -65,8 +65,7 @@ class Request(OverwriteOption):
     frame_id: str = option(default="road", help="frame of the road (default: road)")
     grid: Path | None = option(
         type=Path, metavar="PNG",
-        help="picture with the road's lines; without pairs and -o, with pixel coordinates to read "
-        "points off instead of a page",
+        help="picture with the road's lines; `pick --grid` writes one with pixel coordinates",
     )  # fmt: skip
     output: Path | None = option(
         "-o", type=Path, metavar="YAML", help="parameter file for nodes and `run`"
@@ -88,10 +87,6 @@ def run(request: Request) -> int:
 def _calibrate(request: Request, source: Source, pairs: tuple[Pair, ...]) -> int:
     with counting("read") as progress:
         frame = frame_at(source, request.frame, progress)
-    if not pairs and request.grid is not None and request.output is None:
-        write_picture(request.grid, draw_pixel_grid(frame))
-        print(f"{request.grid}: read off pixels of points whose place on the road you know")
-        return 0
     pairs = pairs or tuple(pick.ask(source, pick.POINTS, request.frame))
     if not pairs:
         raise UsageError("nothing was picked")

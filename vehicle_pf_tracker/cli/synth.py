@@ -137,11 +137,11 @@ def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
     size = scene.width, scene.height
     with (
         claimed([out, table], [], overwrite=overwrite),
-        video_writer(out, size, scene.frame_rate) as writer,
+        video_writer(out, size, scene.frame_rate) as write,
         counting("rendered") as progress,
     ):
         for number, rendered in enumerate(scene.frames(), start=1):
-            writer.write(rendered.frame)
+            write(rendered.frame, (number - 1) / scene.frame_rate)
             box = rendered.truth.box
             boxes.append(box)
             cells = (f"{value:.3f}" for value in (box.x, box.y, box.width, box.height))
@@ -169,7 +169,7 @@ def _listing() -> Iterator[str]:
 
 def _settings(parameters: type[Any]) -> Iterator[str]:
     for spec in specs(parameters).values():
-        facts = ", ".join(filter(None, (spec.unit, spec.bounds, " | ".join(spec.choices))))
+        facts = ", ".join(filter(None, (spec.unit, spec.bounds_text, " | ".join(spec.choices))))
         yield f"  {spec.name}={spec.default} [{facts}]: {spec.doc}"
 
 

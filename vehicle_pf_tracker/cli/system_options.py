@@ -102,34 +102,6 @@ def read_sets(
     return everywhere, list(sets.values())
 
 
-def check_sets(
-    variants: Sequence[Variant], everywhere: Iterable[str], sets: Iterable[ParameterSet]
-) -> None:
-    """Check that sets and assignments are for `variants`.
-
-    Raises
-    ------
-    InputError
-        If one is for none of them.
-    """
-    names = [variant.name for variant in variants]
-    for each in sets:
-        if not names:
-            raise InputError(
-                f"the parameter set {each.name} is for no variant: there are only baselines"
-            )
-        if each.variant is not None and each.variant not in names:
-            raise InputError(
-                f"the parameter set {each.variant}@{each.name} is for a variant that is not among "
-                f"--variants {','.join(names)}"
-            )
-    known = {name for variant in variants for name in settable(variant)}
-    for word in everywhere:
-        name = word.partition("=")[0]
-        if name not in known:
-            raise InputError(unknown_name(name, known))
-
-
 def fitting_sets(
     variants: Sequence[Variant], sets: Iterable[ParameterSet]
 ) -> tuple[dict[str, list[ParameterSet]], list[str]]:
@@ -141,16 +113,20 @@ def fitting_sets(
         If a set fits no variant.
     """
     fitting: dict[str, list[ParameterSet]] = {variant.name: [] for variant in variants}
-    notes = []
+    notes: list[str] = []
     for each in sets:
-        named = [variant for variant in variants if each.variant in {None, variant.name}]
-        misfits = {variant.name: _misfit(variant, each) for variant in named}
-        reasons = [reason for reason in misfits.values() if reason]
-        if len(reasons) == len(named):
-            raise InputError(reasons[0])
-        notes += reasons
-        for name, reason in misfits.items():
-            fitting[name] += [] if reason else [each]
+        misfits = {}
+        for variant in variants:
+            if each.variant in {None, variant.name}:
+                try:
+                    configure(variant, each)
+                    fitting[variant.name].append(each)
+                except InputError as error:
+                    misfits[variant.name] = f"{variant.name} is not run with {each.name}: {error}"
+        if not any(each in found for found in fitting.values()):
+            missing = f"the parameter set {each.name} is for no variant among --variants"
+            raise InputError(next(iter(misfits.values()), missing))
+        notes += misfits.values()
     return fitting, notes
 
 
@@ -175,22 +151,13 @@ def settable(variant: Variant) -> dict[str, ParameterSpec]:
     return {n: s for n, s in table.items() if n != "seed" and not n.startswith("target.")}
 
 
-def _misfit(variant: Variant, parameter_set: ParameterSet) -> str:
-    """Say why a variant cannot run with a set; empty if it can."""
-    try:
-        configure(variant, parameter_set)
-    except InputError as error:
-        return f"{variant.name} is not run with {parameter_set.name}: {error}"
-    return ""
-
-
 @dataclass(frozen=True, kw_only=True)
 class EvaluationRequest(WorkersOption):
     """Request to compare systems, in any way."""
 
     sources: Sequence[str] = positional(
         nargs="+", metavar="REC",
-        help="rosbag2 folder or MCAP file with truth, a folder of such, or a URL of one",
+        help="rosbag2 folder or MCAP file with truth, or a folder of such",
     )  # fmt: skip
     output: Path = option(
         "-o", type=Path, required=True, metavar="DIR",
@@ -220,8 +187,8 @@ class EvaluationRequest(WorkersOption):
     without_defaults: bool = switch(help="run the parameter sets alone, where a variant has any")
     baselines_python: Path | None = option(
         type=Path, metavar="FILE",
-        help="interpreter of the baselines (default: .venv-baselines/bin/python, built by "
-        "`make baselines`)",
+        help="interpreter of the baselines (default: .venv-baselines/bin/python, else the one "
+        "in your cache; without either, evaluate prints the command that builds it)",
     )  # fmt: skip
     baseline_model: Sequence[str] = option(
         action="append", default=[], metavar="BASELINE:NAME=FILE",
@@ -242,7 +209,10 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
     words = _words(request.variants)
     variants = [find_variant(word) for word in words if not word.startswith(BASELINE)]
     everywhere, sets = read_sets(request.params, request.assignments)
-    check_sets(variants, everywhere, sets)
+    known = {name for variant in variants for name in settable(variant)}
+    for name in (word.partition("=")[0] for word in everywhere):
+        if name not in known:
+            raise InputError(unknown_name(name, known))
     fitting, notes = fitting_sets(variants, sets)
     systems: list[System] = []
     for variant in variants:
@@ -252,11 +222,8 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
     models = _models(request.baseline_model)
     for word in words:
         if word.startswith(BASELINE):
-            systems.append(
-                _baseline_system(
-                    word.removeprefix(BASELINE), request.baselines_python, models, notes
-                )
-            )
+            name = word.removeprefix(BASELINE)
+            systems.append(_baseline_system(name, request.baselines_python, models, notes))
     return systems, notes
 
 

@@ -24,14 +24,12 @@ from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notices
 from vehicle_pf_tracker.cli.requests import option, switch
+from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.cli.tracking_options import (
     TrackingRequest,
     by_name,
     chosen,
-    cut_short,
-    numbered_frames,
-    peeked,
 )
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -45,7 +43,6 @@ from vehicle_pf_tracker.offline.traffic_results import (
     COUNTS,
     MOT_TRACKS,
     TRACKS,
-    limited,
     track_files,
 )
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
@@ -108,7 +105,7 @@ def run(request: Request) -> int:
             *(detections.notices if detections is not None else []),
             *notices,
         ]
-        tell_notices(limited(notices))
+        tell_notices(notices)
         _write(request, configuration, tracking, source, notices, folder)
     for sentence in tracking.summary.sentences(tracking.counter):
         print(sentence)
@@ -148,14 +145,14 @@ def _follow(
     request: Request, tracking: TrafficRun, source: Source, folder: Path
 ) -> tuple[int, list[str]]:
     """Follow all vehicles to the end or to a signal; return the exit status, and notices."""
-    pictures = Pictures(request.video, window=request.source if request.show else "")
+    pictures = Pictures(request.video)
     counts = tracking.counter is not None
     with (
         stopping() as stop,
         counting("tracked") as progress,
         track_files(folder, counting=counts, visible_only=request.visible_only) as files,
     ):
-        first, frames = peeked(numbered_frames(source, request, stop, progress))
+        first, frames = numbered_part(source, request.start, request.end, stop, progress)
         targets = by_name(request.given_targets(), first[0])
         tracking.follow(frames, files, pictures, targets)
     ended = cut_short(stop, source, tracking.summary.frames)

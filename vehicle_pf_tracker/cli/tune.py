@@ -35,8 +35,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
-from vehicle_pf_tracker.evaluation.grid.plan import Plan
+from vehicle_pf_tracker.evaluation.grid.cells import Plan, VariantSystem
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.report import write_report
@@ -208,10 +207,10 @@ def _compare(
     )
     with telling("compare") as on_progress:
         complete(plan, folder, on_this_machine(request.workers), on_progress)
-    write_report(folder)
+    report = write_report(folder)
     held_out = [source.name for source, _ in recordings if source not in what.sources]
     metrics = dict.fromkeys([what.objective.metric, "rmse_px"])
-    return compare(plan, folder, held_out, list(metrics))
+    return compare(report.evaluation, held_out, list(metrics))
 
 
 def _write_best(

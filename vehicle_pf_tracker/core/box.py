@@ -24,6 +24,9 @@ import math
 from dataclasses import dataclass
 from typing import TypeAlias
 
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 
 Position: TypeAlias = tuple[float, float]
@@ -79,6 +82,13 @@ class Box:
 
     def __str__(self) -> str:
         return f"{self.x:g},{self.y:g},{self.width:g},{self.height:g}"
+
+
+def intersections(edges: Array, others: Array) -> Array:
+    """Measure the common areas in px² of boxes (..., 4): left, top, right and bottom edges."""
+    width = np.minimum(edges[..., 2], others[..., 2]) - np.maximum(edges[..., 0], others[..., 0])
+    height = np.minimum(edges[..., 3], others[..., 3]) - np.maximum(edges[..., 1], others[..., 1])
+    return np.asarray(np.maximum(width, 0.0) * np.maximum(height, 0.0))
 
 
 def check_target(box: Box, width: int, height: int) -> Box:

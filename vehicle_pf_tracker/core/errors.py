@@ -12,11 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Mistakes that a user can correct: their exception, suggestions for names, and a memory limit."""
+"""Mistakes that a user can correct: their exception, and suggestions for names."""
 
 from __future__ import annotations
 
-import resource
 from collections.abc import Iterable
 from difflib import get_close_matches
 
@@ -41,24 +40,3 @@ def suggestion(name: str, known: Iterable[str]) -> str:
         by_part = {one.rpartition(".")[2]: one for one in reversed(names)}
         close = [by_part[part] for part in get_close_matches(name.rpartition(".")[2], by_part, n=1)]
     return f" (did you mean {close[0]!r}?)" if close else ""
-
-
-LEAST_ADDRESS_SPACE = 2**30
-"""Bytes of addresses that a node and `run` need for their libraries: with 900 MB compiling kernels
-ended the process without a word, with 1000 MB nodes and runs of `apf` and `fusion` ended well."""
-
-
-def check_address_space() -> None:
-    """Refuse a limit (``ulimit -v``) that the libraries do not fit in.
-
-    Raises
-    ------
-    InputError
-        If there is one.
-    """
-    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
-    if limit not in (-1, resource.RLIM_INFINITY) and limit < LEAST_ADDRESS_SPACE:
-        raise InputError(
-            f"memory is limited to {limit / 1e6:.0f} MB (ulimit -v); "
-            f"{LEAST_ADDRESS_SPACE / 1e6:.0f} MB are needed"
-        )

@@ -20,16 +20,14 @@
     recordings/<recording>/truth.csv
     cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json, run.json and digests.json; or
     cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
-    timings.json                                         of a serial pass, where it was asked for
-    robustness/<kind>/<recording>/<system>/seed-<n>/     where it was asked for
 """
 
 from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping
-from dataclasses import asdict, astuple, dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +50,7 @@ class Source:
     name : str
         Name of the recording in all tables, and of its folders.
     path : str
-        Path or URL of the recording.
+        Path of the recording.
     topic : str
         The image topic.
     frames, width, height : int
@@ -68,23 +66,6 @@ class Source:
     width: int
     height: int
     digest: str
-
-    @classmethod
-    def from_json(cls, entry: Mapping[str, Any]) -> Source:
-        """Read what `to_json` gave.
-
-        Raises
-        ------
-        KeyError, TypeError, ValueError
-            If it is something else.
-        """
-        kinds: dict[str, Any] = {"frames": int, "width": int, "height": int}
-        return cls(**{field.name: kinds.get(field.name, str)(entry[field.name])
-                      for field in fields(cls)})  # fmt: skip
-
-    def to_json(self) -> dict[str, Any]:
-        """Return plain values for JSON."""
-        return asdict(self)
 
 
 COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
@@ -114,26 +95,21 @@ def read_truth(path: Path) -> dict[int, Truth]:
         If there is no such file, or a line of it is not as `write_truth` writes it.
     """
     try:
-        with path.open(newline="", encoding="utf-8") as stream:
-            reader = csv.DictReader(stream)
-            return dict(_row(path, reader.line_num, line) for line in _checked(path, reader))
+        lines = list(csv.reader(path.read_text(encoding="utf-8").splitlines()))
     except OSError as error:
         raise InputError(f"cannot read the truth {path}: {error.strerror}") from error
-
-
-def _checked(path: Path, reader: csv.DictReader[str]) -> csv.DictReader[str]:
-    if tuple(reader.fieldnames or ()) != COLUMNS:
+    if lines[:1] != [list(COLUMNS)]:
         raise InputError(f"the truth {path} must begin with the line {','.join(COLUMNS)}")
-    return reader
+    return dict(_row(path, number, line) for number, line in enumerate(lines[1:], start=2))
 
 
-def _row(path: Path, number: int, line: Mapping[str, str]) -> tuple[int, Truth]:
+def _row(path: Path, number: int, line: Sequence[str]) -> tuple[int, Truth]:
     try:
-        box = Box(*(float(line[name]) for name in ("x", "y", "width", "height")))
+        frame, stamp_ns, *numbers, occlusion = line
+        box = Box(*map(float, numbers))
         if not all(abs(value) <= LARGEST_PX for value in astuple(box)):
             raise ValueError(f"a box beyond {LARGEST_PX:.0f} px")
-        occlusion = Occlusion[line["occlusion"].upper()]
-        return int(line["frame"]), Truth(int(line["stamp_ns"]), box, occlusion)
+        return int(frame), Truth(int(stamp_ns), box, Occlusion[occlusion.upper()])
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"line {number} of the truth {path} is broken: {error}") from error
 
@@ -141,7 +117,6 @@ def _row(path: Path, number: int, line: Mapping[str, str]) -> tuple[int, Truth]:
 FORMAT = 2
 """Format of the folder; folders of another format are refused."""
 PLAN, FAILED = "evaluation.json", "failed.json"
-TIMINGS = "timings.json"
 TRUTH = "truth.csv"
 
 
@@ -159,8 +134,8 @@ class SystemEntry:
         Label of its parameter set; empty for the defaults.
     overrides, parameters : mapping of str to Any
         Parameters set on the command line, and all parameters in effect.
-    seeds : tuple of int or None
-        Seeds of its runs; only the first for a deterministic system. None takes those of the plan.
+    seeds : tuple of int
+        Seeds of its runs; only the first for a deterministic system.
     """
 
     label: str
@@ -168,7 +143,7 @@ class SystemEntry:
     parameter_set: str
     overrides: Mapping[str, Any]
     parameters: Mapping[str, Any]
-    seeds: tuple[int, ...] | None = None
+    seeds: tuple[int, ...]
 
     @property
     def effective(self) -> dict[str, Any]:
@@ -224,15 +199,11 @@ class EvaluationFolder:
                 f"{self.plan['format']}, not {FORMAT}): evaluate again into another folder"
             )
         try:
-            self.recordings = tuple(Source.from_json(entry) for entry in self.plan["recordings"])
-            self.systems = tuple(_system(entry) for entry in self.plan["systems"])
+            self.recordings = tuple(_source(entry) for entry in self.plan["recordings"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
+            self.systems = tuple(_system(entry, self.seeds) for entry in self.plan["systems"])
         except (KeyError, TypeError, ValueError) as error:
             raise InputError(f"the plan {path / PLAN} is broken: {error!r}") from error
-
-    def seeds_of(self, system: SystemEntry) -> tuple[int, ...]:
-        """Return the seeds that a system runs with."""
-        return self.seeds if system.seeds is None else system.seeds
 
     def truth(self, recording: str) -> dict[int, Truth]:
         """Return the truths of a recording by the number of their frame; empty without any."""
@@ -254,15 +225,10 @@ class EvaluationFolder:
         rows = tuple(read_estimates(folder / ESTIMATES))
         return Cell(recording, system, seed, rows, read_document(folder / RUN), "")
 
-    def timings(self) -> Mapping[str, Any] | None:
-        """Return `timings.json`; None where the speed was not measured."""
-        path = self.path / TIMINGS
-        return read_document(path) if path.is_file() else None
 
-
-def cell_folder(folder: Path, recording: str, system: str, seed: int, cells: str = "cells") -> Path:
+def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:
     """Return the folder of one cell of the evaluation in `folder`."""
-    return folder / cells / recording / safe_name(system) / f"seed-{seed}"
+    return folder / "cells" / recording / safe_name(system) / f"seed-{seed}"
 
 
 def safe_name(label: str) -> str:
@@ -289,13 +255,18 @@ def read_document(path: Path) -> dict[str, Any]:
     return document
 
 
-def _system(entry: Mapping[str, Any]) -> SystemEntry:
-    kind = entry["variant"] if entry.get("variant") else f"baseline:{entry['baseline']}"
+def _source(entry: Mapping[str, Any]) -> Source:
+    name, path, topic, digest = (str(entry[key]) for key in ("name", "path", "topic", "digest"))
+    frames, width, height = (int(entry[key]) for key in ("frames", "width", "height"))
+    return Source(name, path, topic, frames, width, height, digest)
+
+
+def _system(entry: Mapping[str, Any], seeds: Sequence[int]) -> SystemEntry:
     return SystemEntry(
         label=str(entry["label"]),
-        kind=str(kind),
+        kind=str(entry.get("variant") or f"baseline:{entry['baseline']}"),
         parameter_set=str(entry.get("parameter_set") or ""),
         overrides=entry.get("overrides") or {},
         parameters=entry.get("parameters") or {},
-        seeds=tuple(map(int, entry["seeds"])) if "seeds" in entry else None,
+        seeds=tuple(map(int, entry.get("seeds", seeds))),
     )

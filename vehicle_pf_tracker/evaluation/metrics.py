@@ -77,8 +77,7 @@ def precision_curve(frames: Sequence[FrameScore]) -> Curve | None:
 
     Source: Wu, Lim, Yang 2013, section 4 (OTB).
     """
-    errors = [frame.error for frame in frames]
-    return _at_most(errors, PRECISION_THRESHOLDS)
+    return _at_most([frame.error for frame in frames], PRECISION_THRESHOLDS)
 
 
 def normalised_precision_curve(frames: Sequence[FrameScore]) -> Curve | None:
@@ -86,8 +85,7 @@ def normalised_precision_curve(frames: Sequence[FrameScore]) -> Curve | None:
 
     Source: Mueller et al. 2018, section 4 (TrackingNet); Fan et al. 2019 (LaSOT).
     """
-    errors = [frame.normalised_error for frame in frames]
-    return _at_most(errors, NORMALISED_THRESHOLDS)
+    return _at_most([frame.normalised_error for frame in frames], NORMALISED_THRESHOLDS)
 
 
 def success_curve(frames: Sequence[FrameScore]) -> Curve | None:
@@ -240,9 +238,8 @@ def measure(scores: Scores) -> Metrics:
 
 def is_on_target(frame: FrameScore) -> bool:
     """Return whether the error is below half the true box's diagonal."""
-    if frame.truth is None or frame.error is None:
-        return False
-    return frame.error < frame.truth.box.diagonal / 2
+    error, truth = frame.error, frame.truth
+    return truth is not None and error is not None and error < truth.box.diagonal / 2
 
 
 def _errors_of(counted: Sequence[FrameScore]) -> dict[str, Any]:

@@ -12,10 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Recovery from total occlusions, and failures with re-starts.
+"""Recovery from total occlusions, and failures.
 
 As in the VOT challenge, an estimate without overlap with the truth is a failure. In a total
-occlusion the vehicle cannot be seen: its frames do not fail, and no tracker is re-started in them.
+occlusion the vehicle cannot be seen: its frames do not fail.
 Source: Kristan et al. 2016, "A novel performance evaluation methodology for single-target
 trackers".
 """
@@ -23,18 +23,11 @@ trackers".
 from __future__ import annotations
 
 import itertools
-import math
 import statistics
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import closing
-from dataclasses import asdict, dataclass
-from typing import Any, Protocol
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
-from vehicle_pf_tracker.core.clock import associate
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
-from vehicle_pf_tracker.offline.estimates import WAITING, EstimateRow
+from vehicle_pf_tracker.evaluation.scores import FrameScore
 
 SETTLING_FRAMES = 15
 """Frames after the last hidden one before a track is judged: half a second at 30 Hz, in which a
@@ -145,170 +138,15 @@ def _mean_error(frames: Sequence[FrameScore]) -> float | None:
     return statistics.fmean(errors) if errors else None
 
 
-RESTART_AFTER = 5
-"""Frames from a failure to the first possible re-start: VOT's value (Kristan et al. 2016)."""
-BURN_IN = 10
-"""Frames from a start left out of the accuracy: VOT's value (Kristan et al. 2016)."""
-ROBUSTNESS_FRAMES = 30
-"""Frames of which robustness is the probability to survive them: VOT's S = 30."""
-
-
-@dataclass(frozen=True, slots=True)
-class RestartedRun:
-    """Score of a run with re-starts.
-
-    Attributes
-    ----------
-    failures : int
-        Number of failures.
-    frames : int
-        Scored frames that were tracked: those between a failure and the next start are left out.
-    accuracy : float or None
-        Mean overlap, 0 to 1, over tracked frames that are not hidden and past the burn-in.
-    robustness : float or None
-        ``exp(-30 failures / frames)``: the probability to survive 30 frames.
-    """
-
-    failures: int
-    frames: int
-    accuracy: float | None
-    robustness: float | None
-
-
 def is_failure(frame: FrameScore) -> bool:
     """Return whether the estimate misses a visible vehicle; False where nothing is scored."""
     return frame.counts and not frame.hidden and not frame.overlap
 
 
-def first_failure(frames: Sequence[FrameScore], begin: int = 0) -> int | None:
-    """Return the index of the first failure from the index `begin` on; None if there is none."""
-    return next((i for i in range(begin, len(frames)) if is_failure(frames[i])), None)
-
-
-def restart_index(frames: Sequence[FrameScore], failure: int) -> int | None:
-    """Return the index at which to start anew after the failure at index `failure`.
-
-    That is the first frame, `RESTART_AFTER` frames on or later, in which the vehicle is in full
-    view; None if there is none.
-    """
-    later = range(failure + RESTART_AFTER, len(frames))
-    return next((i for i in later if _in_full_view(frames[i])), None)
-
-
 def count_failures(frames: Sequence[FrameScore]) -> int:
-    """Count the stretches of failures in a run without re-starts.
+    """Count the stretches of failures in a run.
 
     Frames in which the vehicle is hidden or the truth is unknown do not end a stretch.
     """
     judged = (is_failure(frame) for frame in frames if frame.counts and not frame.hidden)
     return sum(failed for failed, _ in itertools.groupby(judged))
-
-
-def score_restarts(frames: Sequence[FrameScore], starts: Sequence[int]) -> RestartedRun:
-    """Score a run that was started at the indices `starts`.
-
-    Parameters
-    ----------
-    frames : sequence of FrameScore
-        The whole recording; each frame with the estimate of the start before it.
-    starts : sequence of int
-        Indices in order; from the second on each follows a failure.
-    """
-    ends = [*starts[1:], len(frames)]
-    failures, tracked, overlaps = 0, 0, list[float]()
-    for start, end in zip(starts, ends, strict=True):
-        failure = first_failure(frames[:end], start)
-        failures += failure is not None
-        lived = frames[start : end if failure is None else failure]
-        tracked += sum(frame.counts for frame in lived)
-        clear = (frame for frame in lived[BURN_IN:] if frame.counts and not frame.hidden)
-        overlaps += [frame.overlap or 0.0 for frame in clear]
-    return RestartedRun(
-        failures=failures,
-        frames=tracked,
-        accuracy=statistics.fmean(overlaps) if overlaps else None,
-        robustness=math.exp(-ROBUSTNESS_FRAMES * failures / tracked) if tracked else None,
-    )
-
-
-def _in_full_view(frame: FrameScore) -> bool:
-    return frame.truth is not None and frame.truth.occlusion is Occlusion.NONE
-
-
-class _Footage(Protocol):
-    @property
-    def truth(self) -> tuple[Truth, ...]: ...
-
-    def frames(self) -> Iterator[tuple[int, Frame | None]]: ...
-
-
-class _Follower(Protocol):
-    def rows(self, frames: Iterable[tuple[int, Frame | None]]) -> Iterator[EstimateRow]: ...
-
-
-def follow_restarted(
-    footage: _Footage, make: Callable[[Truth], _Follower], max_diff: float
-) -> tuple[list[EstimateRow], dict[str, Any]]:
-    """Track through a recording, started anew on the truth after each failure.
-
-    Between a failure and the next start the rows are ``WAITING``.
-
-    Parameters
-    ----------
-    footage : Footage
-        The recording.
-    make : callable
-        Makes the tracker of the vehicle, from the truth to start on.
-    max_diff : float
-        Largest difference of stamps that belong together, in s.
-
-    Returns
-    -------
-    rows : list of EstimateRow
-        One per frame.
-    summary : dict
-        The fields of `RestartedRun`, and the numbers of the frames started in.
-    """
-    stamps = [stamp for stamp, _ in footage.frames()]
-    waiting = [EstimateRow.without(n, stamp, WAITING) for n, stamp in enumerate(stamps, start=1)]
-    blank = score_frames(waiting, footage.truth, max_diff).frames
-    rows: list[EstimateRow] = []
-    starts: list[int] = []
-    begin = _first(stamps, footage.truth, max_diff)
-    while begin is not None:
-        truth = blank[begin].truth
-        assert truth is not None
-        rows += waiting[len(rows) : begin]
-        starts.append(begin)
-        frames = itertools.islice(footage.frames(), begin, None)
-        failure = _follow(make(truth), frames, blank, rows)
-        begin = None if failure is None else restart_index(blank, failure)
-    rows += waiting[len(rows) :]
-    run = score_restarts(score_frames(rows, footage.truth, max_diff).frames, starts)
-    return rows, {**asdict(run), "start_frames": [start + 1 for start in starts]}
-
-
-def _first(stamps: Sequence[int], truths: Sequence[Truth], max_diff: float) -> int | None:
-    """Return the index of the frame that the first truth belongs to."""
-    return min(associate(stamps, [truth.stamp_ns for truth in truths], max_diff), default=None)
-
-
-def _follow(
-    follower: _Follower,
-    frames: Iterator[tuple[int, Frame | None]],
-    blank: Sequence[FrameScore],
-    rows: list[EstimateRow],
-) -> int | None:
-    """Add rows up to the first failure, and return its index; None if it comes to the end."""
-    begin = len(rows)
-    standing: EstimateRow | None = None
-    generator = follower.rows(frames)
-    with closing(generator):  # type: ignore[type-var]
-        for row in generator:
-            index = len(rows)
-            rows.append(EstimateRow(**{**asdict(row), "frame": index + 1}))
-            score = FrameScore(rows[-1], blank[index].truth, standing)
-            if index > begin and first_failure([score]) is not None:
-                return index
-            standing = score.scored_row
-    return None

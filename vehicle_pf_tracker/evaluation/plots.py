@@ -17,15 +17,17 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import Normal, Stroke
 
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
@@ -61,23 +63,6 @@ OUTLINE = (Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal())
 """Keeps lines visible on any scenery."""
 
 
-def draw_errors(axes: Axes, runs: Mapping[str, Scores], title: str) -> None:
-    """Draw the error over time, with the occlusions shaded and without a legend."""
-    for scores in itertools.islice(runs.values(), 1):
-        shade_occlusions(axes, scores)
-    for (name, scores), style in zip(runs.items(), itertools.cycle(STYLES), strict=False):
-        drawn = [(f.row.frame, f.error) for f in scores.counted]
-        errors = [float("nan") if e is None else max(e, _LEAST_ERROR) for _, e in drawn]
-        frames = [number for number, _ in drawn]
-        axes.plot(frames, errors, color=style.colour, linestyle=style.line, lw=1.6, label=name)
-    axes.axhline(CLOSE_PX, color="0.35", lw=0.8, ls=(0, (1, 2)), label=f"{CLOSE_PX:g} px")
-    axes.set(xlabel="frame", ylabel="error of the centre, px", yscale="log", title=title)
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.margins(x=0.01)
-    axes.grid(axis="y", color="0.88", lw=0.6)
-    axes.set_axisbelow(True)
-
-
 def overview_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -> Figure:
     """Draw the true and estimated paths over a frame, and the error over time below.
 
@@ -96,10 +81,13 @@ def overview_figure(frame: Frame, runs: Mapping[str, Scores], title: str = "") -
     figure = Figure(figsize=(9, 9 * height / width + 4.5), layout="constrained")
     ratios = (9 * height / width + 0.8, 3.7)
     rows = figure.subfigures(2, 1, squeeze=False, height_ratios=ratios)[:, 0]
-    _draw_paths(rows[0].add_subplot(), frame, runs, title)
-    axes = rows[1].add_subplot()
-    draw_errors(axes, runs, "")
-    _add_legend(axes)
+    _draw_paths(rows[0].add_subplot(title=title), frame, runs)
+    _draw_errors(rows[1].add_subplot(), runs)
+    for part in rows:  # below the labels of the axes; the pad is in font sizes
+        part.axes[0].legend(
+            loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.6, ncols=6,
+            frameon=False,
+        )  # fmt: skip
     return figure
 
 
@@ -118,26 +106,53 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(partial, dpi=_DPI, metadata=metadata)
 
 
-def _draw_paths(axes: Axes, frame: Frame, runs: Mapping[str, Scores], title: str) -> None:
+def _draw_errors(axes: Axes, runs: Mapping[str, Scores]) -> None:
+    """Draw the error over time, with the occlusions shaded."""
+    for scores in itertools.islice(runs.values(), 1):
+        shade_occlusions(axes, scores)
+    for (name, scores), style in zip(runs.items(), itertools.cycle(STYLES), strict=False):
+        frames = [frame.row.frame for frame in scores.counted]
+        errors = np.array([frame.error for frame in scores.counted], dtype=np.float64)
+        errors = np.maximum(errors, _LEAST_ERROR)
+        axes.plot(frames, errors, color=style.colour, linestyle=style.line, lw=1.6, label=name)
+    axes.axhline(CLOSE_PX, color="0.35", lw=0.8, ls=(0, (1, 2)), label=f"{CLOSE_PX:g} px")
+    axes.set(xlabel="frame", ylabel="error of the centre, px", yscale="log")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.margins(x=0.01)
+    axes.grid(axis="y", color="0.88", lw=0.6)
+    axes.set_axisbelow(True)
+
+
+def _draw_paths(axes: Axes, frame: Frame, runs: Mapping[str, Scores]) -> None:
     width, height = frame_size(frame)
     axes.imshow(frame, extent=(0, width, height, 0))
     for scores in itertools.islice(runs.values(), 1):
-        true = [(f.truth.box.centre if f.truth else None, f.hidden) for f in scores.frames]
-        _draw_path(axes, true, "truth", "black", "")
-        _draw_first_box(axes, scores)
+        true = [frame.truth.box.centre if frame.truth else None for frame in scores.frames]
+        _draw_path(axes, true, scores, "truth", Style("black", "-", ""))
+        for first in itertools.islice((f.truth for f in scores.counted if f.truth), 1):
+            corners = [*first.box.corners, first.box.corners[0]]
+            axes.plot(*zip(*corners, strict=True), color="black", lw=1.2, path_effects=OUTLINE)
     for (name, scores), style in zip(runs.items(), itertools.cycle(STYLES), strict=False):
-        estimated = [(f.row.position, f.hidden) for f in scores.frames]
-        _draw_path(axes, estimated, name, style.colour, style.marker)
+        _draw_path(axes, [frame.row.position for frame in scores.frames], scores, name, style)
     axes.plot([], [], color="0.4", lw=1.7, ls=_DASHED, label="while hidden")
-    axes.set(xlim=(0, width), ylim=(height, 0), xlabel="x, px", ylabel="y, px", title=title)
-    _add_legend(axes)
+    axes.set(xlim=(0, width), ylim=(height, 0), xlabel="x, px", ylabel="y, px")
 
 
-def _add_legend(axes: Axes) -> None:
-    """Put the legend below the axis labels; the pad is in font sizes."""
-    axes.legend(
-        loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.6, ncols=6, frameon=False
-    )
+def _draw_path(
+    axes: Axes, points: Sequence[Position | None], scores: Scores, name: str, style: Style
+) -> None:
+    """Draw a path solid where the vehicle is seen and dashed where it is hidden; None breaks it."""
+    path = np.array([point or (np.nan, np.nan) for point in points])
+    hidden = np.array([frame.hidden for frame in scores.frames])
+    for is_hidden, line in ((False, "-"), (True, _DASHED)):
+        shown = hidden == is_hidden
+        shown[:-1] |= shown[1:]  # from where the part before ended, so that no gap shows
+        part = np.where(shown[:, np.newaxis], path, np.nan)
+        axes.plot(*part.T, color=style.colour, lw=1.7, ls=line, path_effects=OUTLINE)
+    marks: dict[str, Any] = {"marker": style.marker, "ms": 6, "mec": "white", "mew": 0.8}
+    if style.marker:
+        axes.plot(*path[::_MARKER_EVERY].T, ls="", color=style.colour, **marks)
+    axes.plot([], [], color=style.colour, label=name, **marks)
 
 
 def shade_occlusions(axes: Axes, scores: Scores) -> None:
@@ -157,43 +172,3 @@ def stretches(truths: Mapping[int, Truth], kinds: Collection[Occlusion]) -> list
     grouped = itertools.groupby(sorted(truths), lambda number: truths[number].occlusion in kinds)
     found = [list(numbers) for matches, numbers in grouped if matches]
     return [(numbers[0], numbers[-1]) for numbers in found]
-
-
-def _draw_path(
-    axes: Axes,
-    points: Sequence[tuple[tuple[float, float] | None, bool]],
-    name: str,
-    colour: str,
-    marker: str,
-) -> None:
-    """Draw a path solid where it is seen and dashed where hidden; None breaks it."""
-    for hidden, line in _lines(points):
-        xs, ys = zip(*line, strict=True)
-        style = _DASHED if hidden else "-"
-        axes.plot(xs, ys, color=colour, lw=1.7, ls=style, path_effects=OUTLINE)
-    marks = [point for point, _ in points[::_MARKER_EVERY] if point is not None]
-    xs, ys = zip(*marks, strict=True) if marks and marker else ((), ())
-    axes.plot(xs, ys, ls="", color=colour, marker=marker, ms=6, mec="white", mew=0.8)
-    axes.plot([], [], color=colour, marker=marker, ms=6, mec="white", mew=0.8, label=name)
-
-
-def _lines(
-    points: Sequence[tuple[tuple[float, float] | None, bool]],
-) -> Iterator[tuple[bool, list[tuple[float, float]]]]:
-    """Stretches of one kind, each begun where the one before ended so that no gap shows."""
-    last: tuple[float, float] | None = None
-    for (hidden, gap), group in itertools.groupby(points, lambda p: (p[1], p[0] is None)):
-        if gap:
-            last = None
-            continue
-        line = [point for point, _ in group if point is not None]
-        yield hidden, [last, *line] if last is not None else line
-        last = line[-1]
-
-
-def _draw_first_box(axes: Axes, scores: Scores) -> None:
-    box = next((f.truth.box for f in scores.counted if f.truth is not None), None)
-    if box is not None:
-        corners = [*box.corners, box.corners[0]]
-        xs, ys = zip(*corners, strict=True)
-        axes.plot(xs, ys, color="black", lw=1.2, path_effects=OUTLINE)

@@ -25,7 +25,6 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF, associate
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
@@ -92,12 +91,8 @@ class FrameScore:
     @property
     def overlap(self) -> float | None:
         """Intersection over union of the boxes, 0 to 1; None as `error`, or without a size."""
-        row = self.scored_row
-        if self.truth is None or row is None or row.x is None or row.y is None:
-            return None
-        if row.width is None or row.height is None:
-            return None
-        return Box.around((row.x, row.y), row.width, row.height).iou(self.truth.box)
+        box = self.scored_row.box if self.scored_row else None
+        return None if self.truth is None or box is None else box.iou(self.truth.box)
 
     @property
     def _offset(self) -> tuple[float, float] | None:
@@ -166,9 +161,7 @@ def _standing(rows: Sequence[EstimateRow]) -> Iterator[EstimateRow | None]:
 
 
 def _is_estimate(row: EstimateRow) -> bool:
-    if row.x is None or row.y is None:
-        return False
-    return math.isfinite(row.x) and math.isfinite(row.y)
+    return row.position is not None and all(map(math.isfinite, row.position))
 
 
 def _span(stamps: Sequence[int]) -> str:

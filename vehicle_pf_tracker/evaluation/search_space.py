@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -184,16 +185,14 @@ def _derived(spec: ParameterSpec, value: Value) -> Dimension:
         if not spec.choices:
             raise InputError(f"{spec.name} can be any word, and so not be searched")
         return Dimension(spec.name, str, choices=spec.choices)
-    least, most = spec.minimum, spec.maximum
-    if least is not None and most is not None and most - least <= 1:  # a share
+    least, most = spec.bounds or (-math.inf, math.inf)
+    if most - least <= 1:  # a share
         return Dimension(spec.name, spec.kind, least, most)
     if value <= 0:
         raise InputError(
             f"{spec.name} is {value}, which gives no range: --search {spec.name}=LOW:HIGH"
         )
-    low, high = value / FACTOR, value * FACTOR
-    low = low if least is None else max(low, least)
-    high = high if most is None else min(high, most)
+    low, high = max(value / FACTOR, least), min(value * FACTOR, most)
     if spec.kind is int:
         low, high = max(float(round(low)), 1.0), float(round(high))
     return Dimension(spec.name, spec.kind, low, high, logarithmic=True)

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -71,15 +71,12 @@ class TableCell:
         True if no other in its column is better.
     note : str
         Note shown on demand.
-    heat : float
-        Tint, -1 to 1: its strength and direction.
     """
 
     text: str
     value: float | None = None
     best: bool = False
     note: str = ""
-    heat: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,36 +130,37 @@ class Comparison:
         return csv_text(["metric", "unit", *self.columns], lines)
 
 
+_LINES = (
+    ("error, RMSE", "px", "rmse_px", 1),
+    ("error, RMSE while visible", "px", "rmse_visible_px", 1),
+    ("error, median", "px", "median_px", 1),
+    ("error, largest", "px", "max_px", 1),
+    ("error below 15 px", "share", "p_error_lt_15px", 3),
+    ("on target while visible", "share", "on_target", 3),
+    ("TRACKING while visible", "share", "visible_tracking", 3),
+    ("not TRACKING while hidden", "share", "hidden_not_tracking", 3),
+    ("frames", "", "frames", 1),
+    ("frames scored", "", "frames_scored", 1),
+    ("time per step, median", "ms", "step_ms_p50", 2),
+    ("time per step, 95 %", "ms", "step_ms_p95", 2),
+)
+"""Label, unit, name of the metric and decimals; occlusions stand before the modes."""
+_MODES = 6
+
+
 def comparison(runs: Mapping[str, Metrics]) -> Comparison:
     """Put runs on the same recording side by side, each under its name.
 
     Metrics that no run has are left out.
     """
     metrics = list(runs.values())
-
-    def line(
-        label: str, unit: str, value: Callable[[Metrics], Cell], decimals: int = 1
-    ) -> MetricRow:
-        return MetricRow(label, unit, tuple(map(value, metrics)), decimals)
-
     lines = [
-        line("error, RMSE", "px", lambda m: m.rmse_px),
-        line("error, RMSE while visible", "px", lambda m: m.rmse_visible_px),
-        line("error, median", "px", lambda m: m.median_px),
-        line("error, largest", "px", lambda m: m.max_px),
-        line("error below 15 px", "share", lambda m: m.p_error_lt_15px, 3),
-        line("on target while visible", "share", lambda m: m.on_target, 3),
-        *_occlusion_lines(metrics),
-        line("TRACKING while visible", "share", lambda m: m.visible_tracking, 3),
-        line("not TRACKING while hidden", "share", lambda m: m.hidden_not_tracking, 3),
-        line("frames", "", lambda m: m.frames),
-        line("frames scored", "", lambda m: m.frames_scored),
-        line("time per step, median", "ms", lambda m: m.step_ms_p50, 2),
-        line("time per step, 95 %", "ms", lambda m: m.step_ms_p95, 2),
+        MetricRow(label, unit, tuple(getattr(run, name) for run in metrics), decimals)
+        for label, unit, name, decimals in _LINES
     ]
-    has_values = [any(cell is not None for cell in line.cells) for line in lines]
-    kept = tuple(line for line, filled in zip(lines, has_values, strict=True) if filled)
-    return Comparison(tuple(runs), kept)
+    lines[_MODES:_MODES] = _occlusion_lines(metrics)
+    kept = (line for line in lines if any(cell is not None for cell in line.cells))
+    return Comparison(tuple(runs), tuple(kept))
 
 
 def _occlusion_lines(metrics: list[Metrics]) -> list[MetricRow]:

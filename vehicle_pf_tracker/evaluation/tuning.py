@@ -28,24 +28,23 @@ import statistics
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.evaluation_folder import Source, read_document
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell, VariantSystem, seeds_of
-from vehicle_pf_tracker.evaluation.grid.plan import Plan
 from vehicle_pf_tracker.evaluation.grid.running import Runner
 from vehicle_pf_tracker.evaluation.result_store import ResultStore, scoring_digest
 from vehicle_pf_tracker.evaluation.search_space import Dimension, Objective
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
 from vehicle_pf_tracker.evaluation.tables import NOTHING, csv_text
 from vehicle_pf_tracker.offline.processes import OnProgress, Progress
-from vehicle_pf_tracker.offline.run_folder import METRICS
 from vehicle_pf_tracker.parameters.table import Value
 
 if TYPE_CHECKING:
     import optuna
+
+    from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
 
 
 BATCH = 6
@@ -130,6 +129,7 @@ def search(
     """
     study = _study(what)
     space = {dimension.name: dimension.distribution() for dimension in what.space}
+    fail = _optuna().trial.TrialState.FAIL
     runs = len(what.sources) * len(seeds_of(what.base, what.seeds))
     trials: list[Trial] = []
     while len(trials) < count:
@@ -141,7 +141,7 @@ def search(
             on_progress(Progress(before + done, count * runs, running))
         for one, tried, cells in zip(asked, values, grids, strict=True):
             score = None if cells is None else _score(what, cells, store)
-            _tell(study, one, score)
+            study.tell(one, score, state=fail if score is None else None)
             trials.append(Trial(len(trials), tried, score))
     return trials
 
@@ -208,19 +208,12 @@ def _study(what: SearchTask) -> optuna.Study:
     return study
 
 
-def _tell(study: optuna.Study, trial: optuna.Trial, score: float | None) -> None:
-    if score is None:
-        study.tell(trial, state=_optuna().trial.TrialState.FAIL)
-    else:
-        study.tell(trial, score)
-
-
 def _optuna() -> Any:
     try:
         import optuna  # noqa: PLC0415 - an extra
     except ModuleNotFoundError:
         raise InputError(
-            "tuning needs the extra [tune]: `pip install 'vehicle_pf_tracker[tune]'`"
+            "tuning needs the extra [evaluation]: `pip install 'vehicle_pf_tracker[evaluation]'`"
         ) from None
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     return optuna
@@ -273,43 +266,43 @@ class ComparedMetric:
 
 
 def compare(
-    plan: Plan, folder: Path, held_out: Sequence[str], metrics: Sequence[str]
+    evaluation: ScoredEvaluation, held_out: Sequence[str], metrics: Sequence[str]
 ) -> list[ComparedMetric]:
-    """Compare the two systems of `plan`, the base first, by their cells in `folder`.
+    """Compare the two systems of an evaluation, the base first.
 
     Parameters
     ----------
-    plan : Plan
-        Plan that was completed there.
-    folder : Path
-        Folder of the evaluation.
+    evaluation : ScoredEvaluation
+        The runs of both.
     held_out : sequence of str
         Names of the recordings that the search did not see.
     metrics : sequence of str
         Metrics to compare.
     """
-    runs: dict[str, dict[str, list[dict[str, Any]]]] = {s.label: {} for s in plan.systems}
-    for cell in plan.cells():
-        path = cell.folder(folder) / METRICS
-        document = read_document(path) if path.is_file() else {}
-        runs[cell.system.label].setdefault(cell.source.name, []).append(document)
-    names = [source.name for source in plan.recordings]
+    names = [recording.name for recording in evaluation.recordings]
     parts = {
         TUNED: [name for name in names if name not in held_out],
         HELD_OUT: [name for name in names if name in held_out],
     }
+    failed = {(cell.system, cell.recording) for cell in evaluation.failed}
     lines = []
     for metric, (part, among) in itertools.product(metrics, parts.items()):
-        both = [
-            {name: [run.get(metric) for run in by_recording[name]] for name in among}
-            for by_recording in runs.values()
-        ]
+        base, best = (
+            {
+                name: [
+                    None if (system.label, name) in failed else getattr(run.metrics, metric)
+                    for run in evaluation.of(name, system.label)
+                ]
+                for name in among
+            }
+            for system in evaluation.systems
+        )
         for name in among:
-            means = [mean_of_means({name: values[name]}) for values in both]
-            spreads = [_spread(values[name]) for values in both]
+            means = (mean_of_means({name: runs[name]}) for runs in (base, best))
+            spreads = (_spread(runs[name]) for runs in (base, best))
             lines.append(ComparedMetric(part, name, metric, *means, *spreads))
         if among:
-            over_all = map(mean_of_means, both)
+            over_all = map(mean_of_means, (base, best))
             lines.append(ComparedMetric(part, f"mean of {len(among)}", metric, *over_all))
     return lines
 
@@ -342,14 +335,11 @@ def _number(value: float | None, spread: float | None) -> str:
 
 def verdict(lines: Sequence[ComparedMetric], objective: Objective) -> str:
     """State in a sentence whether the gain holds on held-out recordings."""
-    change = {
-        line.part: line.change
+    sign = 1 if objective.maximise else -1
+    gains = {
+        line.part: None if line.change is None else sign * line.change
         for line in lines
         if line.metric == objective.metric and line.recording.startswith("mean of ")
-    }
-    gains = {
-        part: None if value is None else value * (1 if objective.maximise else -1)
-        for part, value in change.items()
     }
     tuned, held_out = gains.get(TUNED), gains.get(HELD_OUT)
     if tuned is None or tuned <= 0:

@@ -25,9 +25,8 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.flow import PointFlow
-from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE, MotionKernels
+from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE, shared_similarity
 
 _LARGEST_SIDE = 320
 """Side in px that a frame is reduced to: the motion of its background is measured to a fraction of
@@ -125,33 +124,22 @@ class CameraMotion:
         return scale == same == 1 and across == down == 0 and not self.shift.any()
 
 
-def fit_camera_motion(
-    before: Array, after: Array, kernels: MotionKernels = shared_motion
-) -> CameraMotion:
+def fit_camera_motion(before: Array, after: Array) -> CameraMotion:
     """Fit a similarity to the motion that most corners share; none for a camera that stands.
 
     Parameters
     ----------
     before, after : (N, 2) arrays
         Corners in both frames, px.
-    kernels : MotionKernels
-        Kernels that fit.
     """
-    found = kernels.shared_similarity(before, after)
+    found = shared_similarity(before, after)
     return CameraMotion(found[:, :2], found[:, 2])
 
 
 class CameraFlow:
-    """Follows corners of the background from frame to frame.
+    """Follows corners of the background from frame to frame."""
 
-    Attributes
-    ----------
-    kernels : MotionKernels
-        Kernels that fit the motion of the corners.
-    """
-
-    def __init__(self, kernels: MotionKernels = shared_motion) -> None:
-        self.kernels = kernels
+    def __init__(self) -> None:
         self._last: npt.NDArray[np.uint8] | None = None
         self._corners = np.empty((0, 2), np.float32)
         self._age = 0.0
@@ -188,7 +176,7 @@ class CameraFlow:
         moved, found = _FLOW.follow(last, reduced, corners, guess)
         self._corners = moved[found]
         before, after = (ends[found].astype(np.float64) for ends in (corners, moved))
-        motion = fit_camera_motion(before, after, self.kernels)
+        motion = fit_camera_motion(before, after)
         self._motion = motion
         if motion.still:
             self._still += 1

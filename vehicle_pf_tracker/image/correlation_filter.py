@@ -44,6 +44,7 @@ from vehicle_pf_tracker.image.spectra import (
     Penalty,
     SpectralKernels,
     Spectrum,
+    take_filter_step,
     upsampled,
 )
 
@@ -91,7 +92,7 @@ class CorrelationFilter:
     penalty : float
         First ADMM penalty: the larger, the smoother the filter and the less a step changes it.
     kernels : SpectralKernels
-        Products of spectra, in numpy or compiled.
+        Correlation of spectra, in numpy or compiled.
     """
 
     def __init__(self, cells: int, target: Array, penalty: float, kernels: SpectralKernels) -> None:
@@ -119,10 +120,6 @@ class CorrelationFilter:
         """Half spectrum of cells (channels, n, n), faded out towards the border."""
         return self._faded.spectrum_of(features)
 
-    def shifted(self, spectrum: Spectrum, x: float, y: float) -> Spectrum:
-        """Spectrum of the same cells moved by (x, y) cells, circularly."""
-        return self.kernels.shifted(spectrum, x, y)
-
     def train(self, spectrum: Spectrum, stiffness: float) -> None:
         """Learn from one image in whose middle the target is.
 
@@ -144,7 +141,7 @@ class CorrelationFilter:
         multiplier, confined = np.zeros_like(problem.spectrum), np.zeros_like(problem.spectrum)
         for step in range(steps):
             penalty = Penalty(self.penalty * growth**step, growth)
-            self.kernels.take_filter_step(problem, penalty, multiplier, confined)
+            take_filter_step(problem, penalty, multiplier, confined)
             cells = self._target.cells_of(multiplier)
             confined = self._target.spectrum_of(cells)
         return FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)

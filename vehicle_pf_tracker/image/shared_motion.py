@@ -12,14 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motion that most of some points share: a background's, and a turning or growing vehicle's.
-
-In numpy; the kernels in numba compute the same, see `image.kernels`.
-"""
+"""Motion that most of some points share: a background's, and a turning or growing vehicle's."""
 
 from __future__ import annotations
 
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -63,28 +60,6 @@ FEWEST_CARRIED = 8
 """Fewest points that a turn is fitted to."""
 NEARLY = 1.3
 """Factor to the limits within which points take part in the fit of the turn."""
-
-
-class MotionKernels(Protocol):
-    """Fits of shared motion; those of this module, or compiled."""
-
-    def shared_similarity(self, before: Array, after: Array) -> Array:
-        """Fit a similarity; see `shared_similarity`."""
-        ...
-
-    def staying(self, before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
-        """Tell which places turn with most; see `staying`."""
-        ...
-
-    def shared_stretch(self, before: Array, after: Array, size: Array) -> Array:
-        """Change of distances; see `shared_stretch`."""
-        ...
-
-    def carried_share(
-        self, flow: Flow, cells: CellBlock, places: Array, vehicle: Array, background: Array
-    ) -> float:
-        """Share of a box that has moved with its vehicle; see `carried_share`."""
-        ...
 
 
 def shared_similarity(before: Array, after: Array) -> Array:

@@ -20,8 +20,6 @@ import importlib
 import math
 from array import array
 from collections.abc import Callable
-from functools import partial
-from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -47,8 +45,8 @@ def open_network(path: Path) -> Network:
         runtime = importlib.import_module("onnxruntime")
     except ImportError:
         raise InputError(
-            "networks need ONNX Runtime: install the extra [onnx], "
-            "pip install 'vehicle_pf_tracker[onnx]'"
+            "networks need ONNX Runtime: install the extra [video], "
+            "pip install 'vehicle_pf_tracker[video]'"
         ) from None
     if not path.is_file():
         raise InputError(f"there is no network {path}")
@@ -86,8 +84,6 @@ _REQUIRED = 6
 """Columns that a row must have; without a seventh, all detections score 1."""
 _LAST_FRAME = 10**9
 """Largest number of a frame: a year of video."""
-_LONGEST_ROW = 1000
-"""Letters of a row, which is cut off there; one with ten numbers has sixty."""
 _SHOWN = 60
 """Letters of a bad row that an error shows."""
 
@@ -125,14 +121,6 @@ class DetectionFile:
             )
         self._frames, self._rows = frames[order][usable], rows[order][usable, 1:]
 
-    def __len__(self) -> int:
-        return len(self._frames)
-
-    @property
-    def last_frame(self) -> int:
-        """Number of the last frame that has a detection; 0 without any."""
-        return int(self._frames[-1]) if len(self) else 0
-
     def of(self, frame: int) -> Detections:
         """Return the detections of a frame; one without rows is one without vehicles."""
         begin, end = np.searchsorted(self._frames, [frame, frame + 1])
@@ -144,7 +132,7 @@ def _read_rows(path: Path) -> Array:
     numbers = array("d")  # 48 bytes per row: a list of a million rows would take ten times as much
     try:
         with path.open(encoding="utf-8-sig") as file:
-            for number, line in enumerate(iter(partial(file.readline, _LONGEST_ROW), ""), start=1):
+            for number, line in enumerate(file, start=1):
                 if line.strip() and not line.lstrip().startswith("#"):
                     numbers.extend(_row(line, f"row {number} of the detections {path}"))
     except OSError as error:
@@ -159,7 +147,7 @@ def _row(line: str, what: str) -> tuple[float, ...]:
     if len(words) < _REQUIRED:
         raise InputError(f"{what} is not {','.join(_COLUMNS)}: {line.strip()[:_SHOWN]!r}")
     try:
-        values = [float(word) for word in islice(words, len(_COLUMNS))]
+        values = [float(word) for word in words[: len(_COLUMNS)]]
     except ValueError:
         raise InputError(
             f"{what} has a word that is no number: {line.strip()[:_SHOWN]!r}"

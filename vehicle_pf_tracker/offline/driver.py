@@ -22,13 +22,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.offline.drawing import Annotator, annotated
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame
@@ -42,6 +43,7 @@ from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS, Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TrackerError
 
+ItemT = TypeVar("ItemT")
 Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
 """Frames with their numbers in the source."""
 _DEFAULT_RATE = 30.0
@@ -65,7 +67,8 @@ class OfflineTracker:
         Start without such a target: its box, in the frame that its stamp belongs to;
         the frames before are waited through.
     targets : mapping of int to Box
-        Boxes to start on, or to start again on, by the numbers of their frames.
+        Boxes to start on, or to start again on, by the numbers of their frames. That of the first
+        frame takes the place of the one in `settings`.
     max_diff : float
         Largest difference of stamps that belong together, in s.
 
@@ -75,8 +78,6 @@ class OfflineTracker:
         Drives the tracker; it knows the seed in use.
     start_frame : int or None
         Number of the frame that the target was first set in; None until then.
-    notices : list of str
-        Irregularities, a sentence each.
     estimate : Estimate or None
         That of the last frame; None where it has none.
     """
@@ -93,7 +94,7 @@ class OfflineTracker:
     ) -> None:
         self.session = Session(variant, parameters, settings)
         self.start_frame: int | None = None
-        self.notices = list(self.session.tracker.kernels.notices)
+        self._notices = list(self.session.tracker.kernels.notices)
         self._first_truth = first_truth if self.session.waiting else None
         self._limit_ns = max_diff_ns(max_diff)
         self._localisation = _localisation(self.session)
@@ -114,15 +115,33 @@ class OfflineTracker:
         InputError
             If the target is invalid in the first frame, or no frame belongs to the first truth.
         """
-        stamped = itertools.chain(frames, [None])
-        for number, (current, following) in enumerate(itertools.pairwise(stamped), start=first):
-            assert current is not None
-            self._on_road.append({})
-            if self._is_start(current[0], following[0] if following else None):
-                self._set_target()
-            if number in self._targets:
-                self.session.set_target(self._targets[number])
-            yield self._row(number, *current)
+        stamped = (StampedFrame(*one) for one in frames)
+        for number, (found, following) in enumerate(_with_next(stamped), start=first):
+            yield self.row(number, found, following, is_first=number == first)
+        self.check_started()
+
+    def row(
+        self, number: int, found: StampedFrame, following: StampedFrame | None, *, is_first: bool
+    ) -> EstimateRow:
+        """Take the next frame, with its number and the one after it; see `rows`."""
+        stamp_ns, frame = found.stamp_ns, found.frame
+        next_ns = None if following is None else following.stamp_ns
+        self._on_road.append({})
+        truth = self._first_truth
+        if truth is not None and self._is_start(truth, stamp_ns, next_ns):
+            self._configure_target(truth.box)
+            self._first_truth = None
+        if (box := self._targets.get(number)) is not None:
+            if is_first:
+                self._configure_target(box)
+            else:
+                self.session.set_target(box)
+            reasons = [] if frame is None else doubts(frame, box)
+            self._notices += [f"the target {box} is doubtful: {why}" for why in reasons]
+        return self._estimated(number, stamp_ns, frame)
+
+    def check_started(self) -> None:
+        """Raise an `InputError` if no frame belonged to the first truth."""
         if self._first_truth is not None:
             raise InputError(
                 f"no image is within {self._limit_ns / 1e9:g} s of the first truth, "
@@ -137,29 +156,26 @@ class OfflineTracker:
         return {name: [one.get(name) for one in self._on_road] for name in ROAD_COLUMNS}
 
     @property
-    def road_notices(self) -> list[str]:
-        """Reasons why frames have no place on the road, a sentence each."""
-        return [
+    def notices(self) -> list[str]:
+        """Irregularities so far, a sentence each."""
+        off_road = (
             f"no place on the road in {count} frame{'s' * (count > 1)}: {reason}"
             for reason, count in self._off_road.items()
-        ]
+        )
+        return [*self._notices, *off_road]
 
-    def _is_start(self, stamp_ns: int, next_ns: int | None) -> bool:
+    def _is_start(self, truth: Truth, stamp_ns: int, next_ns: int | None) -> bool:
         """Return whether the image at `stamp_ns` is the one nearest to the first truth."""
-        if self._first_truth is None:
-            return False
-        distance = abs(stamp_ns - self._first_truth.stamp_ns)
-        is_nearest = next_ns is None or abs(next_ns - self._first_truth.stamp_ns) >= distance
+        distance = abs(stamp_ns - truth.stamp_ns)
+        is_nearest = next_ns is None or abs(next_ns - truth.stamp_ns) >= distance
         return distance <= self._limit_ns and is_nearest
 
-    def _set_target(self) -> None:
-        """Configure the first truth's box, so that a recording that loops starts on it again."""
-        assert self._first_truth is not None
-        settings = with_target(self.session.settings, self._first_truth.box)
+    def _configure_target(self, box: Box) -> None:
+        """Start on `box`, and again where the recording loops."""
+        settings = with_target(self.session.settings, box)
         self.session.reconfigure(self.session.tracker.parameters, settings)
-        self._first_truth = None
 
-    def _row(self, number: int, stamp_ns: int, frame: Frame | None) -> EstimateRow:
+    def _estimated(self, number: int, stamp_ns: int, frame: Frame | None) -> EstimateRow:
         self.estimate = None
         if frame is None:
             return EstimateRow.without(number, stamp_ns, REJECTED)
@@ -168,9 +184,9 @@ class OfflineTracker:
         except (InputError, TrackerError) as error:
             if self._ends_run(error):
                 raise
-            self.notices.append(f"frame {number} was rejected: {error}")
+            self._notices.append(f"frame {number} was rejected: {error}")
             return EstimateRow.without(number, stamp_ns, REJECTED)
-        self.notices += [f"frame {number}: {event}" for event in self.session.events]
+        self._notices += [f"frame {number}: {event}" for event in self.session.events]
         if estimate is None:
             return EstimateRow.without(number, stamp_ns, WAITING)
         if self.start_frame is None:
@@ -255,31 +271,38 @@ def follow(
     if not ahead:
         return rows
     first, start_ns = ahead[0][0], ahead[0][1].stamp_ns
-    shown, *streams = itertools.tee(itertools.chain(ahead, frames), 1 + len(trackers))
-    runs = [
-        tracker.rows(((found.stamp_ns, found.frame) for _, found in stream), first)
-        for tracker, stream in zip(trackers.values(), streams, strict=True)
-    ]
     annotators = [
         Annotator(name if len(trackers) > 1 else "", particles=pictures.particles)
         for name in trackers
     ]
     with pictures.drawing(frame_rate_of(ahead)) as take:
-        for (_, found), *of_frame in zip(shown, *runs, strict=True):
-            for name, row in zip(trackers, of_frame, strict=True):
+        all_frames = (found for _, found in itertools.chain(ahead, frames))
+        for number, (found, following) in enumerate(_with_next(all_frames), start=first):
+            of_frame = {
+                name: tracker.row(number, found, following, is_first=number == first)
+                for name, tracker in trackers.items()
+            }
+            states = []
+            for annotator, (name, row) in zip(annotators, of_frame.items(), strict=True):
                 rows[name].append(row)
+                annotator.follow(trackers[name].estimate)
+                states.append((annotator, row, trackers[name].estimate))
             if on_frame is not None:
-                on_frame(found, dict(zip(trackers, of_frame, strict=True)))
-            estimates = [tracker.estimate for tracker in trackers.values()]
-            for annotator, estimate in zip(annotators, estimates, strict=True):
-                annotator.follow(estimate)
-            if found.frame is None:
-                continue
-            states = list(zip(annotators, of_frame, estimates, strict=True))
-            draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
-            if not take(tuple(row.mode for row in of_frame), draw, found.frame):
-                break
+                on_frame(found, of_frame)
+            if found.frame is not None:
+                draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
+                modes = tuple(row.mode for row in of_frame.values())
+                take(modes, draw, found.frame, found.stamp_ns)
+    for tracker in trackers.values():
+        tracker.check_started()
     return rows
+
+
+def _with_next(items: Iterable[ItemT]) -> Iterator[tuple[ItemT, ItemT | None]]:
+    """Yield each item with the one after it; None after the last."""
+    for current, following in itertools.pairwise(itertools.chain(items, [None])):
+        assert current is not None
+        yield current, following
 
 
 def frame_rate_of(frames: list[tuple[int, StampedFrame]]) -> float:

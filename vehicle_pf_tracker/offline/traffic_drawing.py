@@ -19,13 +19,11 @@ from __future__ import annotations
 import colorsys
 import functools
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import astuple, replace
 from pathlib import Path
-from typing import TypeAlias
 
 import cv2
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
@@ -127,40 +125,10 @@ def _write_at(picture: Frame, words: str, point: tuple[int, int]) -> None:
     write_words(picture, words, (int(x), int(y)), _PLAN, width)
 
 
-_PLACES = 16
-"""Points of a path that its number may stand at."""
-_MOST_NUMBERS = 200
-"""Numbers written, those of the longest paths: more of them hide the road."""
 _LEAST_WIDTH = 640
 """Width in px below which the picture is enlarged, so that numbers are smaller than vehicles."""
 _HIDDEN = 0.4
 """Brightness of a path's hidden parts."""
-
-Pixel: TypeAlias = tuple[int, int]
-
-
-@dataclass(slots=True)
-class _Path:
-    """An even choice of a path's points, for its number; its lines are drawn already."""
-
-    last: Pixel
-    places: list[Pixel] = field(default_factory=list)
-    length: int = 0
-    stride: int = 1
-
-    def add(self, point: Pixel) -> None:
-        if self.length % self.stride == 0:
-            self.places.append(point)
-        if len(self.places) > _PLACES:
-            self.places, self.stride = self.places[::2], 2 * self.stride
-        self.last = point
-        self.length += 1
-
-    def from_middle(self) -> list[Pixel]:
-        """Return the points, those next to the middle first."""
-        middle = len(self.places) // 2
-        order = sorted(range(len(self.places)), key=lambda index: abs(index - middle))
-        return [self.places[index] for index in order]
 
 
 class PathPicture:
@@ -175,7 +143,7 @@ class PathPicture:
     def _begin(self, size: tuple[int, int], scale: int) -> None:
         """Begin anew for frames of (height, width) px, enlarged `scale` times."""
         self._size, self._scale = size, scale
-        self.paths: dict[int, _Path] = {}
+        self._ends: dict[int, tuple[int, int]] = {}
         self._layer: Frame = np.zeros((size[0] * scale, size[1] * scale, 3), np.uint8)
         self._ground: Frame | None = None
         self._on_ground: list[TrackEstimate] = []
@@ -202,58 +170,25 @@ class PathPicture:
         """
         if self._ground is None:
             return False
-        picture = self._enlarged(self._ground)
+        scale, (height, width) = self._scale, self._size
+        enlarged = cv2.resize(
+            self._ground, (width * scale, height * scale), interpolation=cv2.INTER_CUBIC
+        )
+        picture: Frame = np.asarray(enlarged, np.uint8)
         drawn = self._layer.any(axis=2)
         picture[drawn] = self._layer[drawn]
-        width = line_width(picture)
         for one in self._on_ground:
-            draw_box(picture, self._scaled(one.box), identity_colour(one.identity), width)
-        self._write_numbers(picture)
+            box = Box(*(scale * value for value in astuple(one.box)))
+            draw_vehicle(picture, replace(one, box=box))
         if counter is not None:
-            draw_counts(picture, counter, self._scale)
+            draw_counts(picture, counter, scale)
         write_picture(path, picture)
         return True
 
     def _extend(self, estimate: TrackEstimate) -> None:
-        ((x, y),) = pixels_at(np.array([estimate.box.centre]) * self._scale)
-        path = self.paths.get(estimate.identity)
-        if path is None:
-            path = self.paths[estimate.identity] = _Path((x, y))
-        red, green, blue = identity_colour(estimate.identity)
+        (end,) = pixels_at(np.array([estimate.box.centre]) * self._scale)
+        begin = self._ends.get(estimate.identity, end)
         share = _HIDDEN if estimate.mode is TrackMode.OCCLUDED else 1.0
-        colour = int(share * red), int(share * green), int(share * blue)
-        cv2.line(self._layer, path.last, (x, y), colour, line_width(self._layer))
-        path.add((x, y))
-
-    def _write_numbers(self, picture: Frame) -> None:
-        """Write each number once: above its box, else on its path where no other number is."""
-        width, taken = line_width(picture), np.zeros(picture.shape[:2], bool)
-        places: dict[int, list[Pixel]] = {}
-        for one in self._on_ground:
-            ((x, y),) = pixels_at(np.array([[one.box.x, one.box.y]]) * self._scale)
-            places[one.identity] = [(max(x, 0), max(y - 3 * width, 14 * width))]
-        longest = sorted(self.paths, key=lambda identity: -self.paths[identity].length)
-        for identity in longest[:_MOST_NUMBERS]:
-            places.setdefault(identity, self.paths[identity].from_middle())
-        for identity, of_path in places.items():
-            words = str(identity)
-            size = 9 * width * len(words), 13 * width
-            x, y = next((at for at in of_path if _is_free(taken, at, size)), of_path[-1])
-            taken[max(y - size[1], 0) : max(y, 0), max(x, 0) : max(x + size[0], 0)] = True
-            write_words(picture, words, (x, y), identity_colour(identity), width)
-
-    def _enlarged(self, frame: Frame) -> Frame:
-        size = frame.shape[1] * self._scale, frame.shape[0] * self._scale
-        enlarged: Frame = cv2.resize(frame, size, interpolation=cv2.INTER_CUBIC)  # type: ignore[assignment]
-        return enlarged
-
-    def _scaled(self, box: Box) -> Box:
-        return Box(*(value * self._scale for value in (box.x, box.y, box.width, box.height)))
-
-
-def _is_free(taken: npt.NDArray[np.bool_], place: Pixel, size: tuple[int, int]) -> bool:
-    """Test whether words of this size fit at `place`, inside the picture and over no others."""
-    (x, y), (width, height) = place, size
-    if x < 0 or y - height < 0 or x + width > taken.shape[1] or y > taken.shape[0]:
-        return False
-    return not taken[y - height : y, x : x + width].any()
+        red, green, blue = (int(share * value) for value in identity_colour(estimate.identity))
+        cv2.line(self._layer, begin, end, (red, green, blue), line_width(self._layer))
+        self._ends[estimate.identity] = end

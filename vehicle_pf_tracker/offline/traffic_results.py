@@ -21,12 +21,11 @@ import math
 from collections import Counter as Tally
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
 from vehicle_pf_tracker.core.outputs import output_errors
-from vehicle_pf_tracker.offline.estimates import clock_words
 from vehicle_pf_tracker.offline.output_files import replacing
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -67,14 +66,14 @@ class TrackFiles:
         self,
         csv_file: TextIO,
         mot_file: TextIO,
-        counts_file: TextIO | None,
+        counts_file: TextIO | None = None,
         *,
         visible_only: bool = False,
     ) -> None:
         self._tracks = csv.writer(csv_file, lineterminator="\n")
         self._mot = mot_file
         self._counts = csv.writer(counts_file, lineterminator="\n") if counts_file else None
-        self._visible_only = visible_only
+        self._in_mot = {TrackMode.TRACKING} if visible_only else set(CONFIRMED)
         self._tracks.writerow(TRACK_COLUMNS)
         if self._counts:
             self._counts.writerow(COUNT_COLUMNS)
@@ -87,14 +86,10 @@ class TrackFiles:
         crossings: Iterable[Crossing] = (),
     ) -> None:
         """Write what is known of a frame, whose number counts from 1."""
-        for one in estimates:
-            self._tracks.writerow(track_row(frame, stamp_ns, one))
-            if one.mode is TrackMode.TRACKING or (
-                one.mode is TrackMode.OCCLUDED and not self._visible_only
-            ):
-                self._mot.write(mot_row(frame, one) + "\n")
+        self._tracks.writerows(_track_row(frame, stamp_ns, one) for one in estimates)
+        self._mot.writelines(_mot_row(frame, one) for one in estimates if one.mode in self._in_mot)
         if self._counts:
-            self._counts.writerows(count_row(frame, one) for one in crossings)
+            self._counts.writerows(_count_row(frame, one) for one in crossings)
 
 
 @contextmanager
@@ -118,37 +113,30 @@ def track_files(
                 opened.enter_context(partial.open("w", encoding="utf-8", newline="\n"))
                 for partial in partials
             ]
-            csv_file, mot_file, *counts = files
-            yield TrackFiles(
-                csv_file, mot_file, counts[0] if counts else None, visible_only=visible_only
-            )
+            yield TrackFiles(*files, visible_only=visible_only)
     if not counting:  # none of an earlier run beside the tracks of this one
         with output_errors(folder / COUNTS):
             (folder / COUNTS).unlink(missing_ok=True)
 
 
-def track_row(frame: int, stamp_ns: int, estimate: TrackEstimate) -> list[Any]:
+def _track_row(frame: int, stamp_ns: int, one: TrackEstimate) -> list[Any]:
     """Return the row of an estimate, in the order of `TRACK_COLUMNS`, every digit kept."""
-    box, (x, y), (vx, vy) = estimate.box, estimate.box.centre, estimate.velocity
-    numbers = [x, y, box.width, box.height, vx, vy]
-    hidden_by = "" if estimate.hidden_by is None else str(estimate.hidden_by)
+    numbers = *one.box.centre, one.box.width, one.box.height, *one.velocity
+    hidden_by = "" if one.hidden_by is None else str(one.hidden_by)
     return [
-        frame, stamp_ns, estimate.identity, *map(_exact, numbers), estimate.mode.value,
-        _exact(estimate.confidence), estimate.label, _exact(estimate.score), _exact(estimate.age),
-        hidden_by,
+        frame, stamp_ns, one.identity, *map(_exact, numbers), one.mode.value,
+        _exact(one.confidence), one.label, _exact(one.score), _exact(one.age), hidden_by,
     ]  # fmt: skip
 
 
-def mot_row(frame: int, estimate: TrackEstimate) -> str:
+def _mot_row(frame: int, one: TrackEstimate) -> str:
     """Return the MOTChallenge row of a tracked or occluded vehicle."""
-    is_hidden = estimate.mode is TrackMode.OCCLUDED
-    confidence = estimate.confidence * (_HIDDEN_CONFIDENCE if is_hidden else 1.0)
-    box = estimate.box
-    numbers = ",".join(f"{value:.2f}" for value in (box.x, box.y, box.width, box.height))
-    return f"{frame},{estimate.identity},{numbers},{confidence:.4f},-1,-1,-1"
+    share = _HIDDEN_CONFIDENCE if one.mode is TrackMode.OCCLUDED else 1.0
+    numbers = ",".join(f"{value:.2f}" for value in astuple(one.box))
+    return f"{frame},{one.identity},{numbers},{share * one.confidence:.4f},-1,-1,-1\n"
 
 
-def count_row(frame: int, crossing: Crossing) -> list[Any]:
+def _count_row(frame: int, crossing: Crossing) -> list[Any]:
     """Return the row of a crossing, in the order of `COUNT_COLUMNS`."""
     speeds = [crossing.speed_px, crossing.speed_kmh]
     return [
@@ -169,10 +157,6 @@ class VehicleLog:
 
     Attributes
     ----------
-    first_frame, last_frame : int
-        Numbers of the first and the last frame that it was visible in.
-    first_ns, last_ns : int
-        Their stamps in ns.
     label : str
         Class; "" where it is unknown.
     survived : int
@@ -181,10 +165,6 @@ class VehicleLog:
         True from the beginning of an occlusion until it is visible again.
     """
 
-    first_frame: int
-    first_ns: int
-    last_frame: int
-    last_ns: int
     label: str = ""
     survived: int = 0
     is_hidden: bool = False
@@ -210,36 +190,27 @@ class TrafficSummary:
         self._occupancy: Tally[str] = Tally()
         self._most_in_zone: dict[str, int] = {}
 
-    def add(
-        self,
-        number: int,
-        stamp_ns: int,
-        estimates: Iterable[TrackEstimate],
-        occupancy: Mapping[str, int],
-    ) -> None:
-        """Take the next frame with its number, and the vehicles in each zone."""
+    def add(self, estimates: Iterable[TrackEstimate], occupancy: Mapping[str, int]) -> None:
+        """Take the next frame, and the number of vehicles in each zone."""
         self.frames += 1
         confirmed = [one for one in estimates if one.mode in (*CONFIRMED, TrackMode.LOST)]
         for one in confirmed:
-            self._follow(one, number, stamp_ns)
+            self._follow(one)
         present = sum(one.mode is not TrackMode.LOST for one in confirmed)
         self.most_at_once = max(self.most_at_once, present)
         for zone, count in occupancy.items():
             self._occupancy[zone] += count
             self._most_in_zone[zone] = max(count, self._most_in_zone.get(zone, 0))
 
-    def _follow(self, one: TrackEstimate, number: int, stamp_ns: int) -> None:
+    def _follow(self, one: TrackEstimate) -> None:
         is_visible = one.mode is TrackMode.TRACKING
         vehicle = self.vehicles.get(one.identity)
         if vehicle is None:
             if is_visible:
-                self.vehicles[one.identity] = VehicleLog(
-                    number, stamp_ns, number, stamp_ns, one.label
-                )
+                self.vehicles[one.identity] = VehicleLog(one.label)
             return
         if is_visible:
             vehicle.survived += vehicle.is_hidden
-            vehicle.last_frame, vehicle.last_ns = number, stamp_ns
             vehicle.label = one.label or vehicle.label
         vehicle.is_hidden = not is_visible
 
@@ -260,7 +231,6 @@ class TrafficSummary:
         found = [
             f"{_number(len(self.vehicles), 'vehicle')} in {self.frames} frames, at most "
             f"{self.most_at_once} at once{self._classes()}",
-            self._longest(),
             f"{_number(self.survived, 'occlusion')} survived under the same number; "
             f"{_number(self.ended_hidden, 'vehicle')} not seen again after an occlusion",
         ]
@@ -292,15 +262,6 @@ class TrafficSummary:
     def _classes(self) -> str:
         classes = Tally(one.label for one in self.vehicles.values() if one.label)
         return f" ({_listed(classes)})" if classes else ""
-
-    def _longest(self) -> str:
-        identity, one = max(
-            self.vehicles.items(), key=lambda item: item[1].last_ns - item[1].first_ns
-        )
-        return (
-            f"longest: vehicle {identity}, for {clock_words(one.last_ns - one.first_ns)} "
-            f"(frames {one.first_frame} to {one.last_frame})"
-        )
 
     def _counts(self, counter: Counter) -> list[str]:
         lines = [
@@ -338,9 +299,3 @@ def _listed(classes: Tally[str]) -> str:
 
 def _number(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
-
-
-def limited(sentences: Sequence[str], most: int = 20) -> list[str]:
-    """Return the first sentences, and one that counts the others."""
-    more = len(sentences) - most
-    return [*sentences[:most], *([f"and {more} more notices"] if more > 0 else [])]

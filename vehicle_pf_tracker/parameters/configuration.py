@@ -51,25 +51,18 @@ class NodeParameters:
     """Transport, start-up and outputs of a node."""
 
     image_transport: str = parameter(
-        "raw",
-        "Which images to subscribe to: image, or image/compressed (JPEG or PNG).",
-        choices=("raw", "compressed"),
-        read_only=True,
-    )
+        "raw", "Which images to subscribe to: image, or image/compressed (JPEG or PNG).",
+        choices=("raw", "compressed"), read_only=True,
+    )  # fmt: skip
     queue_depth: int = parameter(
-        1,
-        "Images that may wait: 1 always takes the newest of a live camera, 10 and more keeps "
+        1, "Images that may wait: 1 always takes the newest of a live camera, 10 and more keeps "
         "every image of a recording.",
-        minimum=1,
-        maximum=10_000,
-        unit="images",
-        read_only=True,
-    )
+        bounds=(1, 10_000), unit="images", read_only=True,
+    )  # fmt: skip
     autostart: bool = parameter(
-        True,
-        "Configure and activate at start-up; off waits for a lifecycle manager.",
+        True, "Configure and activate at start-up; off waits for a lifecycle manager.",
         read_only=True,
-    )
+    )  # fmt: skip
     output_frame_suffix: str = parameter(
         "",
         "Appended to the images' frame_id in outputs that are in pixels (`_px`, for instance), so "
@@ -81,17 +74,21 @@ class NodeParameters:
 _LARGEST = 1e5
 """Bound of target coordinates in px: three times the largest side of an image (32767 px)."""
 
-_target_number = functools.partial(parameter, 0.0, maximum=_LARGEST, unit="px", effect="starts")
+_target_number = functools.partial(parameter, 0.0, unit="px", effect="starts")
 
 
 @dataclass(frozen=True, slots=True)
 class TargetParameters:
     """The box to start on."""
 
-    x: float = _target_number("Left edge of the target.", minimum=-_LARGEST)
-    y: float = _target_number("Top edge of the target.", minimum=-_LARGEST)
-    width: float = _target_number("Width of the target; 0 waits for a target.", minimum=0.0)
-    height: float = _target_number("Height of the target; 0 waits for a target.", minimum=0.0)
+    x: float = _target_number("Left edge of the target.", bounds=(-_LARGEST, _LARGEST))
+    y: float = _target_number("Top edge of the target.", bounds=(-_LARGEST, _LARGEST))
+    width: float = _target_number(
+        "Width of the target; 0 waits for a target.", bounds=(0.0, _LARGEST)
+    )
+    height: float = _target_number(
+        "Height of the target; 0 waits for a target.", bounds=(0.0, _LARGEST)
+    )
 
     @property
     def box(self) -> Box | None:

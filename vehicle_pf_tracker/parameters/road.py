@@ -33,10 +33,9 @@ class RoadParameters:
     """
 
     pairs: str = parameter(
-        "",
-        "Pixels and the road points that they show, `u,v=x,y; …` in px and m, at least four: "
+        "", "Pixels and the road points that they show, `u,v=x,y; …` in px and m, at least four: "
         "positions and speeds are then given on the road too.",
-    )
+    )  # fmt: skip
     intrinsics: str = parameter(
         "",
         "Focal lengths and principal point of the camera, `fx,fy,cx,cy` as in CameraInfo: needed "
@@ -68,26 +67,17 @@ class RoadParameters:
         "road", "Frame that positions on the road are published in; its z = 0 is the road."
     )
     margin: float = parameter(
-        0.1,
-        "Larger: positions are also given farther outside the hull of the pairs.",
-        minimum=0.0,
-        maximum=10.0,
-        unit="share of its size",
-    )
+        0.1, "Larger: positions are also given farther outside the hull of the pairs.",
+        bounds=(0.0, 10.0), unit="share of its size",
+    )  # fmt: skip
     coarsest: float = parameter(
-        1.0,
-        "Larger: positions are also given farther away, where a pixel is so long on the road.",
-        minimum=0.001,
-        maximum=1000.0,
-        unit="m",
-    )
+        1.0, "Larger: positions are also given farther away, where a pixel is so long on the road.",
+        bounds=(0.001, 1000.0), unit="m",
+    )  # fmt: skip
     acceleration: float = parameter(
-        0.5,
-        "Larger: the speed follows braking faster, and is less steady.",
-        minimum=0.01,
-        maximum=100.0,
+        0.5, "Larger: the speed follows braking faster, and is less steady.", bounds=(0.01, 100.0),
         unit="m/s per second",
-    )
+    )  # fmt: skip
 
     @property
     def is_set(self) -> bool:

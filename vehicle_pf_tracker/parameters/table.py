@@ -64,8 +64,8 @@ class ParameterSpec:
         Default value.
     doc : str
         Effect of turning it, in one line.
-    minimum, maximum : float or None
-        Inclusive bounds, in `unit`; None is unbounded.
+    bounds : (float, float) or None
+        Least and largest value, in `unit`; None is unbounded.
     unit : str
         Unit of its value; empty where it has none.
     choices : tuple of str
@@ -85,8 +85,7 @@ class ParameterSpec:
     kind: type[Value]
     default: Value
     doc: str
-    minimum: float | None = None
-    maximum: float | None = None
+    bounds: tuple[float, float] | None = None
     unit: str = ""
     source: str = ""
     choices: tuple[str, ...] = ()
@@ -121,19 +120,13 @@ class ParameterSpec:
     def _check_bounds(self, value: float) -> None:
         if isinstance(value, float) and not math.isfinite(value):
             raise InputError(f"{self.name} must be finite, got {_shown(value)}")
-        low = -math.inf if self.minimum is None else self.minimum
-        high = math.inf if self.maximum is None else self.maximum
-        if not low <= value <= high:
-            raise InputError(f"{self.name} must be {self.bounds}, got {_shown(value)}")
+        if self.bounds and not self.bounds[0] <= value <= self.bounds[1]:
+            raise InputError(f"{self.name} must be {self.bounds_text}, got {_shown(value)}")
 
     @property
-    def bounds(self) -> str:
+    def bounds_text(self) -> str:
         """Bounds in words, for messages and tables; empty where there are none."""
-        if self.minimum is not None and self.maximum is not None:
-            return f"from {_plain(self.minimum)} to {_plain(self.maximum)}"
-        if self.minimum is not None:
-            return f"at least {_plain(self.minimum)}"
-        return "" if self.maximum is None else f"at most {_plain(self.maximum)}"
+        return "from {} to {}".format(*map(_plain, self.bounds)) if self.bounds else ""
 
     def parse(self, text: str) -> Value:
         """Read a value written on a command line."""
@@ -155,8 +148,7 @@ def parameter(  # noqa: PLR0913 - one keyword per column of the table
     default: Value,
     doc: str,
     *,
-    minimum: float | None = None,
-    maximum: float | None = None,
+    bounds: tuple[float, float] | None = None,
     unit: str = "",
     source: str = "",
     choices: Iterable[str] = (),
@@ -166,8 +158,8 @@ def parameter(  # noqa: PLR0913 - one keyword per column of the table
 ) -> Any:
     """Make the dataclass field of one parameter; see `ParameterSpec` for the meaning of each."""
     spec = ParameterSpec(
-        "", type(default), default, doc, minimum, maximum, unit, source, tuple(choices), effect,
-        read_only, tuned,
+        "", type(default), default, doc, bounds, unit, source, tuple(choices), effect, read_only,
+        tuned,
     )  # fmt: skip
     return dataclasses.field(default=default, metadata={_KEY: spec})
 

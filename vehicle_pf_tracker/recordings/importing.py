@@ -62,47 +62,6 @@ class ImportSummary:
     notices: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ExpectedSize:
-    """Size that a recording will have, judged by its first image.
-
-    Attributes
-    ----------
-    image : int
-        Size of an image, bytes.
-    images : int or None
-        Number of images; None where it is unknown.
-    is_raw : bool
-        True for pixels, which the recording's compression makes smaller by what they show.
-    """
-
-    image: int
-    images: int | None
-    is_raw: bool
-
-
-def expected_size(
-    source: Path,
-    *,
-    fps: float | None = None,
-    format: str | None = None,  # noqa: A002
-) -> ExpectedSize | None:
-    """Judge the size before an import; None if there is no image. See `import_recording`."""
-    _check_format(format)
-    footage = _open(source, None, fps)
-    first = next(footage.frames(), None)
-    if first is None:
-        return None
-    coded = _coded(first, format)
-    size = len(coded[1]) if coded else first.frame.nbytes
-    return ExpectedSize(size, footage.frame_count, is_raw=coded is None)
-
-
-def _check_format(name: str | None) -> None:
-    if name is not None and name not in FORMATS:
-        raise InputError(f"the format {name!r} is unknown; choose from {', '.join(FORMATS)}")
-
-
 def import_recording(
     source: Path,
     out: Path,
@@ -138,7 +97,8 @@ def import_recording(
     InputError
         For every fault of the source, and if `out` cannot be written.
     """
-    _check_format(format)
+    if format is not None and format not in FORMATS:
+        raise InputError(f"the format {format!r} is unknown; choose from {', '.join(FORMATS)}")
     footage = _open(source, truth, fps)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
@@ -154,8 +114,8 @@ def import_recording(
             frames += 1
             if progress is not None:
                 progress(frames, footage.frame_count)
-    notices = tuple(footage.notices)
-    return ImportSummary(out, frames, truths, footage.fps, *size, folder_size(out), notices)
+    written = sum(path.stat().st_size for path in out.iterdir())
+    return ImportSummary(out, frames, truths, footage.fps, *size, written, tuple(footage.notices))
 
 
 def _open(source: Path, truth: Path | None, fps: float | None) -> Footage:
@@ -183,11 +143,6 @@ def _coded(picture: Picture, wanted: str | None) -> tuple[str, bytes] | None:
     if picture.coded_format:
         return picture.coded_format, picture.coded
     return "jpeg", jpeg(picture.frame)
-
-
-def folder_size(folder: Path) -> int:
-    """Return the size of the files in `folder`, bytes."""
-    return sum(path.stat().st_size for path in folder.iterdir())
 
 
 def jpeg(frame: Frame) -> bytes:

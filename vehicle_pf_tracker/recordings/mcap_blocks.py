@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The parts of an MCAP file that hold messages, also damaged and cut ones.
+"""The parts of an MCAP file that hold messages, also damaged ones.
 
 The `mcap` package's reader stops with an exception where a file is cut, and loads files without
 chunks into memory whole; a recording of a crashed computer is often both. See the MCAP format
@@ -37,7 +37,8 @@ RECORD_HEAD = 9
 
 _MESSAGE_HEAD = struct.Struct("<HIQQ")
 _CHUNK_HEAD = struct.Struct("<QQQII")
-_MAX_CHUNK = 4 * 2**30
+_MAX_CHUNK = 2**30
+"""Bytes that a chunk is believed to hold: a thousand times what recorders make."""
 
 
 class DamageError(Exception):
@@ -64,8 +65,6 @@ class Block:
         Smallest and largest log time in ns.
     channels : frozenset of int or None
         Channels that have messages in it; None where unknown.
-    is_cut : bool
-        True if the file ends within this block.
     """
 
     offset: int
@@ -73,7 +72,6 @@ class Block:
     start_ns: int
     end_ns: int
     channels: frozenset[int] | None
-    is_cut: bool = False
 
 
 def read_span(path: Path, offset: int, length: int) -> bytes:
@@ -95,30 +93,27 @@ def read_block(path: Path, block: Block) -> Iterator[Message]:
         record = memoryview(read_span(path, block.offset, block.length))
     except OSError as error:
         raise DamageError(f"it cannot be read ({error.strerror})") from error
-    if len(record) < RECORD_HEAD or (len(record) < block.length and not block.is_cut):
+    if len(record) < max(block.length, RECORD_HEAD):
         raise DamageError("the file ends before it")
     if record[0] not in {Opcode.CHUNK, Opcode.MESSAGE}:
         raise DamageError("there are no messages where the index says so")
-    for opcode, content in block_records(record[0], record[RECORD_HEAD:], block.is_cut):
+    for opcode, content in block_records(record[0], record[RECORD_HEAD:]):
         if opcode == Opcode.MESSAGE:
             yield parse_message(content)
 
 
-def block_records(
-    opcode: int, content: memoryview, is_cut: bool
-) -> Iterator[tuple[int, memoryview]]:
+def block_records(opcode: int, content: memoryview) -> Iterator[tuple[int, memoryview]]:
     """Split a chunk into its records; any other record is returned as it is.
 
     Raises
     ------
     DamageError
-        If a chunk that is whole by its length cannot be unpacked.
+        If a chunk cannot be unpacked.
     """
     if opcode != Opcode.CHUNK:
-        if not is_cut:
-            yield opcode, content
+        yield opcode, content
         return
-    records = _unpack_chunk(content, is_cut)
+    records = _unpack_chunk(content)
     position = 0
     while position + RECORD_HEAD <= len(records):
         opcode, length = struct.unpack_from("<BQ", records, position)
@@ -143,32 +138,31 @@ def parse_message(content: memoryview) -> Message:
     return Message(channel_id, log_time, content[_MESSAGE_HEAD.size :])
 
 
-def _unpack_chunk(content: memoryview, is_cut: bool) -> memoryview:
+def _unpack_chunk(content: memoryview) -> memoryview:
     try:
         _, _, size, checksum, name_length = _CHUNK_HEAD.unpack_from(content)
         name_end = _CHUNK_HEAD.size + name_length
         compression = bytes(content[_CHUNK_HEAD.size : name_end]).decode()
         (packed_size,) = struct.unpack_from("<Q", content, name_end)
     except (struct.error, UnicodeDecodeError):
-        if is_cut:
-            return memoryview(b"")
         raise DamageError("its head is broken") from None
     packed = content[name_end + 8 : name_end + 8 + packed_size]
     records = _decompress(compression, packed, size)
-    if not is_cut and (len(records) != size or (checksum and zlib.crc32(records) != checksum)):
+    if len(records) != size or (checksum and zlib.crc32(records) != checksum):
         raise DamageError("its checksum is wrong")
     return records
 
 
 def _decompress(compression: str, packed: memoryview, size: int) -> memoryview:
-    """Unpack as much as there is: both decoders return what they have when the input ends."""
+    """Unpack `size` bytes, and no more than one beyond: a chunk may hold more than it claims."""
     if size > _MAX_CHUNK:
         raise DamageError(f"it claims to hold {size} bytes")
     try:
         if compression == "lz4":
-            return memoryview(lz4.frame.LZ4FrameDecompressor().decompress(packed))
+            return memoryview(lz4.frame.LZ4FrameDecompressor().decompress(packed, size + 1))
         if compression == "zstd":
-            return memoryview(zstandard.ZstdDecompressor().decompressobj().decompress(packed))
+            with zstandard.ZstdDecompressor().stream_reader(packed) as reader:
+                return memoryview(reader.read(size + 1))
     except (RuntimeError, EOFError, zstandard.ZstdError) as error:
         raise DamageError(f"it cannot be decompressed ({error})") from error
     if compression:

@@ -98,7 +98,7 @@ def read_index(path: Path) -> McapIndex:
             stream.seek(0)
             if stream.read(len(MAGIC)) != MAGIC:
                 raise InputError(f"the recording {path} is not an MCAP file")
-            return _from_summary(path, stream, size) or _Scan(path, stream, size).run()
+            return _from_summary(path, stream, size) or _scanned(path, stream, size)
     except OSError as error:
         raise InputError(f"cannot read the recording {path}: {error.strerror}") from error
 
@@ -167,71 +167,49 @@ def _is_complete(summary: Summary, counts: Counter[int], size: int) -> bool:
     )
 
 
-class _Scan:
-    """One pass over a file whose summary is missing or wrong."""
-
-    def __init__(self, path: Path, stream: BinaryIO, size: int) -> None:
-        self.path, self.stream, self.size = path, stream, size
-        self.index = McapIndex(path)
-
-    def run(self) -> McapIndex:
-        offset = len(MAGIC)
-        while True:
-            self.stream.seek(offset)
-            head = self.stream.read(RECORD_HEAD)
-            opcode, length = struct.unpack("<BQ", head) if len(head) == RECORD_HEAD else (0, 0)
-            end = offset + RECORD_HEAD + length
-            if opcode == Opcode.DATA_END and end <= self.size:
-                self.index.is_truncated = not self._has_end()
-                return self.index
-            is_cut = opcode == 0 or end > self.size
-            if opcode in _READERS:
-                self._read(opcode, offset, min(end, self.size) - offset, is_cut)
-            if is_cut:
-                self.index.is_truncated = True
-                return self.index
-            offset = end
-
-    def _has_end(self) -> bool:
-        return read_span(self.path, self.size - len(MAGIC), len(MAGIC)) == MAGIC
-
-    def _read(self, opcode: int, offset: int, length: int, is_cut: bool) -> None:
-        content = memoryview(self.stream.read(length - RECORD_HEAD))
-        times: list[int] = []
-        channels: Counter[int] = Counter()
-        try:
-            for kind, record in block_records(opcode, content, is_cut):
-                if kind == Opcode.MESSAGE:
-                    message = parse_message(record)
-                    times.append(message.log_time_ns)
-                    channels[message.channel_id] += 1
-                elif kind in _DEFINITIONS:
-                    _DEFINITIONS[kind](self.index, record)
-        except (DamageError, McapError, struct.error, ValueError) as error:
-            if not is_cut:
-                self.index.damages.append(f"a part at byte {offset} was skipped: {error}")
-                return
-        if times:
-            ids = frozenset(channels)
-            block = Block(offset, length, min(times), max(times), ids, is_cut)
-            self.index.blocks.append(block)
-            self.index.counts.update(channels)
+def _scanned(path: Path, stream: BinaryIO, size: int) -> McapIndex:
+    """Make the index in one pass over a file whose summary is missing or wrong."""
+    index, offset = McapIndex(path, is_truncated=True), len(MAGIC)
+    while True:
+        stream.seek(offset)
+        head = stream.read(RECORD_HEAD)
+        opcode, length = struct.unpack("<BQ", head) if len(head) == RECORD_HEAD else (0, 0)
+        end = offset + RECORD_HEAD + length
+        if not opcode or end > size:  # a file system leaves zeros after a power failure
+            return index
+        if opcode == Opcode.DATA_END:
+            index.is_truncated = read_span(path, size - len(MAGIC), len(MAGIC)) != MAGIC
+            return index
+        if opcode in _READERS:
+            _add_record(index, opcode, offset, memoryview(stream.read(length)))
+        offset = end
 
 
-def _add_schema(index: McapIndex, record: memoryview) -> None:
-    schema = Schema.read(ReadDataStream(io.BytesIO(record)))
-    index.schemas[schema.id] = schema
+def _add_record(index: McapIndex, opcode: int, offset: int, content: memoryview) -> None:
+    times: list[int] = []
+    channels: Counter[int] = Counter()
+    try:
+        for kind, record in block_records(opcode, content):
+            if kind == Opcode.MESSAGE:
+                message = parse_message(record)
+                times.append(message.log_time_ns)
+                channels[message.channel_id] += 1
+            elif kind == Opcode.SCHEMA:
+                schema = Schema.read(ReadDataStream(io.BytesIO(record)))
+                index.schemas[schema.id] = schema
+            elif kind == Opcode.CHANNEL:
+                channel = Channel.read(ReadDataStream(io.BytesIO(record)))
+                index.channels[channel.id] = channel
+    except (DamageError, McapError, struct.error, ValueError) as error:
+        index.damages.append(f"a part at byte {offset} was skipped: {error}")
+        return
+    if times:
+        length = RECORD_HEAD + len(content)
+        block = Block(offset, length, min(times), max(times), frozenset(channels))
+        index.blocks.append(block)
+        index.counts.update(channels)
 
 
-def _add_channel(index: McapIndex, record: memoryview) -> None:
-    channel = Channel.read(ReadDataStream(io.BytesIO(record)))
-    index.channels[channel.id] = channel
-
-
-_DEFINITIONS: dict[int, Callable[[McapIndex, memoryview], None]] = {
-    Opcode.SCHEMA: _add_schema,
-    Opcode.CHANNEL: _add_channel,
-}
 _READERS = {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.CHUNK, Opcode.MESSAGE}
 
 

@@ -58,7 +58,7 @@ class RecordedMessage:
     log_time_ns : int
         Time of recording, ns.
     stamp_ns : int or None
-        Stamp of its header in ns; None where its type has no header.
+        Stamp of its header in ns; None for types other than those of our recordings.
     data : bytes
         The message in CDR, encapsulation header included.
     """
@@ -115,8 +115,7 @@ class Recording:
         blocks = [block for index in self.files for block in index.blocks]
         self.start_ns = min(block.start_ns for block in blocks)
         self.end_ns = max(block.end_ns for block in blocks)
-        self._notices = ReadNotices(self.path, self.image_topic, found)
-        self._notices.add_files(self.files)
+        self._notices = ReadNotices(self.path, self.image_topic, found, self.files)
 
     @property
     def duration_ns(self) -> int:
@@ -218,7 +217,8 @@ class Recording:
         types = {info.name: info for info in self.topics}
         for index, message in self._select(topics, start_offset, duration):
             info = types[index.channels[message.channel_id].topic]
-            stamp = header_stamp_ns(message.data) if info.has_header else None
+            is_stamped = info.is_cdr and info.type_name in names.STAMPED_TYPES
+            stamp = header_stamp_ns(message.data) if is_stamped else None
             yield RecordedMessage(
                 info.name, info.type_name, message.log_time_ns, stamp, bytes(message.data)
             )

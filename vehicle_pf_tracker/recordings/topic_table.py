@@ -24,7 +24,6 @@ from mcap.records import Channel
 from mcap.well_known import MessageEncoding
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.cdr import starts_with_header
 from vehicle_pf_tracker.recordings.mcap_blocks import Block, DamageError
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex
 from vehicle_pf_tracker.recordings.topics import IMAGE_TYPES
@@ -34,15 +33,14 @@ from vehicle_pf_tracker.recordings.topics import IMAGE_TYPES
 class TopicInfo:
     """A topic: its ROS type (empty where unknown), its encoding and its number of messages.
 
-    `is_cdr` is true where the messages are serialized as in ROS 2, `has_header` where they begin
-    with a header. `offered_qos` is the recorded QoS as YAML text, empty where unknown.
+    `is_cdr` is true where the messages are serialized as in ROS 2. `offered_qos` is the recorded
+    QoS as YAML text, empty where unknown.
     """
 
     name: str
     type_name: str
     message_count: int
     is_cdr: bool
-    has_header: bool
     offered_qos: str = ""
 
     @property
@@ -108,11 +106,7 @@ def _describe(index: McapIndex, channel: Channel) -> TopicInfo:
     schema = index.schemas.get(channel.schema_id)
     is_cdr = channel.message_encoding == MessageEncoding.CDR
     qos = channel.metadata.get("offered_qos_profiles", "")
-    if schema is None:
-        return TopicInfo(channel.topic, "", 0, is_cdr, has_header=False, offered_qos=qos)
-    definition = schema.data.decode(errors="replace")
-    has_header = is_cdr and starts_with_header(schema.name, definition)
-    return TopicInfo(channel.topic, schema.name, 0, is_cdr, has_header, qos)
+    return TopicInfo(channel.topic, "" if schema is None else schema.name, 0, is_cdr, qos)
 
 
 def _listed(topics: Sequence[TopicInfo]) -> str:
@@ -130,14 +124,28 @@ class ReadNotices:
         The topic whose images are counted.
     found : iterable of str
         Irregularities found before, a sentence each.
+    files : iterable of McapIndex
+        Indexes of the files in order, which report damage.
     """
 
-    def __init__(self, path: Path, image_topic: str, found: Iterable[str]) -> None:
+    def __init__(
+        self, path: Path, image_topic: str, found: Iterable[str], files: Iterable[McapIndex]
+    ) -> None:
         self._path = path
         self._image_topic = image_topic
         self._sentences = list(found)
         self._unreadable: dict[int, str] = {}
         self._damages: dict[tuple[Path, int], str] = {}
+        frames = 0
+        for index in files:
+            of_topic = (n for n, one in index.channels.items() if one.topic == image_topic)
+            frames += sum(index.counts[number] for number in of_topic)
+            self._sentences += [f"recording {index.path}: {damage}" for damage in index.damages]
+            if index.is_truncated:
+                self._sentences.append(
+                    f"recording {index.path} is truncated after frame {frames}; "
+                    "what was readable is used"
+                )
 
     @property
     def sentences(self) -> list[str]:
@@ -154,22 +162,6 @@ class ReadNotices:
     def first_reason(self) -> str:
         """Reason why the first image, or else the first part, could not be read."""
         return next(iter([*self._unreadable.values(), *self._damages.values()]))
-
-    def add_files(self, files: Iterable[McapIndex]) -> None:
-        """Add the damage that the indexes of the files, in order, report."""
-        frames = 0
-        for index in files:
-            frames += sum(
-                index.counts[channel_id]
-                for channel_id, channel in index.channels.items()
-                if channel.topic == self._image_topic
-            )
-            self._sentences += [f"recording {index.path}: {damage}" for damage in index.damages]
-            if index.is_truncated:
-                self._sentences.append(
-                    f"recording {index.path} is truncated after frame {frames}; "
-                    "what was readable is used"
-                )
 
     def add_block(self, index: McapIndex, block: Block, error: DamageError) -> None:
         """Note a part of a file that was skipped."""

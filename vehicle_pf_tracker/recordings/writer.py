@@ -16,8 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,7 +26,12 @@ from mcap.writer import CompressionType, Writer
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, OutputFolder, check_free
+from vehicle_pf_tracker.core.outputs import (
+    BAG_INFORMATION,
+    OutputFolder,
+    check_free,
+    output_errors,
+)
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.bag_folder import (
@@ -37,16 +41,6 @@ from vehicle_pf_tracker.recordings.bag_folder import (
     to_yaml,
 )
 from vehicle_pf_tracker.recordings.cdr import definition, serialize, type_hash
-
-
-@contextmanager
-def output_errors(folder: Path) -> Iterator[None]:
-    """Report errors of the operating system as an `InputError` about `folder`."""
-    try:
-        yield
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise InputError(f"cannot write the recording {folder}: {reason}") from error
 
 
 def _check_replaceable(target: Path, overwrite: bool) -> None:
@@ -59,13 +53,6 @@ def _check_replaceable(target: Path, overwrite: bool) -> None:
     names = [path.name for path in target.iterdir()]
     if any(name != BAG_INFORMATION and not name.endswith(".mcap") for name in names):
         raise InputError(f"the output folder {target} holds more than a recording; choose another")
-
-
-COMPRESSIONS = {
-    "lz4": CompressionType.LZ4,
-    "zstd": CompressionType.ZSTD,
-    "none": CompressionType.NONE,
-}
 
 
 @dataclass(slots=True)
@@ -85,22 +72,24 @@ class RecordingWriter:
     ----------
     folder : Path
         The rosbag2 folder to write.
-    compression : str
-        ``lz4``, ``zstd`` or ``none``: how the chunks of the MCAP file are compressed.
+    compression : CompressionType
+        Compression of the chunks of the MCAP file.
     overwrite : bool
         Replace a recording that is already there.
 
     Raises
     ------
     InputError
-        If the compression is unknown, or the folder is not empty or cannot be written; also
-        later, when the disk is full.
+        If the folder is not empty or cannot be written; also later, when the disk is full.
     """
 
-    def __init__(self, folder: Path, *, compression: str = "lz4", overwrite: bool = False) -> None:
-        if compression not in COMPRESSIONS:
-            names = ", ".join(COMPRESSIONS)
-            raise InputError(f"the compression {compression!r} is unknown; choose from {names}")
+    def __init__(
+        self,
+        folder: Path,
+        *,
+        compression: CompressionType = CompressionType.LZ4,
+        overwrite: bool = False,
+    ) -> None:
         self.folder = Path(folder)
         with output_errors(self.folder):
             _check_replaceable(self.folder.expanduser().resolve(), overwrite)
@@ -111,7 +100,7 @@ class RecordingWriter:
         self._times: tuple[int, int] | None = None
         try:
             self._stream = (self._output.partial / self._file_name).open("wb")
-            self._mcap = Writer(self._stream, compression=COMPRESSIONS[compression])
+            self._mcap = Writer(self._stream, compression=compression)
             self._mcap.start(profile=Profile.ROS2, library="vehicle_pf_tracker")
         except BaseException:  # a signal too
             self._output.discard()

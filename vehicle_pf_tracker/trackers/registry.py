@@ -80,84 +80,63 @@ class Variant:
 
 _ENTRIES = (
     Variant(
-        "apf",
-        "papers.apf:Apf",
-        "adaptive particle filter, two regimes (Scharcanski et al. 2011)",
+        "apf", "papers.apf:Apf", "adaptive particle filter, two regimes (Scharcanski et al. 2011)",
         "short occlusions on a straight road, where the vehicle's colours are distinctive",
     ),
     Variant(
-        "pf",
-        "papers.pf:Pf",
-        "colour particle filter (Perez et al. 2002)",
+        "pf", "papers.pf:Pf", "colour particle filter (Perez et al. 2002)",
         "a vehicle in plain view whose colours differ from the road's",
     ),
     Variant(
-        "sapf",
-        "papers.sapf:Sapf",
-        "annealed particle filter (Deutscher et al. 2000)",
+        "sapf", "papers.sapf:Sapf", "annealed particle filter (Deutscher et al. 2000)",
         "as `pf`, where the vehicle moves far between two frames",
     ),
     Variant(
-        "hpfms",
-        "papers.hpfms:Hpfms",
+        "hpfms", "papers.hpfms:Hpfms",
         "few particles refined by mean shift (Maggio and Cavallaro 2005)",
         "as `pf`, where there is little time per frame",
     ),
     Variant(
-        "pfcl",
-        "papers.pfcl:Pfcl",
-        "colour and straight lines (Xiong and Debrunner 2004)",
+        "pfcl", "papers.pfcl:Pfcl", "colour and straight lines (Xiong and Debrunner 2004)",
         "a vehicle with straight edges among others of its colours",
     ),
     Variant(
-        "ms",
-        "papers.ms:Ms",
-        "mean shift, without particles (Comaniciu et al. 2003)",
+        "ms", "papers.ms:Ms", "mean shift, without particles (Comaniciu et al. 2003)",
         "a fixed camera, no occlusions, and the least time per frame",
     ),
     Variant(
-        "mfpf",
-        "papers.mfpf:Mfpf",
+        "mfpf", "papers.mfpf:Mfpf",
         "colour, edges and texture with adaptive weights (Abdulla et al. 2022)",
         "a vehicle whose edges or texture are more distinctive than its colours",
     ),
     Variant(
-        "sfpf_color",
-        "papers.sfpf:SfpfColor",
-        "colour alone (Abdulla et al. 2022)",
+        "sfpf_color", "papers.sfpf:SfpfColor", "colour alone (Abdulla et al. 2022)",
         "comparison with `mfpf`",
     ),
     Variant(
-        "sfpf_edge",
-        "papers.sfpf:SfpfEdge",
-        "edge directions alone (Abdulla et al. 2022)",
+        "sfpf_edge", "papers.sfpf:SfpfEdge", "edge directions alone (Abdulla et al. 2022)",
         "comparison with `mfpf`; grey video",
     ),
     Variant(
-        "sfpf_texture",
-        "papers.sfpf:SfpfTexture",
-        "texture alone (Abdulla et al. 2022)",
+        "sfpf_texture", "papers.sfpf:SfpfTexture", "texture alone (Abdulla et al. 2022)",
         "comparison with `mfpf`, which it comes closest to; grey video",
     ),
     Variant(
-        "conventional",
-        "papers.repeated_resampling:Conventional",
+        "conventional", "papers.repeated_resampling:Conventional",
         "colour, all particles resampled until enough count (Khong et al.)",
         "comparison with `adaptive`, or of resampling schemes",
     ),
     Variant(
-        "adaptive",
-        "papers.repeated_resampling:Adaptive",
+        "adaptive", "papers.repeated_resampling:Adaptive",
         "colour, only low weights resampled until enough count (Khong et al.)",
         "as `conventional`, with fewer measurements per frame",
     ),
     Variant(
-        "fusion",
-        "fusion.tracker:Fusion",
+        "fusion", "fusion.tracker:Fusion",
         "correlation particle filter with a posterior over visibility (this package)",
         "real video: changing size, a moving camera, total occlusions",
     ),
-)
+)  # fmt: skip
 
 VARIANTS: Mapping[str, Variant] = MappingProxyType({entry.name: entry for entry in _ENTRIES})
 """Every variant by name."""

@@ -27,10 +27,9 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.plots import stretches
 from vehicle_pf_tracker.evaluation.report.figures import (
+    COLOURS,
     LEAST_ERROR,
-    PAGE,
     Drawn,
-    ErrorSeries,
     draw_errors,
 )
 from vehicle_pf_tracker.evaluation.report.filmstrip import (
@@ -43,7 +42,7 @@ from vehicle_pf_tracker.evaluation.report.filmstrip import (
     plan_strips,
     take_stills,
 )
-from vehicle_pf_tracker.evaluation.report.page import SvgMaker
+from vehicle_pf_tracker.evaluation.report.page import svg_element
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
 
 BOX = Box(100, 60, 20, 10)
@@ -88,7 +87,7 @@ def test_views_are_four_to_three_in_every_image(size):
 def test_an_overlay_has_the_boxes_where_they_are():
     frame = np.full((240, 320, 3), 128, np.uint8)
     before = frame.copy()
-    image = draw_overlay(frame, Crop.whole(frame, 640), BOX, [Mark(Box(200, 100, 40, 40), 1)])
+    image = draw_overlay(frame, Crop(0, 0, 320, 240, 2.0), BOX, [Mark(Box(200, 100, 40, 40), 1)])
     assert image.shape == (480, 640, 3)
     assert tuple(image[240, 400]) == colour_of(1)  # the middle of its left side
     assert tuple(image[120, 200]) == (255, 255, 255)  # the truth's corner
@@ -99,16 +98,16 @@ def test_an_overlay_has_the_boxes_where_they_are():
 def test_boxes_far_outside_do_no_harm():
     frame = np.full((24, 32, 3), 128, np.uint8)
     marks = [Mark(Box(1e9, -1e9, 5, 5), None), Mark(Box(-50, -50, 1e7, 1e7), 2)]
-    assert draw_overlay(frame, Crop.whole(frame, 320), None, marks).shape == (240, 320, 3)
+    assert draw_overlay(frame, Crop(0, 0, 32, 24, 10.0), None, marks).shape == (240, 320, 3)
 
 
 def test_each_system_is_shown_where_it_was_worst(made_evaluation):
     evaluation = score_folder(EvaluationFolder(made_evaluation))
-    runs = {label: typical(evaluation.of("under_a_bridge", label)) for label in ("pf", "ms")}
-    strips = plan_strips(evaluation.truths["under_a_bridge"], runs, {"pf": 0})
+    runs = {label: typical(evaluation.of("bridge", label)) for label in ("pf", "ms")}
+    strips = plan_strips(evaluation.truths["bridge"], runs, {"pf": 0})
     around, worst = strips.values()
     assert all(len(shot.marks) == 1 for shot in around)  # ms has no style
-    hidden = {index + 1 for index in HIDDEN["under_a_bridge"]}
+    hidden = {index + 1 for index in HIDDEN["bridge"]}
     for shot, run in zip(worst, runs.values(), strict=True):
         visible = [e for n, e in enumerate(run.errors, start=1) if n not in hidden]
         assert shot.frame not in hidden
@@ -125,21 +124,21 @@ def test_stills_of_other_images_are_refused(made_evaluation):
 
 
 def test_an_error_panel_draws_the_median_within_its_band():
-    errors = np.array([[1.0, 4.0, np.nan], [3.0, 8.0, np.nan], [2.0, 6.0, np.nan]])
+    errors = np.array([[1.0, 4.0, np.nan], [3.0, 8.0, np.nan], [0.2, 6.0, np.nan]])
     axes = Figure().add_subplot()
-    series = ErrorSeries({"pf": errors}, {"total": [(2, 2)], "partial": []}, 8.0)
-    draw_errors(axes, series, "pf", PAGE)
-    assert axes.lines[0].get_ydata()[:2].tolist() == [2, 6]
-    assert axes.get_ylim()[0] == LEAST_ERROR
-    assert len(axes.patches) == 1  # the occlusion
+    draw_errors(axes, errors)
+    assert axes.lines[0].get_ydata()[:2].tolist() == [1, 6]
+    band = axes.collections[0].get_paths()[0].vertices
+    assert band[:, 1].min() == LEAST_ERROR
+    assert band[:, 1].max() == 8
 
 
 def test_no_two_figures_of_a_page_share_an_id():
-    maker, ids = SvgMaker(), []
-    for _ in range(2):
+    ids = []
+    for number in range(2):
         figure = Figure()
-        figure.add_subplot().plot([1, 2], [3, 4], color=PAGE["s1"])
-        svg = maker.make(Drawn(figure, "", 'a "b" & c'))
+        figure.add_subplot().plot([1, 2], [3, 4], color=COLOURS["s1"])
+        svg = svg_element(Drawn(figure, "", 'a "b" & c'), number)
         assert 'aria-label="a &quot;b&quot; &amp; c"' in svg
         assert "var(--s1)" in svg and "#0a0a01" not in svg
         ids += [part.split('"')[0] for part in svg.split(' id="')[1:]]

@@ -14,32 +14,21 @@
 
 """Which boxes of many vehicles are scored."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from traffic_samples import scene
 
 from vehicle_pf_tracker.evaluation.traffic.identities import matches, overlaps, scorable
-from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
 
 def sequence(truth, hidden, ignored=()):
-    return TrafficSequence(
-        folder=Path("tiny"),
-        frame_count=2,
-        frame_rate=30,
-        size=(100, 100),
-        truth=np.array(truth, dtype=float).reshape(-1, 6),
-        hidden=np.array(hidden, dtype=bool),
-        ignored=np.array(ignored, dtype=float).reshape(-1, 5),
-        detections={},
-    )
+    return scene(truth, (100, 100), hidden, ignored, frames=2)
 
 
-def kept(scene, *boxes):
+def kept(made, *boxes):
     """Frame 1's tracks that are scored, by the order of `boxes`."""
     rows = np.array([[1, i, *box] for i, box in enumerate(boxes)], dtype=float)
-    return scorable(scene, rows)[1][:, 1].tolist()
+    return scorable(made, rows)[1][:, 1].tolist()
 
 
 def test_overlap_is_intersection_over_union():
@@ -56,19 +45,19 @@ def test_matching_is_one_to_one_and_needs_half():
 
 
 def test_hidden_vehicles_and_the_boxes_on_them_are_not_scored():
-    scene = sequence([[1, 1, 0, 0, 10, 10], [1, 2, 50, 0, 10, 10]], [True, False])
-    truth, _ = scorable(scene, np.empty((0, 6)))
+    made = sequence([[1, 1, 0, 0, 10, 10], [1, 2, 50, 0, 10, 10]], [True, False])
+    truth, _ = scorable(made, np.empty((0, 6)))
     assert truth[:, 1].tolist() == [2]
-    assert kept(scene, [1, 0, 10, 10], [50, 0, 10, 10], [6, 0, 10, 10]) == [1, 2]
+    assert kept(made, [1, 0, 10, 10], [50, 0, 10, 10], [6, 0, 10, 10]) == [1, 2]
 
 
 def test_a_box_on_a_vehicle_in_sight_counts_even_if_a_hidden_one_is_nearer():
-    scene = sequence([[1, 1, 0, 0, 10, 10], [1, 2, 3, 0, 10, 10]], [True, False])
-    assert kept(scene, [0.5, 0, 10, 10]) == [0]
+    made = sequence([[1, 1, 0, 0, 10, 10], [1, 2, 3, 0, 10, 10]], [True, False])
+    assert kept(made, [0.5, 0, 10, 10]) == [0]
 
 
 def test_unmatched_boxes_mostly_in_a_region_are_left_out():
     regions = [[0, 0, 0, 100, 10], [2, 0, 50, 100, 10]]
-    scene = sequence([[1, 1, 30, 0, 10, 10]], [False], regions)
+    made = sequence([[1, 1, 30, 0, 10, 10]], [False], regions)
     boxes = [30, 0, 10, 10], [60, 0, 10, 18], [80, 0, 10, 22], [0, 50, 10, 10]
-    assert kept(scene, *boxes) == [0, 2, 3]  # the second region is of another frame
+    assert kept(made, *boxes) == [0, 2, 3]  # the second region is of another frame

@@ -21,15 +21,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from traffic_samples import scene
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation import baselines as client
 from vehicle_pf_tracker.evaluation.baselines import DEFAULT, VARIABLE
 from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
-from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
 PYTHON = Path(sys.executable)
-FRAMES = 30
+FRAMES, SIZE = 30, (200, 120)
 
 
 def environment():
@@ -55,21 +55,8 @@ def lanes():
     )
 
 
-def scene(truth):
-    return TrafficSequence(
-        folder=Path("lanes"),
-        frame_count=FRAMES,
-        frame_rate=30,
-        size=(200, 120),
-        truth=truth,
-        hidden=np.zeros(len(truth), dtype=bool),
-        ignored=np.empty((0, 5)),
-        detections={},
-    )
-
-
 def test_perfect_tracks_have_perfect_scores(real):
-    scores = real.score(scene(lanes()), lanes())
+    scores = real.score(scene(lanes(), SIZE), lanes())
     assert [scores[name] for name in ("HOTA", "DetA", "AssA", "IDF1", "MOTA")] == [100] * 5
     assert [scores[name] for name in ("IDSW", "Frag", "FP", "FN")] == [0] * 4
 
@@ -78,7 +65,7 @@ def test_an_exchange_of_identities_half_way_is_scored_as_one(real):
     tracks = lanes()
     late = tracks[:, 0] > FRAMES / 2
     tracks[late, 1] = 3 - tracks[late, 1]
-    scores = real.score(scene(lanes()), tracks)
+    scores = real.score(scene(lanes(), SIZE), tracks)
     assert scores["IDSW"] == 2
     assert scores["DetA"] == 100
     assert scores["AssA"] == pytest.approx(100 / 3)  # 15 of 15 + 15 + 15 for each pair
@@ -89,9 +76,9 @@ def test_an_exchange_of_identities_half_way_is_scored_as_one(real):
 @pytest.mark.parametrize("name", TRAFFIC_BASELINES)
 def test_every_baseline_follows_what_is_easy(real, name):
     detections = np.column_stack([lanes()[:, [0, 2, 3, 4, 5]], np.full(2 * FRAMES, 0.9)])
-    tracks, seconds = real.track(name, scene(lanes()), detections)
+    tracks, seconds = real.track(name, scene(lanes(), SIZE), detections)
     assert seconds > 0
-    scores = real.score(scene(lanes()), tracks)
+    scores = real.score(scene(lanes(), SIZE), tracks)
     assert scores["IDSW"] == 0
     assert scores["MOTA"] > 85  # some need three frames before they believe
 
@@ -99,14 +86,14 @@ def test_every_baseline_follows_what_is_easy(real, name):
 @pytest.mark.parametrize("name", ["bytetrack", "ocsort", "cbiou"])
 def test_low_scores_are_lost_on_default_thresholds_only(real, name):
     detections = np.column_stack([lanes()[:, [0, 2, 3, 4, 5]], np.full(2 * FRAMES, 0.4)])
-    assert len(real.track(name, scene(lanes()), detections)[0]) == 0
-    assert len(real.track(f"{name}-low", scene(lanes()), detections)[0]) > FRAMES
+    assert len(real.track(name, scene(lanes(), SIZE), detections)[0]) == 0
+    assert len(real.track(f"{name}-low", scene(lanes(), SIZE), detections)[0]) > FRAMES
 
 
 def test_an_unknown_baseline_is_told(real):
     words = r"unknown baseline 'deepsort' .*; the baselines are sort"
     with pytest.raises(InputError, match=words):
-        real.track("deepsort", scene(lanes()), np.empty((0, 6)))
+        real.track("deepsort", scene(lanes(), SIZE), np.empty((0, 6)))
 
 
 ECHO = """
@@ -116,7 +103,6 @@ for line in sys.stdin:
     print(json.dumps(json.loads(line)), flush=True)
 """
 FAILS = 'print("{}", flush=True); input(); print(\'{"error": "ValueError: too much"}\', flush=True)'
-DIES = 'import sys; print("{}", flush=True); input(); sys.exit("out of memory")'
 
 
 def start(monkeypatch, tmp_path, text):
@@ -129,7 +115,9 @@ def start(monkeypatch, tmp_path, text):
 def test_only_what_is_to_be_scored_is_sent(monkeypatch, tmp_path):
     truth = lanes()
     with start(monkeypatch, tmp_path, ECHO) as started:
-        sent = started.score(scene(truth), np.column_stack([truth, np.ones(len(truth))]))["score"]
+        sent = started.score(scene(truth, SIZE), np.column_stack([truth, np.ones(len(truth))]))[
+            "score"
+        ]
     assert sent["frames"] == FRAMES
     assert sent["truth"] == sent["tracks"] == truth.tolist()
 
@@ -139,15 +127,7 @@ def test_a_failure_of_the_libraries_is_told(monkeypatch, tmp_path):
         start(monkeypatch, tmp_path, FAILS) as started,
         pytest.raises(InputError, match="the traffic baselines cannot go on: ValueError: too much"),
     ):
-        started.score(scene(lanes()), lanes())
-
-
-def test_a_dead_worker_is_told_with_its_last_words(monkeypatch, tmp_path):
-    with (
-        start(monkeypatch, tmp_path, DIES) as started,
-        pytest.raises(InputError, match="ended: out of memory; `make baselines` builds"),
-    ):
-        started.score(scene(lanes()), lanes())
+        started.score(scene(lanes(), SIZE), lanes())
 
 
 def test_an_environment_without_the_libraries_is_told():

@@ -14,30 +14,19 @@
 
 """Identities kept, and vehicles counted."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from traffic_samples import scene
 
 from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
-from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
 FRAMES = 100
 
 
-def scene(hidden=(), size=(600, 100)):
+def drive(hidden=(), size=(600, 100)):
     """One vehicle that drives to the right, totally hidden in these frames."""
-    rows = [[f, 7, 4.0 * (f - 1), 40, 20, 12] for f in range(1, FRAMES + 1)]
-    return TrafficSequence(
-        folder=Path("scene"),
-        frame_count=FRAMES,
-        frame_rate=30,
-        size=size,
-        truth=np.array(rows, dtype=float),
-        hidden=np.isin(range(1, FRAMES + 1), list(hidden)),
-        ignored=np.empty((0, 5)),
-        detections={},
-    )
+    truth = [[f, 7, 4.0 * (f - 1), 40, 20, 12] for f in range(1, FRAMES + 1)]
+    return scene(truth, size, np.isin(range(1, FRAMES + 1), list(hidden)))
 
 
 def tracks(*spans):
@@ -68,42 +57,34 @@ BRIDGE = range(41, 61)
     ],
 )
 def test_an_identity_is_kept_if_it_is_the_same_before_and_after(spans, kept):
-    assert kept_identities(scene(BRIDGE), tracks(*spans)) == (kept, 1)
+    assert kept_identities(drive(BRIDGE), tracks(*spans)) == (kept, 1)
 
 
 def test_glimpses_do_not_divide_an_occlusion():
     glimpse = set(BRIDGE) - {50, 51, 52}
-    assert kept_identities(scene(glimpse), tracks((1, 100, 1))) == (1, 1)
+    assert kept_identities(drive(glimpse), tracks((1, 100, 1))) == (1, 1)
     twice = set(BRIDGE) - set(range(48, 54))
-    assert kept_identities(scene(twice), tracks((1, 100, 1)))[1] == 1  # 6 frames are too few before
+    assert kept_identities(drive(twice), tracks((1, 100, 1)))[1] == 1  # 6 frames are too few before
 
 
 def test_who_is_seen_for_too_short_before_is_not_judged():
-    assert kept_identities(scene(range(8, 30)), tracks((1, 100, 1))) == (0, 0)
-    assert kept_identities(scene(range(60, 101)), tracks((1, 100, 1))) == (0, 0)
+    assert kept_identities(drive(range(8, 30)), tracks((1, 100, 1))) == (0, 0)
+    assert kept_identities(drive(range(60, 101)), tracks((1, 100, 1))) == (0, 0)
 
 
 def test_crossings_of_the_middle_are_counted_once_per_identity():
-    assert counts(scene(), tracks((1, 100, 1))) == (1, 1)
-    assert counts(scene(), tracks((1, 40, 1))) == (0, 1)
+    assert counts(drive(), tracks((1, 100, 1))) == (1, 1)
+    assert counts(drive(), tracks((1, 40, 1))) == (0, 1)
     both = np.vstack([tracks((1, 100, 1)), tracks((1, 100, 2))])
-    assert counts(scene(), both) == (2, 1)
+    assert counts(drive(), both) == (2, 1)
 
 
 def test_who_crosses_in_the_first_two_seconds_is_not_counted():
-    assert counts(scene(size=(400, 100)), tracks((1, 100, 1))) == (0, 0)
+    assert counts(drive(size=(400, 100)), tracks((1, 100, 1))) == (0, 0)
 
 
 def test_traffic_that_goes_down_is_counted_at_a_level_line():
-    sideways = scene(size=(100, 600))
-    turned = sideways.truth[:, [0, 1, 3, 2, 5, 4]]
-    down = TrafficSequence(
-        **{
-            name: getattr(sideways, name)
-            for name in ("folder", "frame_count", "frame_rate", "size", "hidden", "ignored",
-                         "detections")
-        },
-        truth=turned,
-    )  # fmt: skip
+    turned = drive().truth[:, [0, 1, 3, 2, 5, 4]]
+    down = scene(turned, (100, 600))
     assert counts(down, turned) == (1, 1)
     assert counts(down, tracks((1, 100, 1))) == (0, 1)

@@ -59,8 +59,8 @@ def test_the_default_search_is_marked_in_the_table():
 def test_a_mark_may_carry_the_range():
     @dataclass(frozen=True)
     class Parameters:
-        wide: float = parameter(1.0, "Wider.", minimum=0.0, tuned=True)
-        narrow: float = parameter(1.0, "Narrower.", minimum=0.0, tuned=(0.5, 1.5))
+        wide: float = parameter(1.0, "Wider.", bounds=(0.0, 100.0), tuned=True)
+        narrow: float = parameter(1.0, "Narrower.", bounds=(0.0, 100.0), tuned=(0.5, 1.5))
         still: float = parameter(1.0, "Not searched.")
 
     variant = SimpleNamespace(name="made", parameters=Parameters)

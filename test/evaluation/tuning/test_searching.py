@@ -14,12 +14,12 @@
 
 import pytest
 
-pytest.importorskip("optuna", reason="the extra [tune] is not installed")
+pytest.importorskip("optuna", reason="the extra [evaluation] is not installed")
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
-from vehicle_pf_tracker.evaluation.grid.tracking import CellResult
+from vehicle_pf_tracker.evaluation.grid.running import CellResult
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.search_space import OBJECTIVES, search_space
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means

@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 import signal
-from pathlib import Path
 
 import pytest
 
@@ -33,8 +32,6 @@ from tracker_rig import TARGET, header, road, values_of
 from vehicle_pf_tracker.ros.messages import NOT_READY, image_message
 
 pytestmark = pytest.mark.ros
-
-BENCHMARK = Path(__file__).parents[3] / "benchmarks" / "cold_start.py"
 
 
 @pytest.fixture
@@ -75,12 +72,3 @@ def test_a_signal_is_obeyed_while_it_compiles(cold):
     cold.send(signal.SIGTERM)
     assert cold.wait() == 0
     assert "Traceback" not in cold.output
-
-
-@pytest.mark.slow
-def test_the_time_to_the_first_answer_can_be_measured(start_process):
-    process = start_process(str(BENCHMARK), "pf", "--repeats", "1")
-    assert process.wait(600.0) == 0, process.output
-    rows = [line.split(" | ") for line in process.output.splitlines() if line.startswith("| `pf`")]
-    assert [row[1] for row in rows] == ["cold", "warm", "opencv", "empty"]
-    assert all(float(row[3]) > 0.05 for row in rows)  # Python alone takes that long

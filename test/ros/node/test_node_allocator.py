@@ -44,7 +44,6 @@ pytestmark = pytest.mark.skipif(
 
 
 def run(**environment: str) -> tuple[bool, int]:
-    # Dask leaves such a variable in the process that starts its workers.
     plain = {name: value for name, value in os.environ.items() if not name.startswith("MALLOC_")}
     told = subprocess.run(
         [sys.executable, "-c", COUNT_FAULTS],

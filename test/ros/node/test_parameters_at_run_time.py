@@ -36,7 +36,7 @@ from vehicle_pf_tracker.trackers.session import Session
 
 pytestmark = pytest.mark.ros
 
-TIMED = {"step_ms"}
+TIMED = {"step_ms", "moved"}
 OF_THE_ROAD = {"road", *ROAD_COLUMNS}
 """Values that stand beside those of the estimate."""
 WORDS = {
@@ -60,11 +60,12 @@ def another(spec: ParameterSpec, value):
         return next(word for word in spec.choices if word != value)
     if spec.kind is str:
         return WORDS.get(spec.name, "1")
+    low, high = spec.bounds
     if spec.kind is int:
-        return value + 1 if spec.maximum is None or value < spec.maximum else value - 1
+        return value + 1 if value < high else value - 1
     if not value:
-        return 1.0 if spec.maximum is None else min(1.0, spec.maximum)
-    return value * 0.9 if spec.minimum is None or value * 0.9 >= spec.minimum else value * 1.1
+        return min(1.0, high)
+    return value * 0.9 if value * 0.9 >= low else value * 1.1
 
 
 def text(value) -> str:

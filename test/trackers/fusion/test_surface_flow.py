@@ -20,7 +20,6 @@ import pytest
 
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import cut_patch
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 
 SIZE = np.array([40.0, 40.0])
@@ -60,7 +59,7 @@ class Drive:
     """Shows a vehicle whose position is known, frame by frame."""
 
     def __init__(self, speed=(2.0, 0.0), spin=0.0, textures=USUAL):
-        self.flow, self.time = SurfaceFlow(load_kernels("auto")), 0
+        self.flow, self.time = SurfaceFlow(), 0
         self.textures = textures
         self.speed, self.spin = np.array(speed), spin
         self._keep(self._patch())

@@ -21,7 +21,6 @@ import pytest
 from street import Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.papers.apf import ApfParameters, ApfTracker
 from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters, log_likelihood
 from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
@@ -127,31 +126,6 @@ def test_interpretation_5_the_origin_counts_as_the_first_position():
     assert follow(make(), street, range(2))[-1].velocity == pytest.approx((0, 0), abs=6)
 
 
-def spread_after(elapsed, hidden):
-    street = Street(speed=3.0, hidden=(10, 99) if hidden else (99, 99))
-    tracker = make(num_particles=4000)
-    parents = follow(tracker, street, range(12))[-1].particles
-    particles = tracker.step(street.frame(12), elapsed).particles
-    return particles, parents
-
-
-def test_the_drift_scales_with_the_elapsed_time():
-    def drift(elapsed):
-        particles, parents = spread_after(elapsed, hidden=True)
-        return (particles - parents)[:, 0].mean()
-
-    assert drift(4.0) == pytest.approx(4 * drift(1.0), rel=0.1)
-    assert drift(1.0) == pytest.approx(3.0, rel=0.3)
-
-
-def test_a_drift_out_of_the_image_is_lost_before_the_time_is_up():
-    street = Street(speed=6.0, hidden=(20, 99))
-    estimates = follow(make(lost_after=1000.0), street, range(40))
-    modes = [e.mode for e in estimates]
-    assert modes[22] is Mode.OCCLUDED
-    assert modes[-1] is Mode.LOST
-
-
 class Repainted(Street):
     """A vehicle whose lower half is another colour than in the first frame, but for that clear."""
 
@@ -195,30 +169,6 @@ def test_with_the_relative_rule_the_reference_follows_good_frames_only():
         assert np.array_equal(tracker.reference.histogram, followed)
 
 
-def test_one_low_similarity_is_enough_for_the_occlusion_regime():
-    """The reference learns a repainted vehicle fast, and then its first colours return."""
-    values = {"reference.alpha": 0.5, "reference.frozen_while_occluded": False}
-    tracker, there, back = make(**PRINTED_RULE, **values), Repainted(speed=0.0), Street(speed=0.0)
-    estimates = follow(tracker, there, range(5))
-    estimates += [tracker.step(back.frame(time)) for time in range(5, 11)]
-    tau, single = ApfParameters().occlusion.tau, set()
-    for before, now in itertools.pairwise(estimates[1:]):
-        low = {name for name in ("pi", "pi_up") if before.similarities[name] < tau}
-        assert now.regime == ("occlusion" if low else "regular")
-        single |= low if len(low) == 1 else set()
-    assert single == {"pi", "pi_up"}
-
-
-@pytest.mark.parametrize("sigma_n", [2.0, 10.0])
-def test_the_drift_spreads_across_the_motion_by_its_own_sigma(sigma_n):
-    tracker = make(**PRINTED_RULE, num_particles=4000, **{"motion.sigma_n": sigma_n})
-    street = Street(speed=3.0, hidden=(11, 99))
-    before = follow(tracker, street, range(12))[-1].particles[:, 1].var()
-    estimate = tracker.step(street.frame(12))
-    assert estimate.regime == "occlusion"
-    assert estimate.particles[:, 1].var() - before == pytest.approx(sigma_n**2, rel=0.15)
-
-
 class Reversing(Street):
     """Drives to the right at 3 px a frame, and in the two frames before it is hidden back."""
 
@@ -242,3 +192,34 @@ def test_the_drift_leaves_out_the_newest_displacements():
 @pytest.mark.parametrize(("rule", "delay"), [("relative", 12), ("fixed", 0)])
 def test_only_the_relative_rule_notices_late_and_delays_the_drift(rule, delay):
     assert from_mapping(ApfParameters, {"occlusion.rule": rule}).drift_delay == delay
+
+
+def spread_after(elapsed, hidden):
+    street = Street(speed=3.0, hidden=(10, 99) if hidden else (99, 99))
+    tracker = make(num_particles=4000)
+    parents = follow(tracker, street, range(12))[-1].particles
+    particles = tracker.step(street.frame(12), elapsed).particles
+    return particles, parents
+
+
+def test_the_drift_scales_with_the_elapsed_time():
+    def drift(elapsed):
+        particles, parents = spread_after(elapsed, hidden=True)
+        return (particles - parents)[:, 0].mean()
+
+    assert drift(4.0) == pytest.approx(4 * drift(1.0), rel=0.1)
+    assert drift(1.0) == pytest.approx(3.0, rel=0.3)
+
+
+def test_one_low_similarity_is_enough_for_the_occlusion_regime():
+    """The reference learns a repainted vehicle fast, and then its first colours return."""
+    values = {"reference.alpha": 0.5, "reference.frozen_while_occluded": False}
+    tracker, there, back = make(**PRINTED_RULE, **values), Repainted(speed=0.0), Street(speed=0.0)
+    estimates = follow(tracker, there, range(5))
+    estimates += [tracker.step(back.frame(time)) for time in range(5, 11)]
+    tau, single = ApfParameters().occlusion.tau, set()
+    for before, now in itertools.pairwise(estimates[1:]):
+        low = {name for name in ("pi", "pi_up") if before.similarities[name] < tau}
+        assert now.regime == ("occlusion" if low else "regular")
+        single |= low if len(low) == 1 else set()
+    assert single == {"pi", "pi_up"}

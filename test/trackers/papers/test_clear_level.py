@@ -37,18 +37,6 @@ def test_the_first_similarity_is_clear_and_becomes_the_level():
     assert level.deviation == pytest.approx(0.05)
 
 
-def test_level_and_deviation_by_hand():
-    # Second: 0.2 away counts as twice the deviation of 0.05, and the rate takes half of that. The
-    # level goes to the mean.
-    level = level_of(0.8, 0.6)
-    assert level.deviation == pytest.approx(0.075)
-    assert level.value == pytest.approx(0.7)
-    # Third: 0.1 away counts whole. A third is below the rate of a half, so the rate decides.
-    level.add(0.8, SETTINGS.rate)
-    assert level.deviation == pytest.approx(0.0875)
-    assert level.value == pytest.approx(0.75)
-
-
 def test_a_slow_fall_does_not_widen_its_own_bound():
     settings, level = ClearLevelParameters(), level_of(*[0.85, 0.87] * 30)
     similarity, frames = 0.85, 0

@@ -74,11 +74,3 @@ def test_without_mean_shift_the_moves_have_the_spread():
     # Flat weights: 16 px² are added to the 16 that were there.
     assert started.particles[:, 1].var() == pytest.approx(16.0, rel=0.05)
     assert stepped.particles[:, 1].var() == pytest.approx(32.0, rel=0.05)
-
-
-def test_starting_again_knows_nothing_of_the_speed():
-    tracker = make(**{"transition.widest": 2.0})
-    street = Street(speed=3.0)
-    follow(tracker, street, range(12))
-    tracker.start(street.frame(0), street.box(0))
-    assert tracker.spread() == pytest.approx(16.0)

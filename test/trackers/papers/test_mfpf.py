@@ -21,9 +21,7 @@ import pytest
 from street import Street, error, follow
 
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 from vehicle_pf_tracker.trackers.papers import mfpf
 from vehicle_pf_tracker.trackers.papers.mfpf import MfpfTracker
@@ -45,14 +43,6 @@ def make(**values):
 def spread(estimate):
     """Largest distance of a particle from the estimate, in px."""
     return np.hypot(*(estimate.particles - estimate.position).T).max()
-
-
-def test_says_what_every_feature_is_worth():
-    estimate = follow(make(), Street(), range(6))[-1]
-    expected = {f"{column}_{name}" for column in ("as", "lc", "wf", "used") for name in NAMES}
-    assert set(estimate.similarities) == expected
-    assert sum(estimate.similarities[f"wf_{name}"] for name in NAMES) == pytest.approx(1.0)
-    assert {estimate.similarities[f"used_{name}"] for name in NAMES} == {1.0}
 
 
 def test_confidences_are_one_in_the_first_frame_after_the_start():
@@ -102,13 +92,6 @@ def test_predicts_with_the_last_increments_and_leaves_the_references_alone():
     assert error(estimates[-1], street, 44) < 6
 
 
-def test_claims_no_vehicle_while_only_one_feature_is_fooled():
-    # On even asphalt all gradients are noise: without a floor the edges find what they look for.
-    street, tracker = Street(speed=3.0, hidden=(20, 40)), make(**{"edges.floor": 0.0})
-    estimates = follow(tracker, street, range(40))
-    assert all(e.mode is Mode.OCCLUDED for e in estimates[21:])
-
-
 def test_interpretation_15_the_reference_is_the_first_histogram_and_the_last_one():
     street = Street()
     for weight in (1.0, 0.25):
@@ -121,7 +104,7 @@ def test_interpretation_15_the_reference_is_the_first_histogram_and_the_last_one
         for kind, began, reference in zip(
             tracker.features.values(), first, tracker.references, strict=True
         ):
-            last = tracker.kernels.histograms(kind, street.frame(4), at, tracker.window)[0]
+            last = kind.histograms(street.frame(4), at, tracker.window)[0]
             assert reference.histogram == pytest.approx(weight * began + (1 - weight) * last)
 
 
@@ -146,17 +129,6 @@ def test_interpretation_17_the_best_particle_or_the_mean():
     assert np.hypot(*(estimate.particles - estimate.position).T).min() < 1e-9
 
 
-@pytest.mark.parametrize(
-    ("word", "kind"),
-    [("glcm", Cooccurrence), ("lbp", BinaryPatterns), ("haralick", HaralickStatistics)],
-)
-def test_each_texture_of_the_paper_can_be_chosen(word, kind):
-    street, tracker = Street(), make(texture=word)
-    estimates = follow(tracker, street, range(20))
-    assert isinstance(tracker.features["texture"], kind)
-    assert error(estimates[-1], street, 19) < 10
-
-
 def test_a_feature_changed_while_hidden_is_rebuilt_from_the_first_frame():
     street, tracker = Street(speed=0.0, hidden=(10, 20)), make()
     follow(tracker, street, range(15))
@@ -166,18 +138,6 @@ def test_a_feature_changed_while_hidden_is_rebuilt_from_the_first_frame():
     estimates = [tracker.step(street.frame(time)) for time in range(15, 35)]
     assert estimates[0].regime == "prediction"
     assert error(estimates[-1], street, 34) < 8
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_single_feature_filter_has_the_whole_weight_or_predicts(name):
-    variant = VARIANTS[f"sfpf_{name}"]
-    street = Street(speed=1.0, hidden=(15, 20))
-    estimates = follow(variant.tracker(variant.parameters()), street, range(30))
-    for estimate in estimates[1:]:
-        used = estimate.regime == "estimation"
-        assert estimate.similarities[f"wf_{name}"] == float(used)
-        assert set(estimate.similarities) == {f"{c}_{name}" for c in ("as", "lc", "wf", "used")}
-    assert {e.regime for e in estimates[15:20]} == {"prediction"}
 
 
 def test_weights_are_the_earlier_ones_times_the_likelihoods_of_the_features_in_use():

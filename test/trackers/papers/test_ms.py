@@ -14,7 +14,6 @@
 
 """Mean shift as a tracker: certain, short of memory, and bound to where it was."""
 
-import numpy as np
 import pytest
 from street import SIZE, Street, error, follow
 
@@ -57,9 +56,3 @@ def test_a_vehicle_out_of_the_windows_reach_is_not_found_and_not_claimed():
     estimate = tracker.step(gone.frame(1))
     assert error(estimate, gone, 1) > SIZE[0]
     assert estimate.mode is Mode.OCCLUDED
-
-
-def test_evidence_at_the_target_is_high_and_at_a_stranger_low():
-    estimates = follow(make(), Street(hidden=(10, 20)), range(12))
-    assert np.mean([e.similarities["pi"] for e in estimates[1:10]]) > 0.7
-    assert estimates[11].similarities["pi"] < 0.3

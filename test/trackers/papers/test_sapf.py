@@ -14,7 +14,6 @@
 
 """The annealed particle filter: its layers, their rates and their diffusion."""
 
-import numpy as np
 import pytest
 from street import Street, error, follow
 
@@ -24,10 +23,6 @@ from vehicle_pf_tracker.trackers.papers.sapf import SapfParameters, SapfTracker
 
 def make(**values):
     return SapfTracker(from_mapping(SapfParameters, values))
-
-
-def spread(estimate):
-    return float(estimate.particles.std(axis=0).mean())
 
 
 def test_each_layer_resamples_its_particles():
@@ -54,19 +49,6 @@ def test_the_wanted_share_survives_the_last_layer():
     values = {"annealing.survival": 0.3, "annealing.largest_rate": 1e6}
     for estimate in follow(make(**values), Street(), range(10))[1:]:
         assert estimate.effective_sample_size == pytest.approx(0.3 * 50, rel=0.01)
-
-
-def test_no_layer_is_sharper_than_the_likelihood_by_default():
-    values = {"annealing.survival": 0.01}
-    flat = follow(make(**{"likelihood.sigma_v": 50.0}, **values), Street(), range(4))
-    assert min(e.effective_sample_size for e in flat) > 49
-
-
-def test_narrower_than_one_layer_of_as_many_particles():
-    street, times = Street(), range(30)
-    layered = follow(make(), street, times)
-    single = follow(make(num_particles=200, **{"annealing.layers": 1}), street, times)
-    assert np.mean([spread(e) for e in layered[5:]]) < np.mean([spread(e) for e in single[5:]])
 
 
 def test_finds_a_vehicle_that_jumped():

@@ -17,12 +17,12 @@
 import numpy as np
 import pytest
 
+from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import assign, edge_costs
 from vehicle_pf_tracker.trackers.traffic.detections import (
     areas,
     clipped,
     inside_image,
-    intersections,
     overlaps,
 )
 

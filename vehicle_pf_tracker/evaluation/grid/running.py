@@ -12,112 +12,125 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Run the cells that an evaluation lacks, and keep each as soon as its result is there.
-
-They run on this machine, or on a Dask cluster whose workers can read the recordings.
-"""
+"""Run the cells that an evaluation lacks, and keep each as soon as its result is there."""
 
 from __future__ import annotations
 
-import asyncio
-import logging
-import os
+import functools
 import shutil
-import socket
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent import futures
-from functools import partial
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import astuple, dataclass, field
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, TypeAlias
 
+import cv2
+
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.outputs import output_errors
+from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
+from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
-from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, GridCell
-from vehicle_pf_tracker.evaluation.grid.plan import Plan
-from vehicle_pf_tracker.evaluation.grid.tracking import CellResult, run_cell
+from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, GridCell, Plan, VariantSystem
+from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
+from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.result_store import scoring_digest
+from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.offline.driver import OfflineTracker
+from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.output_files import flush_folder, make_folder, write_json
 from vehicle_pf_tracker.offline.processes import OnProgress, Progress, Turn, run_in_processes
-from vehicle_pf_tracker.offline.run_folder import METRICS, RUN, RunFolder, damage, seal
+from vehicle_pf_tracker.offline.run_folder import (
+    RUN,
+    RunFolder,
+    RunInfo,
+    damage,
+    describe_run,
+    seal,
+    versions,
+)
+from vehicle_pf_tracker.trackers.registry import find_variant
 
-RESTARTS = "restarts.json"
-_PARTIAL = ".partial"
 
+@dataclass(frozen=True, slots=True)
+class CellResult:
+    """The result of a cell.
 
-class CellStore:
-    """Stores cells in an evaluation folder.
-
-    A cell is written beside its folder and then moved there. What a killed run left half written is
-    removed.
-
-    Parameters
+    Attributes
     ----------
-    folder : Path
-        Folder of the evaluation.
-
-    Raises
-    ------
-    InputError
-        If nothing can be written there; also from `add`.
+    rows : sequence of EstimateRow
+        Estimates, one per frame.
+    run : dict
+        Content of `run.json`.
+    metrics : Metrics or None
+        Metrics of the run; None where it could not run.
+    reason : str
+        Reason why it could not run, a sentence; empty if it did.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = make_folder(folder)
-        self._scoring = scoring_digest()
-        with output_errors(folder):
-            for left in folder.glob(f"**/*{_PARTIAL}"):
-                shutil.rmtree(left, ignore_errors=True)
+    rows: list[EstimateRow] = field(default_factory=list)
+    run: dict[str, Any] = field(default_factory=dict)
+    metrics: Metrics | None = None
+    reason: str = ""
 
-    def has(self, cell: GridCell) -> bool:
-        """Return whether a valid result of the cell is stored; one that failed is tried again."""
-        path = cell.folder(self._folder)
-        if damage(path):
-            return False
-        run = read_document(path / RUN)
-        return run.get("key") == cell.key() and run.get("scored_by") == self._scoring
 
-    def is_damaged(self, cell: GridCell) -> bool:
-        """Return whether something is stored for the cell that is not as it was written."""
-        path = cell.folder(self._folder)
-        return path.is_dir() and not (path / FAILED).is_file() and bool(damage(path))
+def run_cell(cell: GridCell) -> CellResult:
+    """Run a cell; a failure is reported in the outcome, so that the others go on."""
+    cv2.setNumThreads(1)
+    try:
+        recording = footage(cell.source)
+        if isinstance(cell.system, VariantSystem):
+            rows, run = _run_variant(cell, cell.system, recording)
+        else:
+            rows, run = _run_baseline(cell, cell.system, recording)
+        metrics = measure(score_frames(rows, recording.truth, cell.max_diff))
+        return CellResult(rows, run, metrics)
+    except InputError as error:
+        return CellResult(reason=str(error))
+    except Exception as error:  # a fault of ours must not cost the rest of a long evaluation
+        return CellResult(reason=f"it ended with an internal error: {error!r}")
 
-    def drop_others(self, cells: Iterable[GridCell]) -> None:
-        """Remove robustness runs that are not among `cells`: the report shows all it finds."""
-        wanted = {cell.folder(self._folder) for cell in cells}
-        with output_errors(self._folder):
-            for name in (METRICS, FAILED):
-                for path in list((self._folder / BESIDE).glob(f"**/{name}")):
-                    if path.parent not in wanted:
-                        shutil.rmtree(path.parent)
 
-    def add(self, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
-        """Store the outcome of a cell, replacing that of an earlier run."""
-        target = cell.folder(self._folder)
-        partial = target.with_name(f".{target.name}.{os.getpid()}{_PARTIAL}")
-        with output_errors(partial):
-            shutil.rmtree(partial, ignore_errors=True)
-            self._write(partial, cell, outcome, command)
-            shutil.rmtree(target, ignore_errors=True)
-            partial.rename(target)
-            flush_folder(target.parent)
+def _run_variant(
+    cell: GridCell, system: VariantSystem, recording: Footage
+) -> tuple[list[EstimateRow], dict[str, Any]]:
+    """Return the rows of a variant and its `run.json`."""
+    tracker = OfflineTracker(
+        find_variant(system.variant),
+        system.tracker_parameters(cell.seed),
+        system.session_parameters(),
+        first_truth=recording.truth[0],
+        max_diff=cell.max_diff,
+    )
+    rows = list(tracker.rows(recording.frames()))
+    notices = [*recording.notices, *tracker.notices]
+    source = cell.source
+    info = RunInfo([], source.path, source.topic, tracker.start_frame, notices)
+    return rows, describe_run(info, tracker.session)
 
-    def _write(self, path: Path, cell: GridCell, outcome: CellResult, command: list[str]) -> None:
-        if outcome.metrics is None:
-            write_json(make_folder(path) / FAILED, {"reason": outcome.reason})
-            return
-        run: dict[str, Any] = {
-            **outcome.run,
-            "command": command,
-            "key": cell.key(),
-            "scored_by": self._scoring,
-        }
-        results = RunFolder(path)
-        results.write_run(outcome.rows, run)
-        results.write_metrics(outcome.metrics.to_json())
-        if outcome.restarts is not None:
-            write_json(path / RESTARTS, outcome.restarts)
-        seal(path)
+
+def _run_baseline(
+    cell: GridCell, system: BaselineSystem, recording: Footage
+) -> tuple[list[EstimateRow], dict[str, Any]]:
+    """Return the rows of a baseline and its `run.json`."""
+    first = recording.truth[0]
+    python = Path(system.python) if system.python else None
+    with Baseline(system.baseline, python, system.model_files()) as baseline:
+        rows = list(baseline_rows(baseline, recording.frames(), first))
+        opencv = baseline.versions["opencv"]
+    started = (row.frame for row in rows if row.mode not in {WAITING, REJECTED})
+    return rows, {
+        "command": [],
+        "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "recording": cell.source.path,
+        "image_topic": cell.source.topic,
+        "baseline": system.baseline,
+        "seed": cell.seed,
+        "target": list(astuple(first.box)),
+        "start_frame": next(started, None),
+        "parameters": dict(system.models),
+        "versions": {**versions(), "opencv": opencv},
+        "notices": recording.notices,
+    }
 
 
 Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[Turn[GridCell, CellResult]]]
@@ -126,7 +139,7 @@ Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[Turn[GridCell, CellR
 
 def on_this_machine(workers: int) -> Runner:
     """Return what runs cells in `workers` processes; results do not depend on how many."""
-    return partial(run_in_processes, run_cell, workers=workers)
+    return functools.partial(run_in_processes, run_cell, workers=workers)
 
 
 def complete(
@@ -156,21 +169,49 @@ def complete(
     InputError
         If the folder cannot be written, or a process is ended from outside.
     """
-    store = CellStore(folder)
+    with output_errors(folder):
+        for left in make_folder(folder).glob("**/.seed-*"):  # half written by a run that was killed
+            shutil.rmtree(left, ignore_errors=True)
     plan.write(folder)
-    cells = plan.cells()
-    store.drop_others(cells)
-    missing = [cell for cell in cells if not store.has(cell)]
-    damaged = [cell.label for cell in missing if store.is_damaged(cell)]
+    missing = [cell for cell in plan.cells() if not _is_stored(cell, cell.folder(folder))]
+    damaged = [cell.label for cell in missing if _is_damaged(cell.folder(folder))]
     if damaged:
         notify(_damage_notice(damaged))
     done = 0
     for turn in runner(missing):
         if turn.ended is not None:
-            store.add(*turn.ended, plan.command)
+            cell, outcome = turn.ended
+            _store(cell, outcome, cell.folder(folder), plan.command)
             done += 1
         on_progress(Progress(done, len(missing), tuple(cell.label for cell in turn.running)))
     return len(missing)
+
+
+def _is_stored(cell: GridCell, folder: Path) -> bool:
+    """Return whether the folder has a valid result of the cell; one that failed is tried again."""
+    if damage(folder):
+        return False
+    run = read_document(folder / RUN)
+    return run.get("key") == cell.key() and run.get("scored_by") == scoring_digest()
+
+
+def _is_damaged(folder: Path) -> bool:
+    """Return whether the folder holds a result that is not as it was written."""
+    return folder.is_dir() and not (folder / FAILED).is_file() and bool(damage(folder))
+
+
+def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]) -> None:
+    """Store the outcome of a cell, replacing that of an earlier run."""
+    with output_errors(folder), whole_folder(folder) as partial:
+        if outcome.metrics is None:
+            write_json(partial / FAILED, {"reason": outcome.reason})
+        else:
+            keys = {"command": command, "key": cell.key(), "scored_by": scoring_digest()}
+            results = RunFolder(partial)
+            results.write_run(outcome.rows, {**outcome.run, **keys})
+            results.write_metrics(outcome.metrics.to_json())
+            seal(partial)
+    flush_folder(folder.parent)
 
 
 _MOST_NAMED = 5
@@ -181,83 +222,3 @@ def _damage_notice(labels: Sequence[str]) -> str:
     more = len(labels) - _MOST_NAMED
     named = ", ".join(labels[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
     return f"stored results that were changed or damaged are run again: {named}"
-
-
-def on_cluster(address: str, seconds: float = 10.0) -> Runner:
-    """Return what runs cells on the cluster of a scheduler.
-
-    A cell whose worker dies is run again on another one. Each result is given once.
-
-    Parameters
-    ----------
-    address : str
-        Address of the scheduler, as ``tcp://host:8786``.
-    seconds : float
-        Time to wait for the scheduler, s.
-
-    Raises
-    ------
-    InputError
-        From the runner, if the scheduler cannot be reached, has no worker, or is lost on the way.
-    """
-    return partial(_run, address, seconds)
-
-
-def run_checked(cell: GridCell, key: str) -> CellResult:
-    """Run a cell on a worker whose code and libraries are those that it was planned with."""
-    if cell.key() == key:
-        return run_cell(cell)
-    return CellResult(
-        reason=f"the worker on {socket.gethostname()} has other code or other versions of Python, "
-        "NumPy, OpenCV or numba than the machine that evaluates; install the same everywhere"
-    )
-
-
-def _run(
-    address: str, seconds: float, cells: Sequence[GridCell]
-) -> Iterator[Turn[GridCell, CellResult]]:
-    if not cells:
-        return
-    client = _connected(address, seconds)
-    try:
-        yield from _results(client, cells)
-    except (OSError, futures.CancelledError, asyncio.CancelledError) as error:
-        raise InputError(
-            f"the Dask scheduler at {address} was lost on the way; start it and its workers again, "
-            "and run the same command: the results so far are kept"
-        ) from error
-    finally:
-        client.close()
-
-
-def _connected(address: str, seconds: float) -> Any:
-    try:
-        from distributed import Client  # noqa: PLC0415 - an extra
-    except ModuleNotFoundError:
-        raise InputError(
-            "a Dask cluster needs the extra [cluster]: `pip install 'vehicle_pf_tracker[cluster]'`"
-        ) from None
-    # Its log would print a traceback beside our sentence when the scheduler is lost.
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
-    try:
-        client = Client(address, timeout=seconds, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:  # a TimeoutError is an OSError
-        raise InputError(f"cannot reach a Dask scheduler at {address}") from error
-    if not client.scheduler_info(n_workers=-1)["workers"]:
-        client.close()
-        raise InputError(f"the Dask scheduler at {address} has no workers; start `dask worker`")
-    return client
-
-
-def _results(client: Any, cells: Sequence[GridCell]) -> Iterator[Turn[GridCell, CellResult]]:
-    from distributed import as_completed  # noqa: PLC0415 - an extra
-
-    by_key = {f"{cell.label}-{cell.key()}".replace(" ", "-"): cell for cell in cells}
-    submitted = [client.submit(run_checked, cell, cell.key(), key=k) for k, cell in by_key.items()]
-    waiting = as_completed(submitted, loop=client.loop)
-    submitted.clear()  # so that each result can go once it is here
-    for future in waiting:
-        error = future.exception()
-        reason = f"the cluster gave it up: {' '.join(str(error).split())}"
-        outcome = future.result() if error is None else CellResult(reason=reason)
-        yield Turn((by_key[future.key], outcome), ())

@@ -16,15 +16,9 @@
 
 from __future__ import annotations
 
-import atexit
-import functools
 import hashlib
-import shutil
-import tempfile
-import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from pathlib import Path, PurePosixPath
-from typing import Any, TypeVar, cast
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 
 from vehicle_pf_tracker.core.clock import associate
 from vehicle_pf_tracker.core.errors import InputError
@@ -35,13 +29,7 @@ from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.reader import Recording
 
 _MAKE = "make a recording of it first: `vehicle-pf-tracker import {} OUT`"
-T = TypeVar("T")
 _VIDEOS = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm"})
-
-
-def is_url(location: str) -> bool:
-    """Return whether `location` is a URL rather than a path."""
-    return "://" in location
 
 
 def find_recordings(locations: Sequence[str]) -> list[str]:
@@ -52,23 +40,8 @@ def find_recordings(locations: Sequence[str]) -> list[str]:
     InputError
         If one names none, or something that has to be imported first.
     """
-    found = [
-        recording
-        for location in locations
-        for recording in (_at_url(location) if is_url(location) else _at_path(Path(location)))
-    ]
+    found = [recording for location in locations for recording in _at_path(Path(location))]
     return list(dict.fromkeys(found))
-
-
-def local_copy(location: str) -> Path:
-    """Return a local path of the recording; what a URL names is copied, once per process.
-
-    Raises
-    ------
-    InputError
-        If it cannot be fetched.
-    """
-    return _fetched(location) if is_url(location) else Path(location)
 
 
 def _at_path(path: Path) -> list[str]:
@@ -89,73 +62,9 @@ def _at_path(path: Path) -> list[str]:
 
 
 def _is_recording(path: Path) -> bool:
-    return _holds_recording(path.iterdir()) if path.is_dir() else path.suffix == ".mcap"
-
-
-def _holds_recording(children: Iterable[str | Path]) -> bool:
-    return any(str(child).endswith((".mcap", "/metadata.yaml")) for child in children)
-
-
-def _at_url(url: str) -> list[str]:
-    system, path = _file_system(url)
-
-    def children(folder: str) -> list[str]:
-        return sorted(system.ls(folder, detail=False)) if system.isdir(folder) else []
-
-    def look() -> list[str]:
-        if not system.exists(path):
-            raise InputError(f"there is no recording {url}")
-        if not system.isdir(path) or _holds_recording(children(path)):
-            return [path]
-        return [child for child in children(path)
-                if child.endswith(".mcap") or _holds_recording(children(child))]  # fmt: skip
-
-    found = _asked(url, look)
-    if not found:
-        raise InputError(f"the folder {url} is not a recording and holds none")
-    return [str(system.unstrip_protocol(name)) for name in found]
-
-
-@functools.cache
-def _fetched(url: str) -> Path:
-    system, path = _file_system(url)
-    name = path.rstrip("/").rsplit("/", 1)[-1]
-    target = Path(tempfile.mkdtemp(prefix="vehicle-pf-tracker-")) / name
-    atexit.register(shutil.rmtree, target.parent, ignore_errors=True)
-
-    def fetch() -> Path:
-        if not system.isdir(path):
-            system.get_file(path, str(target))
-            return target
-        target.mkdir()
-        for child in system.ls(path, detail=False):
-            if child.endswith((".mcap", "metadata.yaml")):
-                system.get_file(child, str(target / child.rsplit("/", 1)[-1]))
-        return target
-
-    return _asked(url, fetch)
-
-
-def _file_system(url: str) -> tuple[Any, str]:
-    try:
-        from fsspec.core import url_to_fs  # noqa: PLC0415 - an extra
-    except ModuleNotFoundError:
-        raise InputError(
-            f"the recording {url} is a URL, and to read those the extra [cluster] is needed: "
-            "`pip install 'vehicle_pf_tracker[cluster]'`"
-        ) from None
-    return _asked(url, lambda: cast("tuple[Any, str]", url_to_fs(url)))
-
-
-def _asked(url: str, question: Callable[[], T]) -> T:
-    """Ask the file system; it may be of any kind, and fail in any way."""
-    try:
-        return question()
-    except InputError:
-        raise
-    except Exception as error:
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(f"cannot read the recording {url}: {reason}") from error
+    if not path.is_dir():
+        return path.suffix == ".mcap"
+    return any(one.suffix == ".mcap" or one.name == "metadata.yaml" for one in path.iterdir())
 
 
 FRAMES_BYTES = 1 << 30
@@ -174,7 +83,7 @@ class Footage:
     """
 
     def __init__(self, source: Source) -> None:
-        path = local_copy(source.path)
+        path = Path(source.path)
         if _digest(path) != source.digest:
             raise InputError(f"the recording {source.path} has changed since it was planned")
         self._recording = Recording(path, source.topic)
@@ -195,23 +104,8 @@ class Footage:
         return ((image.stamp_ns, image.frame) for image in self._recording.frames())
 
 
-class Shelf:
-    """Keeps the footage that was used last, for all threads of this process."""
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._held: tuple[Source, Footage] | None = None
-
-    def footage(self, source: Source) -> Footage:
-        """Return the footage of `source`; that of another one is discarded."""
-        with self._lock:
-            if self._held is None or self._held[0] != source:
-                self._held = None  # so that two are never in memory
-                self._held = source, Footage(source)
-            return self._held[1]
-
-
-SHELF = Shelf()
+HELD: dict[Source, Footage] = {}
+"""The footage that was used last, at most one."""
 
 
 def footage(source: Source) -> Footage:
@@ -222,7 +116,10 @@ def footage(source: Source) -> Footage:
     InputError
         If it cannot be read, or is not what was planned with.
     """
-    return SHELF.footage(source)
+    if source not in HELD:
+        HELD.clear()  # so that two are never in memory
+        HELD[source] = Footage(source)
+    return HELD[source]
 
 
 def describe(
@@ -251,7 +148,7 @@ def describe(
 def _describe(
     location: str, name: str, topic: str | None, max_diff: float
 ) -> tuple[Source, dict[int, Truth]]:
-    path = local_copy(location)
+    path = Path(location)
     recording = Recording(path, topic)
     truth = recording.truth()
     if not truth:
@@ -271,8 +168,9 @@ def _describe(
         )
     width, height = _size(recording)
     digest = _digest(path)
-    found = location if is_url(location) else str(Path(location).absolute())
-    source = Source(name, found, recording.image_topic, len(stamps), width, height, digest)
+    source = Source(
+        name, str(path.absolute()), recording.image_topic, len(stamps), width, height, digest
+    )
     return source, {index + 1: truth[place] for index, place in pairs.items()}
 
 
@@ -306,6 +204,6 @@ def _names(locations: Sequence[str]) -> Mapping[str, str]:
 
 
 def _name(location: str, parts: int) -> str:
-    path = PurePosixPath(location if is_url(location) else Path(location).absolute().as_posix())
+    path = Path(location).absolute()
     words = [*path.parts[-parts:-1], path.name.removesuffix(".mcap")]
     return safe_name("-".join(words))

@@ -14,6 +14,6 @@
 
 """The report of an evaluation, as one page and as tables."""
 
-from vehicle_pf_tracker.evaluation.report.writing import Report, ReportOptions, write_report
+from vehicle_pf_tracker.evaluation.report.writing import Report, write_report
 
-__all__ = ["Report", "ReportOptions", "write_report"]
+__all__ = ["Report", "write_report"]

@@ -16,21 +16,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import statistics
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.statistics import (
     FEWEST_RECORDINGS,
-    PairedTest,
     Ranking,
-    RunKey,
     Summary,
-    compare_pairs,
     rank_systems,
-    recording_means,
-    smallest_adjusted_p,
     summarise,
 )
 
@@ -195,23 +191,20 @@ class Aggregates:
     ----------
     order : tuple of str
         Labels of the systems that have a run, the best first.
-    by_recording : mapping of (recording, system) to Summaries
-        Summaries over seeds.
+    recordings : mapping of str to mapping of str to Summaries
+        Summaries over seeds, by recording and system.
     overall : mapping of system to Summaries
         Summaries over the means of the recordings, so that long ones do not outweigh short ones.
     rankings : mapping of str to Ranking
         Rankings by the key of a ranked column.
-    pairs : tuple of PairedTest
-        Tests of all pairs, by the first ranked column.
     recoveries : mapping of str to (int, int)
         Total occlusions recovered from and judged, of all runs of a system.
     """
 
     order: tuple[str, ...]
-    by_recording: Mapping[tuple[str, str], Summaries]
+    recordings: Mapping[str, Mapping[str, Summaries]]
     overall: Mapping[str, Summaries]
     rankings: Mapping[str, Ranking]
-    pairs: tuple[PairedTest, ...]
     recoveries: Mapping[str, tuple[int, int]]
 
 
@@ -223,7 +216,10 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
         for label, some in runs.items()
     }
     means = {
-        label: {key: recording_means(found) for key, found in columns.items()}
+        label: {
+            key: {recording: statistics.fmean(some) for recording, some in found.items()}
+            for key, found in columns.items()
+        }
         for label, columns in values.items()
     }
     rankings = {
@@ -241,32 +237,30 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     order = (*ranked, *(label for label in runs if label not in ranked))
     return Aggregates(
         order=order,
-        by_recording={
-            (entry.name, label): {
-                key: summarise([found[run] for run in found if run.recording == entry.name])
-                for key, found in columns.items()
+        recordings={
+            entry.name: {
+                label: {key: summarise(some.get(entry.name, [])) for key, some in columns.items()}
+                for label, columns in values.items()
+                if evaluation.of(entry.name, label)
             }
             for entry in evaluation.recordings
-            for label, columns in values.items()
-            if evaluation.of(entry.name, label)
         },
         overall={
             label: {key: summarise(list(found.values())) for key, found in means[label].items()}
             for label in order
         },
         rankings=rankings,
-        pairs=tuple(compare_pairs({label: values[label][main] for label in order})),
         recoveries={label: _recoveries(runs[label]) for label in order},
     )
 
 
-def _values(runs: Sequence[ScoredRun], column: Column) -> dict[RunKey, float]:
-    """Return a metric of runs, where they have it."""
-    return {
-        RunKey(run.recording, run.seed): value
-        for run in runs
-        if (value := column.value(run.metrics)) is not None
-    }
+def _values(runs: Sequence[ScoredRun], column: Column) -> dict[str, list[float]]:
+    """Return a metric of the runs that have it, by recording."""
+    found: dict[str, list[float]] = {}
+    for run in runs:
+        if (value := column.value(run.metrics)) is not None:
+            found.setdefault(run.recording, []).append(value)
+    return found
 
 
 def _recoveries(runs: Sequence[ScoredRun]) -> tuple[int, int]:
@@ -276,34 +270,26 @@ def _recoveries(runs: Sequence[ScoredRun]) -> tuple[int, int]:
 
 def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
     """State the leader, the systems statistically tied with it, and missing results."""
-    sentences = [*_leader(aggregates)]
-    sentences += [_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED)]
-    sentences.append(_failed(evaluation))
-    return [sentence for sentence in sentences if sentence]
+    best = (_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED))
+    failed = len(evaluation.failed)
+    cells = counted(len(evaluation.runs) + failed, "cell")
+    result = f"All {cells} of the grid have a result."
+    if failed:
+        result = f"{failed} of {cells} have no result; see Failed cells."
+    return [*_leader(aggregates), *filter(None, best), result, *_mixed_versions(evaluation)]
 
 
-def power(aggregates: Aggregates) -> str:
-    """Say what the paired tests can find at best."""
-    tests = [test for test in aggregates.pairs if test.difference is not None]
-    if not tests:
-        return ""
-    recordings = max(test.difference.count for test in tests if test.difference)
-    if recordings < FEWEST_RECORDINGS:
-        return (
-            f"With {counted(recordings, 'recording')} there are too few samples for any test: "
-            f"at least {FEWEST_RECORDINGS} are needed, whatever the number of seeds."
-        )
-    least = smallest_adjusted_p(recordings, len(tests))
-    text = (
-        f"With {counted(recordings, 'recording')} and {counted(len(tests), 'pair')} no adjusted "
-        f"p value can be below {least:.2g}"
-    )
-    if least < 0.05:
-        return f"{text}."
-    return (
-        f"{text}, so that too few recordings are there for any pair to differ significantly: "
-        "add recordings, or compare fewer systems."
-    )
+def _mixed_versions(evaluation: ScoredEvaluation) -> Iterator[str]:
+    """Name the libraries that not all runs of variants were made with the same version of."""
+    ours = {entry.label for entry in evaluation.systems if not entry.kind.startswith("baseline:")}
+    for library in ("vehicle_pf_tracker", "numpy", "opencv", "numba"):
+        found = {run.versions.get(library) for run in evaluation.runs if run.system in ours}
+        if len(found) > 1:
+            versions = listing(sorted(str(version or "none") for version in found))
+            yield (
+                f"Runs with {library} {versions} are compared: differences of half a pixel may be "
+                "the library's."
+            )
 
 
 def _leader(aggregates: Aggregates) -> list[str]:
@@ -345,10 +331,3 @@ def _best(aggregates: Aggregates, column: Column) -> str:
     unit = f" {column.unit}" if column.unit else ""
     end = "Highest" if column.higher_is_better else "Lowest"
     return f"{end} mean of {column.label}: {listing(leaders)}, {best:.{column.decimals}f}{unit}."
-
-
-def _failed(evaluation: ScoredEvaluation) -> str:
-    cells = len(evaluation.runs) + len(evaluation.failed)
-    if not evaluation.failed:
-        return f"All {counted(cells, 'cell')} of the grid have a result."
-    return f"{len(evaluation.failed)} of {counted(cells, 'cell')} have no result; see Failed cells."

@@ -14,14 +14,15 @@
 
 """Stills of a recording: around its occlusions, and where each system was worst.
 
-The truth is drawn as white corners, an estimate as a box in colour with a number.
+The truth is drawn with white dashes, an estimate as a box in colour with a number.
 """
 
 from __future__ import annotations
 
 import base64
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -31,22 +32,16 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.grid.sources import local_copy
 from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
+from vehicle_pf_tracker.offline.drawing import draw_box, write_words
 from vehicle_pf_tracker.recordings.reader import Recording
 
 _BLACK, _WHITE, _YELLOW = (0, 0, 0), (255, 255, 255), (240, 228, 66)
-_TAG = 13
-"""Side of a tag in px."""
-_DARK_STYLES = 3
-"""Number of the first colours that are dark, and have white tags."""
-_FONT = cv2.FONT_HERSHEY_SIMPLEX
 
 
-@dataclass(frozen=True, slots=True)
-class Mark:
+class Mark(NamedTuple):
     """An estimate to draw: its box, and the number of its style.
 
     Its tag is that number and 1; without a style it stands alone, yellow and without a tag.
@@ -56,8 +51,7 @@ class Mark:
     slot: int | None
 
 
-@dataclass(frozen=True, slots=True)
-class Crop:
+class Crop(NamedTuple):
     """A crop of an image, and the scale it is shown at.
 
     Attributes
@@ -73,12 +67,6 @@ class Crop:
     width: int
     height: int
     scale: float
-
-    @classmethod
-    def whole(cls, frame: Frame, shown_width: int) -> Crop:
-        """Show all of an image, `shown_width` px wide."""
-        width, height = frame_size(frame)
-        return cls(0, 0, width, height, shown_width / width)
 
     @classmethod
     def around(cls, boxes: Sequence[Box], size: tuple[int, int], shown_width: int) -> Crop:
@@ -113,10 +101,18 @@ def draw_overlay(frame: Frame, view: Crop, truth: Box | None, marks: Sequence[Ma
     way = cv2.INTER_CUBIC if view.scale > 1 else cv2.INTER_AREA
     resized = cv2.resize(np.ascontiguousarray(part), shown, interpolation=way)
     image: Frame = np.ascontiguousarray(resized, dtype=np.uint8)
-    for mark in reversed(marks):
-        _draw_mark(image, _shown(mark.box, view), mark.slot)
-    if truth is not None:
-        _draw_corners(image, _shown(truth, view))
+    boxes = [(mark.box, colour_of(mark.slot), False) for mark in reversed(marks)]
+    boxes += [(truth, _WHITE, True)] if truth else []
+    for box, colour, dashed in boxes:
+        scaled = _shown(box, view)
+        draw_box(image, scaled, _BLACK, 4, dashed=dashed)
+        draw_box(image, scaled, colour, 2, dashed=dashed)
+    for box, slot in marks:
+        if slot is not None:
+            scaled = _shown(box, view)
+            x = int(np.clip(scaled.x + scaled.width, 0, shown[0] - _LETTER))
+            y = int(np.clip(scaled.y + _LETTER * (1 + slot % 3), _LETTER, shown[1]))
+            write_words(image, str(slot + 1), (x, y), colour_of(slot))
     return image
 
 
@@ -128,37 +124,14 @@ def colour_of(slot: int | None) -> tuple[int, int, int]:
     return int(value[1:3], 16), int(value[3:5], 16), int(value[5:7], 16)
 
 
-def _shown(box: Box, view: Crop) -> tuple[int, int, int, int]:
-    """Return left, top, right and bottom in the shown image."""
-    left, top = (box.x - view.left) * view.scale, (box.y - view.top) * view.scale
-    corners = left, top, left + box.width * view.scale, top + box.height * view.scale
-    return tuple(int(np.clip(round(value), -5000, 5000)) for value in corners)  # type: ignore[return-value]
+def _shown(box: Box, view: Crop) -> Box:
+    """Return a box in the px of the shown image."""
+    x, y = (box.x - view.left) * view.scale, (box.y - view.top) * view.scale
+    return Box(x, y, box.width * view.scale, box.height * view.scale)
 
 
-def _draw_mark(image: Frame, corners: tuple[int, int, int, int], slot: int | None) -> None:
-    left, top, right, bottom = corners
-    for colour, width in ((_BLACK, 4), (colour_of(slot), 2)):
-        cv2.rectangle(image, (left, top), (right, bottom), colour, width, cv2.LINE_AA)
-    if slot is None:
-        return
-    x = min(max(right, 0), image.shape[1] - _TAG)
-    y = min(max(top + _TAG * (slot % 3), 0), image.shape[0] - _TAG)  # seldom over each other
-    cv2.rectangle(image, (x, y), (x + _TAG, y + _TAG), colour_of(slot), cv2.FILLED)
-    text = _WHITE if slot < _DARK_STYLES else _BLACK
-    corner = (x + 3, y + _TAG - 3)
-    cv2.putText(image, str(slot + 1), corner, _FONT, 0.42, text, 1, cv2.LINE_AA)
-
-
-def _draw_corners(image: Frame, corners: tuple[int, int, int, int]) -> None:
-    left, top, right, bottom = corners
-    arm_x, arm_y = max((right - left) // 4, 3), max((bottom - top) // 4, 3)
-    for colour, width in ((_BLACK, 4), (_WHITE, 2)):
-        for x, inward_x in ((left, arm_x), (right, -arm_x)):
-            for y, inward_y in ((top, arm_y), (bottom, -arm_y)):
-                cv2.line(image, (x, y), (x + inward_x, y), colour, width, cv2.LINE_AA)
-                cv2.line(image, (x, y), (x, y + inward_y), colour, width, cv2.LINE_AA)
-
-
+_LETTER = 13
+"""Height of a row of letters, px: the numbers of different systems are seldom over each other."""
 MOST_OCCLUSIONS = 4
 """Largest number of occlusions shown for a recording, the longest ones: a page stays readable."""
 WIDTH = 280
@@ -166,8 +139,7 @@ WIDTH = 280
 _QUALITY = 78
 
 
-@dataclass(frozen=True, slots=True)
-class Shot:
+class Shot(NamedTuple):
     """A still to take: the number of its frame, what it says, and what is drawn."""
 
     frame: int
@@ -176,8 +148,7 @@ class Shot:
     marks: tuple[Mark, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Still:
+class Still(NamedTuple):
     """A still that was taken, as the text of a ``data:`` address."""
 
     caption: str
@@ -228,29 +199,16 @@ def take_stills(entry: Source, shots: Iterable[Shot]) -> dict[Shot, Still]:
     for shot in shots:
         waiting.setdefault(shot.frame, []).append(shot)
     stills: dict[Shot, Still] = {}
-    for number, frame in numbered_frames(entry):
-        for shot in waiting.pop(number, ()):
-            stills[shot] = _still(frame, shot)
+    recording = Recording(Path(entry.path), entry.topic)
+    for number, stamped in enumerate(recording.frames(), start=1):
         if not waiting:
             break
-    return stills
-
-
-def numbered_frames(entry: Source) -> Iterator[tuple[int, Frame]]:
-    """Give the images of a recording that can be read, with their numbers from 1.
-
-    Raises
-    ------
-    InputError
-        If the recording is gone, or its images are not those of the evaluation.
-    """
-    recording = Recording(local_copy(entry.path), entry.topic)
-    for number, stamped in enumerate(recording.frames(), start=1):
-        if stamped.frame is None:
+        if stamped.frame is None or number not in waiting:
             continue
         if frame_size(stamped.frame) != (entry.width, entry.height):
             raise InputError(f"the recording {entry.path} has other images than were evaluated")
-        yield number, stamped.frame
+        stills |= {shot: _still(stamped.frame, shot) for shot in waiting.pop(number)}
+    return stills
 
 
 def _title(truths: Mapping[int, Truth], stretch: tuple[int, int]) -> str:
@@ -301,7 +259,7 @@ def _worst(
     box, truth = run.boxes[index], truths.get(index + 1)
     if box is None or truth is None:
         return None
-    caption = f"{label}: {errors[index]:.0f} px in frame {index + 1}, {run.modes[index]}"
+    caption = f"{label}: {errors[index]:.0f} px in frame {index + 1}, {run.rows[index].mode}"
     return Shot(index + 1, caption, truth.box, (Mark(box, slots.get(label)),))
 
 

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import html
 import io
-import itertools
 import re
 import shlex
 from collections import Counter
@@ -40,9 +39,15 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     counted,
     findings,
     p_value_text,
-    power,
 )
-from vehicle_pf_tracker.evaluation.report.figures import CURVES, ERRORS, PAGE, Drawn, draw_all
+from vehicle_pf_tracker.evaluation.report.figures import (
+    COLOURS,
+    CURVES,
+    ERRORS,
+    SETTINGS,
+    Drawn,
+    draw_all,
+)
 from vehicle_pf_tracker.evaluation.report.filmstrip import Still
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     FailedCell,
@@ -64,32 +69,23 @@ def render(template: str, **values: Any) -> str:
     return environment.get_template(template).render(values)
 
 
-class SvgMaker:
-    """Turns figures into SVG elements that can stand in one page: no two share an id."""
-
-    def __init__(self) -> None:
-        self._numbers = itertools.count(1)
-
-    def make(self, drawn: Drawn) -> str:
-        """Return a figure as an SVG element that is read out."""
-        text = io.StringIO()
-        nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-        with rc_context(PAGE.settings):
-            drawn.figure.savefig(text, format="svg", transparent=True, metadata=nothing)
-        element = text.getvalue()
-        element = element[element.index("<svg") :]
-        element = re.sub(r"<metadata>.*?</metadata>\s*", "", element, flags=re.DOTALL)
-        element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.DOTALL)
-        prefix = f"f{next(self._numbers)}-"
-        for before in (' id="', 'href="#', "url(#"):
-            element = element.replace(before, before + prefix)
-        for name, colour in PAGE.colours.items():
-            element = element.replace(colour, f"var(--{name})")
-        size = re.search(r'viewBox="[^"]*"', element)
-        assert size is not None
-        head = f'<svg {size[0]} role="img" aria-label="{html.escape(drawn.spoken)}"'
-        head += ' xmlns:xlink="http://www.w3.org/1999/xlink"'
-        return re.sub(r"^<svg[^>]*", head, element).replace("\n", " ").replace("  ", " ")
+def svg_element(drawn: Drawn, number: int) -> str:
+    """Return a figure as an SVG element that is read out; its ids begin with its number."""
+    text = io.StringIO()
+    nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+    with rc_context(SETTINGS):
+        drawn.figure.savefig(text, format="svg", transparent=True, metadata=nothing)
+    element = text.getvalue()
+    element = element[element.index("<svg") :]
+    element = re.sub(r"(<metadata>.*?</metadata>|<!--.*?-->)\s*", "", element, flags=re.DOTALL)
+    element = re.sub(r' id="|href="#|url\(#', rf"\g<0>f{number}-", element)
+    for name, colour in COLOURS.items():
+        element = element.replace(colour, f"var(--{name})")
+    size = re.search(r'viewBox="[^"]*"', element)
+    assert size is not None
+    head = f'<svg {size[0]} role="img" aria-label="{html.escape(drawn.spoken)}"'
+    head += ' xmlns:xlink="http://www.w3.org/1999/xlink"'
+    return re.sub(r"^<svg[^>]*", head, element).replace("\n", " ").replace("  ", " ")
 
 
 def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: bool = True) -> str:
@@ -103,13 +99,13 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         True to show stills of the recordings.
     """
     slots = styled(aggregates)
-    maker = SvgMaker()
     figures = {
-        name: {"svg": maker.make(drawn), "caption": drawn.caption}
-        for name, drawn in draw_all(evaluation, aggregates, slots, PAGE).items()
+        name: {"svg": svg_element(drawn, number), "caption": drawn.caption}
+        for number, (name, drawn) in enumerate(
+            draw_all(evaluation, aggregates, slots).items(), start=1
+        )
     }
-    folder, order = evaluation.folder, aggregates.order
-    timings = folder.timings()
+    folder = evaluation.folder
     return render(
         "report.html",
         title=title(evaluation),
@@ -120,15 +116,10 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         figures=figures,
         ranks=page_tables.ranks_table(aggregates),
         rank_notes=list(_rank_notes(aggregates)),
-        pairs=page_tables.pairs_table(aggregates),
-        power=power(aggregates),
         curves=[name for name in CURVES if name in figures],
         recordings=[
             _section(evaluation, aggregates, entry, images) for entry in evaluation.recordings
         ],
-        robustness=page_tables.robustness_tables(folder, order),
-        speed=page_tables.speed_table(timings, order),
-        timings=timings,
         systems=evaluation.systems,
         sources=evaluation.recordings,
         seeds=folder.seeds,

@@ -19,17 +19,7 @@ from __future__ import annotations
 import itertools
 import statistics
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import suppress
-from types import MappingProxyType
-from typing import Any
 
-from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.evaluation_folder import (
-    EvaluationFolder,
-    read_document,
-    safe_name,
-)
-from vehicle_pf_tracker.evaluation.grid.cells import BESIDE, FRAMES, RESTARTS, SHIFTED
 from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
 from vehicle_pf_tracker.evaluation.report.aggregates import (
     COLUMNS,
@@ -44,12 +34,10 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     listing,
     mean_and_spread_text,
     mean_text,
-    p_value_text,
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
-from vehicle_pf_tracker.evaluation.statistics import ALPHA, PairedTest, Summary, mean_of_means
+from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import Header, Table, TableCell
-from vehicle_pf_tracker.offline.run_folder import METRICS, damage
 
 
 def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -> Table:
@@ -69,11 +57,8 @@ def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -
 
 def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Column]) -> Table:
     """Show metrics of one recording, as means and spreads over the seeds."""
-    table = {
-        label: summaries
-        for label in aggregates.order
-        if (summaries := aggregates.by_recording.get((recording, label))) is not None
-    }
+    found = aggregates.recordings[recording]
+    table = {label: found[label] for label in aggregates.order if label in found}
     return _metrics_table(
         table, columns, lambda _, summary, column: mean_and_spread_text(summary, column)
     )
@@ -99,30 +84,6 @@ def ranks_table(aggregates: Aggregates) -> Table:
             row.append(TableCell(place, rank.place, differ and rank.place == 1, note))
             row.append(TableCell(f"{rank.mean_rank:.2f}", rank.mean_rank))
     return Table(headers, rows)
-
-
-def pairs_table(aggregates: Aggregates) -> Table:
-    """Show the mean difference of each pair: the row's system less the column's."""
-    found: dict[tuple[str, str], TableCell] = {}
-    known = [abs(test.difference.mean) for test in aggregates.pairs if test.difference]
-    largest = max(known, default=0.0) or 1.0
-    for test in aggregates.pairs:
-        found[test.first, test.second] = _pair_cell(test, 1, largest)
-        found[test.second, test.first] = _pair_cell(test, -1, largest)
-    order, itself = aggregates.order, TableCell("")
-    rows = {label: [found.get((label, other), itself) for other in order] for label in order}
-    return Table([Header(label) for label in order], rows)
-
-
-def _pair_cell(test: PairedTest, sign: int, largest: float) -> TableCell:
-    if test.difference is None:
-        return TableCell(NO_VALUE)
-    value = sign * test.difference.mean
-    alone = test.p_value is not None and test.p_value < ALPHA
-    mark = "**" if test.significant else "*" if alone else ""
-    p_values = f"p {p_value_text(test.p_value)}, adjusted {p_value_text(test.adjusted_p)}"
-    text = f"{value:+.{RANKED[0].decimals}f}{mark}"
-    return TableCell(text, value, test.significant, p_values, value / largest)
 
 
 def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]]) -> Table | None:
@@ -199,147 +160,3 @@ def _best(table: Mapping[str, Summaries], column: Column) -> float | None:
 def number_cell(value: float | None, form: str, note: str = "") -> TableCell:
     """Return the cell of a number, in a form such as ``.1f``; a dash for None."""
     return TableCell(NO_VALUE if value is None else f"{value:{form}}", value, note=note)
-
-
-_SUCCESS = "success_auc"
-Documents = Mapping[str, Sequence[Mapping[str, Any]]]
-"""JSON documents of one system, by recording."""
-Measure = Callable[[Documents, Documents], float | None]
-"""Takes the documents of the robustness runs, and those of the usual start."""
-
-
-def _mean(key: str) -> Measure:
-    return lambda found, _: _mean_of_means(found, lambda document: document.get(key))
-
-
-def _usual(found: Documents, usual: Documents) -> float | None:
-    return _mean(_SUCCESS)({name: usual[name] for name in found if name in usual}, {})
-
-
-def _change(found: Documents, usual: Documents) -> float | None:
-    other, own = _mean(_SUCCESS)(found, usual), _usual(found, usual)
-    return None if other is None or own is None else other - own
-
-
-def _worst(found: Documents, _: Documents) -> float | None:
-    values = [document[_SUCCESS] for some in found.values() for document in some]
-    return min((value for value in values if value is not None), default=None)
-
-
-def _on_target(found: Documents, _: Documents) -> float | None:
-    def held(document: Mapping[str, Any]) -> float | None:
-        share = document.get("on_target")
-        return None if share is None else float(share > 0.5)
-
-    return _mean_of_means(found, held)
-
-
-def _runs(found: Documents, _: Documents) -> float:
-    return sum(map(len, found.values()))
-
-
-_KINDS: Mapping[str, Mapping[Header, tuple[str, Measure]]] = MappingProxyType(
-    {
-        SHIFTED: {
-            Header("usual start", "success AUC"): (".3f", _usual),
-            Header("other starts", "success AUC"): (".3f", _mean(_SUCCESS)),
-            Header("change", "success AUC"): ("+.3f", _change),
-            Header("worst run", "success AUC"): (".3f", _worst),
-            Header("on target", "share of runs"): (".2f", _on_target),
-            Header("runs"): ("d", _runs),
-        },
-        FRAMES: {
-            Header("success AUC"): (".3f", _mean(_SUCCESS)),
-            Header("precision at 20 px"): (".3f", _mean("precision_20px")),
-            Header("RMSE", "px"): (".1f", _mean("rmse_px")),
-            Header("runs"): ("d", _runs),
-        },
-        RESTARTS: {
-            Header("failures", "per run"): (".2f", _mean("failures")),
-            Header("accuracy", "mean overlap"): (".3f", _mean("accuracy")),
-            Header("robustness"): (".3f", _mean("robustness")),
-            Header("runs"): ("d", _runs),
-        },
-    }
-)
-"""Columns of each kind of robustness run, by the name of its folder and option."""
-
-
-def robustness_tables(folder: EvaluationFolder, order: Sequence[str]) -> dict[str, Table]:
-    """Read what was asked for besides the grid; systems without a result there are left out."""
-    asked = folder.plan.get("options", {})
-    systems = {system.label: system for system in folder.systems}
-    tables = {}
-    for kind, columns in _KINDS.items():
-        files = "restarts.json" if kind == RESTARTS else f"*/{METRICS}"
-        rows = {}
-        for label in order if asked.get(kind) else ():
-            system = safe_name(label)
-            found = _found(folder, f"{BESIDE}/{kind}", f"{system}/seed-*/{files}")
-            if found:
-                seed = folder.seeds_of(systems[label])[0]  # that of the robustness runs
-                usual = _found(folder, "cells", f"{system}/seed-{seed}/{METRICS}")
-                rows[label] = [
-                    number_cell(measure(found, usual), form) for form, measure in columns.values()
-                ]
-        if rows:
-            tables[kind] = Table(list(columns), rows)
-    return tables
-
-
-def _found(folder: EvaluationFolder, above: str, below: str) -> Documents:
-    """Read the documents of each recording that has any: ``above/recording/below``."""
-    found: dict[str, list[dict[str, Any]]] = {}
-    for entry in folder.recordings:
-        for path in sorted((folder.path / above / entry.name).glob(below)):
-            with suppress(InputError):  # a cell that is being written
-                if not damage(path.parent):
-                    found.setdefault(entry.name, []).append(read_document(path))
-    return found
-
-
-def _mean_of_means(
-    found: Documents, value: Callable[[Mapping[str, Any]], float | None]
-) -> float | None:
-    """Return the mean over recordings of the means over those of their runs that have a value."""
-    known = {
-        name: [number for document in documents if (number := value(document)) is not None]
-        for name, documents in found.items()
-    }
-    return mean_of_means({name: values for name, values in known.items() if values})
-
-
-def speed_table(timings: Mapping[str, Any] | None, order: Sequence[str]) -> Table | None:
-    """Make a table of step times; None where they were not measured.
-
-    Parameters
-    ----------
-    timings : mapping or None
-        ``{"clock", "cells": [{"recording", "system", "step_ms_p50", "step_ms_p95"}, ...]}``.
-    order : sequence of str
-        The systems.
-    """
-    cells = (timings or {}).get("cells", [])
-    rows = {}
-    for label in order:
-        medians, slow = (
-            [cell[key] for cell in cells if cell["system"] == label and cell.get(key) is not None]
-            for key in ("step_ms_p50", "step_ms_p95")
-        )
-        if medians:
-            middle = statistics.fmean(medians)
-            rows[label] = [
-                number_cell(middle, ".2f"),
-                number_cell(statistics.fmean(slow) if slow else None, ".2f"),
-                number_cell(max(medians), ".2f"),
-                number_cell(1000.0 / middle if middle > 0 else None, ".0f"),
-            ]
-    headers = [
-        Header("step, median", "ms", "Mean over the recordings of the median step."),
-        Header(
-            "step, 95 %", "ms", "Mean over the recordings of the time 95 % of steps stay below."
-        ),
-        Header("slowest recording", "ms", "The largest median of any recording."),
-        Header("rate", "frames/s", "One second over the mean median step."),
-    ]
-    return Table(headers, rows) if rows else None

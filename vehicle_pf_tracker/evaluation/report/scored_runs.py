@@ -14,13 +14,13 @@
 
 """Cells of an evaluation, scored against the truth.
 
-They are exported for other tools: as TUM trajectories for evo, as recordings for Foxglove.
+They are exported as recordings for other tools, such as Foxglove and evo.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,13 +32,10 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
-    Cell,
     EvaluationFolder,
     Source,
     SystemEntry,
-    safe_name,
 )
-from vehicle_pf_tracker.evaluation.grid.sources import local_copy
 from vehicle_pf_tracker.evaluation.metrics import (
     Curve,
     Metrics,
@@ -50,7 +47,6 @@ from vehicle_pf_tracker.evaluation.metrics import (
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import write_with_estimates
-from vehicle_pf_tracker.offline.output_files import make_folder, write_text
 from vehicle_pf_tracker.recordings.messages import as_token
 from vehicle_pf_tracker.recordings.reader import Recording
 
@@ -69,10 +65,12 @@ class ScoredRun:
         Error of the centre in px by frame of the recording; NaN where nothing is scored.
     boxes : sequence of Box or None
         Box of the scored estimate by frame.
-    modes : sequence of str
-        Mode by frame.
+    rows : sequence of EstimateRow
+        Estimates by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
+    versions : mapping of str to str or None
+        What it was made with, as `run.json` has it.
     """
 
     recording: str
@@ -81,8 +79,9 @@ class ScoredRun:
     metrics: Metrics
     errors: NDArray[np.float64]
     boxes: Sequence[Box | None]
-    modes: Sequence[str]
+    rows: Sequence[EstimateRow]
     curves: Mapping[str, Curve]
+    versions: Mapping[str, str | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +141,11 @@ class ScoredEvaluation:
 def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
     """Score all cells; those that cannot be read or scored are failed cells."""
     truths = {entry.name: folder.truth(entry.name) for entry in folder.recordings}
-    results = list(_results(folder, truths))
+    results = [
+        _result(folder, (recording.name, system.label, seed), truths[recording.name])
+        for recording, system in itertools.product(folder.recordings, folder.systems)
+        for seed in system.seeds
+    ]
     return ScoredEvaluation(
         folder,
         truths,
@@ -158,110 +161,38 @@ def typical(runs: Sequence[ScoredRun]) -> ScoredRun | None:
     return ordered[(len(ordered) - 1) // 2] if ordered else None
 
 
-def _cells(folder: EvaluationFolder) -> Iterator[tuple[Source, SystemEntry, int]]:
-    for recording, system in itertools.product(folder.recordings, folder.systems):
-        for seed in folder.seeds_of(system):
-            yield recording, system, seed
-
-
-def _results(
-    folder: EvaluationFolder, truths: Mapping[str, Mapping[int, Truth]]
-) -> Iterator[ScoredRun | FailedCell]:
+def _result(
+    folder: EvaluationFolder, key: tuple[str, str, int], truth: Mapping[int, Truth]
+) -> ScoredRun | FailedCell:
     max_diff = float(folder.plan.get("options", {}).get("max_diff", MAX_DIFF))
-    for recording, system, seed in _cells(folder):
-        key = (recording.name, system.label, seed)
-        try:
-            cell = folder.cell(*key)
-            if cell.rows is None:
-                yield FailedCell(*key, cell.reason)
-            else:
-                yield _score(cell, truths[recording.name], max_diff)
-        except InputError as error:
-            yield FailedCell(*key, str(error))
-
-
-def _score(cell: Cell, truth: Mapping[int, Truth], max_diff: float) -> ScoredRun:
-    scores = score_frames(cell.rows or (), list(truth.values()), max_diff)
+    try:
+        cell = folder.cell(*key)
+        if cell.rows is None:
+            return FailedCell(*key, cell.reason)
+        scores = score_frames(cell.rows, list(truth.values()), max_diff)
+    except InputError as error:
+        return FailedCell(*key, str(error))
     counted, frames = scores.counted, scores.frames
     curves = {
         "precision": precision_curve(counted),
         "success": success_curve(counted),
         "normalised": normalised_precision_curve(counted),
     }
+    errors = [frame.error if frame.counts else None for frame in frames]
     return ScoredRun(
-        recording=cell.recording,
-        system=cell.system,
-        seed=cell.seed,
+        *key,
         metrics=measure(scores),
-        errors=np.array([_error(frame) for frame in frames]),
+        errors=np.array(errors, dtype=np.float64),  # None is NaN
         boxes=[_box(frame) for frame in frames],
-        modes=[frame.row.mode for frame in frames],
+        rows=cell.rows,
         curves={name: curve for name, curve in curves.items() if curve is not None},
+        versions=cell.run.get("versions", {}),
     )
-
-
-def _error(frame: FrameScore) -> float:
-    error = frame.error if frame.counts else None
-    return float("nan") if error is None else error
 
 
 def _box(frame: FrameScore) -> Box | None:
     row = frame.scored_row
-    if row is None or row.x is None or row.y is None or frame.waiting:
-        return None
-    return Box.around((row.x, row.y), row.width or 0.0, row.height or 0.0)
-
-
-TRAJECTORIES = "trajectories"
-
-
-def write_trajectories(evaluation: ScoredEvaluation) -> list[Path]:
-    """Write the truth of each recording and each run's scored estimates where there is truth.
-
-    Raises
-    ------
-    InputError
-        If they cannot be written.
-    """
-    written = []
-    for entry in evaluation.recordings:
-        truths = evaluation.truths[entry.name]
-        if not truths:
-            continue
-        folder = make_folder(_folder(evaluation.folder, entry.name))
-        written.append(_write(folder / "truth.tum", _true_points(truths)))
-        for run in evaluation.of(entry.name):
-            name = f"{safe_name(run.system)}_seed-{run.seed}.tum"
-            written.append(_write(folder / name, _points(run, truths)))
-    return written
-
-
-def _folder(evaluation: EvaluationFolder, recording: str) -> Path:
-    return evaluation.path / TRAJECTORIES / recording
-
-
-Point = tuple[int, float, float]
-"""Stamp in ns, x and y in px."""
-
-
-def _true_points(truths: Mapping[int, Truth]) -> list[Point]:
-    return [(truth.stamp_ns, *truth.box.centre) for truth in truths.values()]
-
-
-def _points(run: ScoredRun, truths: Mapping[int, Truth]) -> list[Point]:
-    return [
-        (truths[number].stamp_ns, *box.centre)
-        for number, box in enumerate(run.boxes, start=1)
-        if box is not None and number in truths
-    ]
-
-
-def _write(path: Path, points: Iterable[Point]) -> Path:
-    lines = (
-        f"{stamp // 10**9}.{stamp % 10**9:09d} {x!r} {y!r} 0 0 0 0 1\n" for stamp, x, y in points
-    )
-    write_text(path, "".join(lines))
-    return path
+    return None if row is None or frame.waiting else row.box
 
 
 ESTIMATE_RECORDINGS = "estimates"
@@ -283,8 +214,8 @@ def write_estimate_recordings(
         on_stage(f"the recording {entry.name} with estimates")
         path = evaluation.folder.path / ESTIMATE_RECORDINGS / entry.name
         try:
-            recording = Recording(local_copy(entry.path), entry.topic)
-            runs = _rows(evaluation, entry.name)
+            recording = Recording(Path(entry.path), entry.topic)
+            runs = {topic_name(r.system, r.seed): r.rows for r in evaluation.of(entry.name)}
             write_with_estimates(path, recording, runs, overwrite=True)
             written.append(path)
         except InputError as error:
@@ -295,12 +226,3 @@ def write_estimate_recordings(
 def topic_name(system: str, seed: int) -> str:
     """Return the namespace of a run."""
     return f"{as_token(system)}/seed_{seed}"
-
-
-def _rows(evaluation: ScoredEvaluation, recording: str) -> dict[str, tuple[EstimateRow, ...]]:
-    rows = {}
-    for run in evaluation.of(recording):
-        cell = evaluation.folder.cell(recording, run.system, run.seed)
-        if cell.rows is not None:
-            rows[topic_name(run.system, run.seed)] = cell.rows
-    return rows

@@ -16,35 +16,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, astuple, dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, astuple
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, NamedTuple
-
-from matplotlib import rc_context
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import (
     COLUMNS,
     NO_VALUE,
     PRECISION,
-    RANKED,
     RECOVERED,
     RMSE,
     STEP,
     SUCCESS,
     Aggregates,
-    Column,
-    Summaries,
     aggregate,
     findings,
-    interval_text,
-    mean_text,
-    power,
 )
-from vehicle_pf_tracker.evaluation.report.figures import PAPER, draw_all
-from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
+from vehicle_pf_tracker.evaluation.report.page import make_page, title
 from vehicle_pf_tracker.evaluation.report.page_tables import (
     overall_table,
     ranks_table,
@@ -54,18 +44,16 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
     score_folder,
     write_estimate_recordings,
-    write_trajectories,
 )
-from vehicle_pf_tracker.evaluation.report.video import write_videos
-from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import csv_text, markdown
-from vehicle_pf_tracker.offline.output_files import make_folder, replacing, write_json, write_text
+from vehicle_pf_tracker.offline.output_files import write_json, write_text
 
 ALL_RECORDINGS = "(all)"
 """Stands for the name of a recording where values are means over all of them."""
 _PAPER = (SUCCESS, PRECISION, RMSE, RECOVERED, STEP)
 _LATEX = str.maketrans(
-    {c: f"\\{c}" for c in "&%$#_{}"} | {"~": r"\textasciitilde{}", "\\": r"\textbackslash{}"}
+    {c: f"\\{c}" for c in "&%$#_{}"}
+    | {"\u00a0": "~", "~": r"\textasciitilde{}", "\\": r"\textbackslash{}"}
 )
 
 
@@ -83,8 +71,6 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     }
     for heading, table in tables.items():
         parts.append(f"## {heading}\n\n{markdown(*table.texts())}")
-        if heading == "Ranks" and power(aggregates):
-            parts.append(power(aggregates) + "\n")
     if evaluation.failed:
         cells = [[c.system, c.recording, str(c.seed), c.reason] for c in evaluation.failed]
         header = ["system", "recording", "seed", "reason"]
@@ -92,18 +78,13 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     return "\n".join(parts)
 
 
-def summary_csv(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
+def summary_csv(aggregates: Aggregates) -> str:
     """Return every mean with its spread and interval, a line each, with every digit."""
-    everything = [(ALL_RECORDINGS, label, found) for label, found in aggregates.overall.items()]
-    everything += [
-        (name, label, found)
-        for entry in evaluation.recordings
-        for (name, label), found in aggregates.by_recording.items()
-        if name == entry.name
-    ]
+    places = {ALL_RECORDINGS: aggregates.overall, **aggregates.recordings}
     rows = [
         [recording, system, column.key, column.unit, *astuple(found)]
-        for recording, system, summaries in everything
+        for recording, by_system in places.items()
+        for system, summaries in by_system.items()
         for column in COLUMNS
         if (found := summaries.get(column.key)) is not None
     ]
@@ -112,56 +93,29 @@ def summary_csv(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
 
 
 def summary_tex(aggregates: Aggregates) -> str:
-    """Return the main means as a LaTeX table: the best bold, the second underlined."""
-    marks = {column.key: _marks(aggregates, column) for column in _PAPER}
-    rows = []
-    for label, summaries in aggregates.overall.items():
-        interval = interval_text(summaries.get(SUCCESS.key), SUCCESS).replace(" to ", "--")
-        first, *others = (_marked(summaries[column.key], column, marks[column.key])
-                          for column in _PAPER)  # fmt: skip
-        rows.append([label, first, interval or NO_VALUE, *others])
-    header = ["system", SUCCESS.title, "interval", *(column.title for column in _PAPER[1:])]
-    return "".join(
-        [
-            "% Means over recordings, with the 95 % interval of the first metric. The best are\n"
-            "% bold, the second are underlined. Needs the package booktabs.\n"
-            rf"\begin{{tabular}}{{l{'r' * len(header[1:])}}}",
-            "\n\\toprule\n",
-            _tex_line(header),
-            "\\midrule\n",
-            *map(_tex_line, rows),
-            "\\bottomrule\n\\end{tabular}\n",
-        ]
+    """Return the main means as a LaTeX table; the best are bold."""
+    table = overall_table(aggregates, [column.key for column in _PAPER])
+    header, _ = table.texts()
+    rows = [
+        [_tex(label), *(rf"\textbf{{{_tex(c.text)}}}" if c.best else _tex(c.text) for c in cells)]
+        for label, cells in table.rows.items()
+    ]
+    head, *body = (" & ".join(row) + " \\\\\n" for row in [map(_tex, header), *rows])
+    return (
+        "% Means over recordings; the best are bold. Needs the package booktabs.\n"
+        f"\\begin{{tabular}}{{l{'r' * len(table.headers)}}}\n\\toprule\n"
+        f"{head}\\midrule\n{''.join(body)}\\bottomrule\n\\end{{tabular}}\n"
     )
 
 
-def _tex_line(cells: Sequence[str]) -> str:
-    escaped = (cell if cell.startswith("\\") else cell.translate(_LATEX) for cell in cells)
-    return " & ".join(escaped).replace(NO_VALUE, "--") + " \\\\\n"
-
-
-def _marks(aggregates: Aggregates, column: Column) -> dict[float, str]:
-    """Return LaTeX's commands for the best and the second-best mean, as they are printed."""
-    found = [summaries[column.key] for summaries in aggregates.overall.values()]
-    values = [round(summary.mean, column.decimals) for summary in found if summary is not None]
-    order = sorted(set(values), reverse=bool(column.higher_is_better))
-    if len(order) < 2:
-        return {}
-    # Two that share the first place leave no second.
-    commands = (r"\textbf", r"\underline") if values.count(order[0]) == 1 else (r"\textbf",)
-    return dict(zip(order, commands, strict=False))
-
-
-def _marked(summary: Summary | None, column: Column, marks: Mapping[float, str]) -> str:
-    text = mean_text(summary, column)
-    command = "" if summary is None else marks.get(round(summary.mean, column.decimals), "")
-    return f"{command}{{{text}}}" if command else text
+def _tex(text: str) -> str:
+    return text.translate(_LATEX).replace(NO_VALUE, "--")
 
 
 def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Any]:
     """Return everything as plain values."""
     return {
-        "format": 1,
+        "format": 2,
         "metrics": {
             column.key: {
                 "label": column.label,
@@ -171,99 +125,10 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
             }
             for column in COLUMNS
         },
-        "order": list(aggregates.order),
-        "overall": {label: _plain(found) for label, found in aggregates.overall.items()},
-        "recordings": {
-            entry.name: {
-                label: _plain(found)
-                for (name, label), found in aggregates.by_recording.items()
-                if name == entry.name
-            }
-            for entry in evaluation.recordings
-        },
-        "rankings": {key: asdict(ranking) for key, ranking in aggregates.rankings.items()},
-        "pairs": {
-            RANKED[0].key: [
-                {**asdict(test), "significant": test.significant} for test in aggregates.pairs
-            ]
-        },
         "findings": findings(evaluation, aggregates),
-        "recoveries": {label: list(found) for label, found in aggregates.recoveries.items()},
         "failed": [asdict(cell) for cell in evaluation.failed],
+        **asdict(aggregates),
     }
-
-
-def _plain(summaries: Summaries) -> dict[str, dict[str, Any] | None]:
-    return {key: None if found is None else asdict(found) for key, found in summaries.items()}
-
-
-FORMATS = ("pdf", "svg", "png")
-FIGURES = "figures"
-_DPI = 300
-"""Resolution of PNG files, which IEEE asks of colour pictures."""
-
-_METADATA: Mapping[str, dict[str, Any]] = MappingProxyType(
-    {
-        "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
-        "svg": {"Date": None, "Creator": None},
-        "png": {"Software": None},
-    }
-)
-"""No date and no version, so that the same folder gives the same files."""
-
-
-def write_figures(
-    evaluation: ScoredEvaluation,
-    aggregates: Aggregates,
-    slots: Mapping[str, int],
-    formats: Sequence[str],
-) -> list[Path]:
-    """Write every figure of the page to ``figures/``, in each of the formats.
-
-    Raises
-    ------
-    InputError
-        If they cannot be written.
-    """
-    folder = make_folder(evaluation.folder.path / FIGURES)
-    written = []
-    for name, drawn in draw_all(evaluation, aggregates, slots, PAPER).items():
-        figure = drawn.figure
-        with rc_context(PAPER.settings):
-            # Laid out once: each drawing moves a constrained layout a little further.
-            figure.draw_without_rendering()
-            figure.set_layout_engine("none")
-        for kind in formats:
-            path = folder / f"{name}.{kind}"
-            with replacing(path) as partial, rc_context(PAPER.settings):
-                figure.savefig(partial, format=kind, dpi=_DPI, metadata=_METADATA[kind])
-            written.append(path)
-    return written
-
-
-@dataclass(frozen=True, slots=True)
-class ReportOptions:
-    """Parts of a report besides the page and the summaries.
-
-    Attributes
-    ----------
-    images : bool
-        True for stills of the recordings in the page.
-    video : bool
-        True for a video of each recording with boxes, in ``videos/``.
-    recordings : bool
-        True for recordings with truth and all estimates, in ``estimates/``.
-    trajectories : bool
-        True for TUM files of the truth and of all runs, in ``trajectories/``.
-    figures : tuple of str
-        Formats of the figures' files, of `FORMATS`, in ``figures/``.
-    """
-
-    images: bool = True
-    video: bool = False
-    recordings: bool = False
-    trajectories: bool = False
-    figures: tuple[str, ...] = ()
 
 
 class Report(NamedTuple):
@@ -276,7 +141,9 @@ class Report(NamedTuple):
 
 def write_report(
     folder: Path,
-    options: ReportOptions | None = None,
+    *,
+    images: bool = True,
+    recordings: bool = False,
     notify: Callable[[str], object] = lambda _: None,
     on_stage: Callable[[str], object] = lambda _: None,
 ) -> Report:
@@ -288,8 +155,10 @@ def write_report(
     ----------
     folder : Path
         Folder of an evaluation.
-    options : ReportOptions or None
-        Parts to write; None writes the page and the summaries.
+    images : bool
+        True for stills of the recordings in the page.
+    recordings : bool
+        True for recordings with truth and all estimates, in ``estimates/``.
     notify : callable
         Called with a sentence for each file that could not be made.
     on_stage : callable
@@ -300,23 +169,15 @@ def write_report(
     InputError
         If it is not an evaluation folder, or cannot be written to.
     """
-    options = options or ReportOptions()
     on_stage("scoring the runs")
     evaluation = score_folder(EvaluationFolder(folder))
     aggregates = aggregate(evaluation)
     page = folder / "report.html"
     on_stage("drawing the page")
-    write_text(page, make_page(evaluation, aggregates, images=options.images))
+    write_text(page, make_page(evaluation, aggregates, images=images))
     written = [page, *_write_summaries(folder, evaluation, aggregates)]
-    if options.figures:
-        on_stage("drawing the figures")
-        written += write_figures(evaluation, aggregates, styled(aggregates), options.figures)
-    if options.trajectories:
-        written += write_trajectories(evaluation)
-    if options.recordings:
+    if recordings:
         written += write_estimate_recordings(evaluation, notify, on_stage)
-    if options.video:
-        written += write_videos(evaluation, styled(aggregates), notify, on_stage)
     return Report(written, evaluation, aggregates)
 
 
@@ -325,7 +186,7 @@ def _write_summaries(
 ) -> list[Path]:
     texts = {
         "summary.md": summary_markdown(evaluation, aggregates),
-        "summary.csv": summary_csv(evaluation, aggregates),
+        "summary.csv": summary_csv(aggregates),
         "summary.tex": summary_tex(aggregates),
     }
     for name, text in texts.items():

@@ -22,7 +22,7 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, astuple, dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -168,18 +168,21 @@ class _Recorder(MotionDetector):
 
     def __init__(self) -> None:
         super().__init__()
-        self._number = 0
-        self.rows: list[list[float]] = []
+        self._found: list[Detections] = []
 
     def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
         """Find what moves."""
-        found = super().detect(frame, tracks)
-        self._number += 1
-        self.rows += [
-            [self._number, *box, score]
-            for box, score in zip(found.boxes.tolist(), found.scores.tolist(), strict=True)
-        ]
-        return found
+        self._found.append(super().detect(frame, tracks))
+        return self._found[-1]
+
+    def rows(self) -> Array:
+        """Return frame, left, top, width, height and score of all that moved."""
+        return np.vstack(
+            [
+                np.column_stack([np.full(len(found.scores), number), found.boxes, found.scores])
+                for number, found in enumerate(self._found, start=1)
+            ]
+        )
 
 
 def follow(
@@ -214,17 +217,13 @@ def follow(
         before = time.process_time()
         estimates = session.feed(frame, round(number * 1e9 / sequence.frame_rate), detections)
         seconds += time.process_time() - before
-        tracks += _rows(number, estimates)
-    found = np.array(recorder.rows).reshape(-1, 6) if given is None else given
+        tracks += [
+            [number, one.identity, *astuple(one.box)]
+            for one in estimates
+            if one.mode in {TrackMode.TRACKING, TrackMode.OCCLUDED}
+        ]
     rows = np.array(tracks, dtype=np.float64).reshape(-1, 6)
-    return rows, found, seconds / sequence.frame_count
-
-
-def _rows(number: int, estimates: Sequence[TrackEstimate]) -> Iterator[list[float]]:
-    for one in estimates:
-        if one.mode in {TrackMode.TRACKING, TrackMode.OCCLUDED}:
-            box = one.box
-            yield [number, one.identity, box.x, box.y, box.width, box.height]
+    return rows, recorder.rows() if given is None else given, seconds / sequence.frame_count
 
 
 NAME = "traffic"
@@ -295,7 +294,10 @@ def write_traffic_report(
     """
     make_folder(folder)
     lines = means(results)
-    shown = tables(lines)
+    cases: dict[str, list[TrafficResult]] = {}
+    for line in lines:
+        cases.setdefault(f"{line.scene}, {line.source}", []).append(line)
+    shown = {title: _table(group) for title, group in cases.items()}
     page = render("traffic.html", tables=shown, about=RULES, command=" ".join(options["command"]))
     parts = [f"## {title}\n\n{markdown(*table.texts())}" for title, table in shown.items()]
     rows = [
@@ -319,14 +321,6 @@ def write_traffic_report(
     }
     write_json(folder / f"{NAME}.json", document)
     return shown
-
-
-def tables(lines: Sequence[TrafficResult]) -> dict[str, Table]:
-    """Make a table of each scene and source of detections, by their names."""
-    cases: dict[str, list[TrafficResult]] = {}
-    for line in lines:
-        cases.setdefault(f"{line.scene}, {line.source}", []).append(line)
-    return {title: _table(group) for title, group in cases.items()}
 
 
 def _table(lines: Sequence[TrafficResult]) -> Table:

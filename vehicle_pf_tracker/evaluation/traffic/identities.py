@@ -25,7 +25,7 @@ import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.box import Box, intersections
 from vehicle_pf_tracker.evaluation.traffic.sequence import EVERY_FRAME, TrafficSequence
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
@@ -107,19 +107,17 @@ def matches(first: Array, second: Array) -> tuple[npt.NDArray[np.intp], npt.NDAr
 def overlaps(first: Array, second: Array) -> Array:
     """Intersection over union of each pair of boxes (left, top, width, height)."""
     common = common_areas(first, second)
-    union = first[:, None, 2:].prod(axis=2) + second[None, :, 2:].prod(axis=2) - common
-    overlap: Array = common / np.maximum(union, np.finfo(float).eps)
-    return overlap
+    union = first[:, None, 2:].prod(axis=2) + second[:, 2:].prod(axis=1) - common
+    return np.asarray(common / np.maximum(union, np.finfo(float).eps))
 
 
 def common_areas(first: Array, second: Array) -> Array:
     """Area that each pair of boxes (left, top, width, height) has in common, px²."""
-    low = np.maximum(first[:, None, :2], second[None, :, :2])
-    high = np.minimum(
-        first[:, None, :2] + first[:, None, 2:], second[None, :, :2] + second[None, :, 2:]
-    )
-    common: Array = np.clip(high - low, 0, None).prod(axis=2)
-    return common
+    return intersections(_edges(first)[:, None], _edges(second))
+
+
+def _edges(boxes: Array) -> Array:
+    return np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
 
 
 _WINDOW = 30

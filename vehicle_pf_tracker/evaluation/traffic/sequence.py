@@ -80,15 +80,13 @@ class TrafficSequence:
 
     def frames(self) -> Iterator[Frame]:
         """Read the images, in order."""
+        folder = self.folder / "img1"
         for number in range(1, self.frame_count + 1):
-            yield self._frame(number)
-
-    def _frame(self, number: int) -> Frame:
-        found = sorted((self.folder / "img1").glob(f"{number:06d}.*"))
-        image = cv2.imread(str(found[0])) if found else None
-        if image is None:
-            raise InputError(f"{self.folder / 'img1'} has no readable image {number:06d}")
-        return np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), dtype=np.uint8)
+            path = next(iter(sorted(folder.glob(f"{number:06d}.*"))), None)
+            image = cv2.imread(str(path)) if path else None
+            if image is None:
+                raise InputError(f"{folder} has no readable image {number:06d}")
+            yield np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), dtype=np.uint8)
 
 
 def read_sequence(folder: Path) -> TrafficSequence:
@@ -126,13 +124,14 @@ def _read_info(path: Path) -> dict[str, float]:
     if not path.is_file():
         raise InputError(f"{path.parent} is not a MOTChallenge folder: it has no {path.name}")
     parser.read(path, encoding="utf-8")
-    texts = {key: parser.get("Sequence", key, fallback="") for key in _INFO}
-    if not all(texts.values()):
-        raise InputError(f"{path} does not give {', '.join(_INFO[:-1])} and {_INFO[-1]}")
-    for key, text in texts.items():
+    info = {}
+    for key in _INFO:
+        text = parser.get("Sequence", key, fallback="")
         if not _NUMBER.fullmatch(text):
-            raise InputError(f"{path} gives a {key} that is not a number: {text}")
-    return {key: float(text) for key, text in texts.items()}
+            fault = f"gives a {key} that is not a number: {text}" if text else f"gives no {key}"
+            raise InputError(f"{path} {fault}")
+        info[key] = float(text)
+    return info
 
 
 def read_table(path: Path, columns: int) -> Array:
@@ -145,10 +144,12 @@ def read_table(path: Path, columns: int) -> Array:
     """
     if not path.is_file():
         raise InputError(f"there is no file {path}")
-    rows: list[list[float]] = []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
-        if line.strip() and not line.startswith("#"):
-            rows.append(_numbers(line, columns, f"{path}, line {number}"))
+    lines = enumerate(path.read_text(encoding="utf-8").splitlines(), start=1)
+    rows = [
+        _numbers(line, columns, f"{path}, line {number}")
+        for number, line in lines
+        if line.strip() and not line.startswith("#")
+    ]
     width = min(map(len, rows), default=columns)
     return np.array([row[:width] for row in rows], dtype=np.float64).reshape(-1, width)
 
@@ -163,14 +164,10 @@ def _numbers(line: str, columns: int, where: str) -> list[float]:
 def _hidden(folder: Path, truth: Array) -> npt.NDArray[np.bool_]:
     flags = folder / "gt" / "flags.csv"
     if not flags.is_file():
-        if truth.shape[1] < 9:
-            return np.zeros(len(truth), dtype=np.bool_)
-        return np.asarray(truth[:, 8] < TOTAL_OCCLUSION)
+        visible = truth[:, 8] if truth.shape[1] > 8 else np.ones(len(truth))
+        return np.asarray(visible < TOTAL_OCCLUSION)
     lines = flags.read_text(encoding="utf-8").splitlines()[1:]
-    total = {
-        (int(frame), int(identity))
-        for frame, identity, occlusion in (line.split(",")[:3] for line in lines)
-        if int(occlusion) == 2
-    }
+    rows = (map(int, line.split(",")[:3]) for line in lines)
+    total = {(frame, identity) for frame, identity, occlusion in rows if occlusion == 2}
     keys = truth[:, :2].astype(int).tolist()
     return np.array([tuple(key) in total for key in keys], dtype=np.bool_)

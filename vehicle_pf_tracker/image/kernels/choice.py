@@ -12,22 +12,16 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Selection of the kernels, which leaves no more memory in use than they need.
-
-A process needs LLVM while kernels are compiled or loaded, and not after; `python -m
-benchmarks.node_memory` shows the difference.
-"""
+"""Selection of the kernels, and their first compilation in a process of its own."""
 
 from __future__ import annotations
 
-import ctypes
 import functools
 import importlib
 import importlib.util
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.kernels.interface import Kernels
@@ -80,8 +74,6 @@ def load_numba() -> Kernels:
     if jit.has_filled_cache():
         compile_elsewhere(_NUMBA)
     kernels: Kernels = importlib.import_module(_NUMBA).NumbaKernels()
-    jit.drop_intermediate_code()
-    release_memory()
     return kernels
 
 
@@ -99,11 +91,6 @@ _END_WITH_PARENT = (
     "getattr(ctypes.CDLL(None), 'prctl', lambda *_: 0)(1, int(signal.SIGTERM))"
 )
 """Code by which a process ends with the one that started it, where the system is Linux."""
-_LIBRARY = "libllvmlite"
-_MADV_DONTNEED = 4
-"""Advice to the kernel, the same on all of Linux but Alpha."""
-_UNWRITTEN = ("Private_Dirty:", "Anonymous:", "Swap:")
-"""Fields of /proc/self/smaps that are zero where a mapping is as in its file."""
 
 
 def compile_elsewhere(module: str) -> None:
@@ -122,43 +109,3 @@ def compile_elsewhere(module: str) -> None:
         stderr=subprocess.DEVNULL,
         check=False,  # what it did not compile is compiled here
     )
-
-
-def release_memory() -> None:
-    """Let go what is not needed once all kernels are loaded: 80 MB of a node's 250.
-
-    Pages of LLVM's library that are as in its file count as the process's own in every list of
-    processes. Should they be needed again, the system maps them from its cache, or reads the file.
-    """
-    library = ctypes.CDLL(None)
-    trim, advise = getattr(library, "malloc_trim", None), getattr(library, "madvise", None)
-    if advise is not None:
-        advise.argtypes = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
-        for begin, end in unwritten_mappings(_LIBRARY):
-            advise(begin, end - begin, _MADV_DONTNEED)
-    if trim is not None:
-        trim(0)
-
-
-def unwritten_mappings(name: str) -> list[tuple[int, int]]:
-    """Begin and end of the read-only mappings of a library that have no pages of their own.
-
-    Pages that were written to, as by the linker, exist nowhere else and must stay.
-    """
-    found: list[tuple[int, int]] = []
-    try:
-        with Path("/proc/self/smaps").open() as lines:  # of some hundred kB
-            is_candidate = False
-            for line in lines:
-                word, *rest = line.split()
-                if not word.endswith(":"):
-                    is_candidate = name in line and "w" not in rest[0]
-                    if is_candidate:
-                        begin, end = (int(part, 16) for part in word.split("-"))
-                        found.append((begin, end))
-                elif is_candidate and word in _UNWRITTEN and rest[0] != "0":
-                    is_candidate = False
-                    found.pop()
-    except OSError:  # not Linux
-        return []
-    return found

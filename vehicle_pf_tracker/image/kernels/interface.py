@@ -18,24 +18,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-import numpy.typing as npt
-
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image import (
-    correlation_filter,
     gradient_cells,
     mean_shift,
-    shared_motion,
     spectra,
 )
 from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import (
     Coefficients,
-    Counted,
-    CountedFeature,
-    Histograms,
     Positions,
     Window,
     WindowFeature,
@@ -45,7 +37,7 @@ from vehicle_pf_tracker.image.window import (
 class Kernels:
     """Measurement of windows by OpenCV and numpy, which are always available.
 
-    Subclasses do the same faster: they count equally, and agree on similarities to 1e-6. Each class
+    Subclasses do the same faster, and agree on similarities to 1e-6. Each class
     gives the same bits for the same input on one machine. What needs no window is a function of
     another module, bound to the class.
 
@@ -63,56 +55,10 @@ class Kernels:
     name = "opencv"
 
     gradient_cells = staticmethod(gradient_cells.gradient_cells)
-    take_filter_step = staticmethod(spectra.take_filter_step)
     correlated = staticmethod(spectra.correlated)
-    shifted = staticmethod(spectra.shifted)
-    climbed = staticmethod(correlation_filter.climbed)
-    shared_similarity = staticmethod(shared_motion.shared_similarity)
-    staying = staticmethod(shared_motion.staying)
-    shared_stretch = staticmethod(shared_motion.shared_stretch)
-    carried_share = staticmethod(shared_motion.carried_share)
 
     def __init__(self, notices: Sequence[str] = ()) -> None:
         self.notices = notices
-
-    def counts(
-        self,
-        feature: WindowFeature,
-        frame: Frame,
-        positions: Positions,
-        window: Window,
-        active: npt.NDArray[np.intp],
-    ) -> Counted:
-        """Count a feature that counts pixels, at some of its bins.
-
-        Parameters
-        ----------
-        feature : WindowFeature
-            Feature to count.
-        frame : (H, W, 3) array
-            RGB.
-        positions : (N, 2) array
-            Window centres in px; rounded and kept inside the image as in `window.bounds`.
-        window : Window
-            Size of all windows; over the border the pixels that exist count.
-        active : (K,) array
-            Bins to count, ascending.
-
-        Returns
-        -------
-        Counted
-            Counts of the bins (N, K), and of all bins together (N,).
-        """
-        assert isinstance(feature, CountedFeature)
-        return feature.counts(frame, positions, window, active)
-
-    def histograms(
-        self, feature: WindowFeature, frame: Frame, positions: Positions, window: Window
-    ) -> Histograms:
-        """Describe windows; see `WindowFeature.histograms`."""
-        if not isinstance(feature, CountedFeature):
-            return feature.histograms(frame, positions, window)
-        return self.counts(feature, frame, positions, window, np.arange(feature.bins)).histograms
 
     def similarity(
         self,
@@ -126,8 +72,14 @@ class Kernels:
 
         Parameters
         ----------
-        feature, frame, positions, window
-            As for `counts`; any feature is accepted.
+        feature : WindowFeature
+            Feature to compare by.
+        frame : (H, W, 3) array
+            RGB.
+        positions : (N, 2) array
+            Window centres in px; rounded and kept inside the image as in `window.bounds`.
+        window : Window
+            Size of all windows; over the border the pixels that exist count.
         reference : Reference
             Histogram of this feature.
 

@@ -21,7 +21,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
@@ -77,13 +76,6 @@ class Placement(NamedTuple):
             min(y1 + up + 1 + margin, height),
         )
 
-    def areas(self) -> npt.NDArray[np.int64]:
-        """Pixels in each window, shape (N,)."""
-        (left, right, up), (width, height), (x, y) = self.reach, self.size, self.pixels.T
-        # Pairs of pixels end one column earlier at the border, too.
-        across = np.minimum(x + right, width - (left + 1 - right)) - np.maximum(x - left, 0)
-        return np.asarray(across * (np.minimum(y + up + 1, height) - np.maximum(y - up, 0)))
-
 
 def reach_of(feature: WindowFeature, window: Window) -> Reach:
     """Reach of a feature's windows; pairs of pixels end one column earlier."""
@@ -110,8 +102,7 @@ class CellTable(NamedTuple):
     active : int
         K.
     values : (K + 1 or more,) array
-        Square roots of the reference at the active bins, followed by zeros; of no meaning where
-        bins are only counted.
+        Square roots of the reference at the active bins, followed by zeros.
     """
 
     cells: Table
@@ -135,15 +126,6 @@ def _number_cells(histogram: Histogram) -> tuple[Table, int, Reals]:
     return cells, active, values
 
 
-def table_for_counting(active: npt.NDArray[np.intp], bins: int) -> CellTable:
-    """Table of the bins `active` without any reference."""
-    if len(active) == bins:
-        return table_of_all(bins)
-    chosen = np.zeros(bins)
-    chosen[active] = 1.0
-    return CellTable(*_number_cells(chosen))
-
-
 def table_of(reference: Reference) -> CellTable:
     """Return the table of a reference, computed once."""
     kept = reference.kept.get("cells")
@@ -163,9 +145,3 @@ def _roots(length: int) -> Reals:
     table = np.sqrt(np.arange(length + 1, dtype=np.float64))
     table.flags.writeable = False
     return table
-
-
-@functools.lru_cache(maxsize=8)
-def table_of_all(bins: int) -> CellTable:
-    """Table of all bins without any reference."""
-    return CellTable(*_number_cells(np.ones(bins)))

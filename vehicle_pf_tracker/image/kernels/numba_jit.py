@@ -41,8 +41,6 @@ NOT_KEPT = (
 )
 
 _notices: list[str] = []
-_functions: list[Any] = []
-"""All compiled functions."""
 _filled: list[str] = []
 """Names of the functions that were compiled by this process and kept on disk."""
 
@@ -85,17 +83,6 @@ def has_filled_cache() -> bool:
     return bool(_filled) and not _notices
 
 
-def drop_intermediate_code() -> None:
-    """Drop what LLVM would need to compile callers of the functions that are there: 10 MB.
-
-    The attribute is numba's own; without it, nothing is dropped.
-    """
-    for function in _functions:
-        for overload in getattr(function, "overloads", {}).values():
-            if getattr(overload.library, "_shared_module", None) is not None:
-                overload.library._shared_module = None
-
-
 def _compile(function: FunctionT, signatures: list[Any], *, keep: bool) -> FunctionT:
     result: FunctionT = numba.njit(signatures, cache=keep, fastmath={"reassoc", "contract"})(
         function
@@ -103,7 +90,6 @@ def _compile(function: FunctionT, signatures: list[Any], *, keep: bool) -> Funct
     statistics = getattr(result, "stats", None)  # none with NUMBA_DISABLE_JIT
     if keep and statistics is not None and statistics.cache_misses:
         _filled.append(function.__name__)
-    _functions.append(result)
     return result
 
 

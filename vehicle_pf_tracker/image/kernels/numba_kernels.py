@@ -19,12 +19,11 @@ from __future__ import annotations
 from typing import TypeGuard
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.kernels import numba_jit, numba_shared_motion, numba_spectra
+from vehicle_pf_tracker.image.kernels import numba_jit
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.kernels.numba_edges import count_directions
 from vehicle_pf_tracker.image.kernels.numba_gradient_cells import gradient_cells
@@ -32,7 +31,6 @@ from vehicle_pf_tracker.image.kernels.numba_inputs import (
     CellTable,
     Placement,
     roots_up_to,
-    table_for_counting,
     table_of,
 )
 from vehicle_pf_tracker.image.kernels.numba_jit import (
@@ -47,8 +45,8 @@ from vehicle_pf_tracker.image.kernels.numba_mean_shift import (
     ellipse,
     shift_kernels,
 )
+from vehicle_pf_tracker.image.kernels.numba_spectra import correlated
 from vehicle_pf_tracker.image.kernels.numba_windows import (
-    Counts,
     Pixels,
     Reals,
     compare_counts,
@@ -60,7 +58,6 @@ from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
 from vehicle_pf_tracker.image.window import (
     Coefficients,
-    Counted,
     Positions,
     Window,
     WindowFeature,
@@ -69,7 +66,6 @@ from vehicle_pf_tracker.image.window import (
 
 _COUNTED_PIXELS = {JointColour, RgbMarginals, Cooccurrence}
 """Features of which each pixel counts equally in all windows."""
-_NO_COUNTS: Counts = np.zeros((0, 0), np.int32)
 
 
 class NumbaKernels(Kernels):
@@ -78,38 +74,10 @@ class NumbaKernels(Kernels):
     name = "numba"
 
     gradient_cells = staticmethod(gradient_cells)
-    take_filter_step = staticmethod(numba_spectra.take_filter_step)
-    correlated = staticmethod(numba_spectra.correlated)
-    shifted = staticmethod(numba_spectra.shifted)
-    climbed = staticmethod(numba_spectra.climbed)
-    shared_similarity = staticmethod(numba_shared_motion.shared_similarity)
-    staying = staticmethod(numba_shared_motion.staying)
-    shared_stretch = staticmethod(numba_shared_motion.shared_stretch)
-    carried_share = staticmethod(numba_shared_motion.carried_share)
+    correlated = staticmethod(correlated)
 
     def __init__(self) -> None:
         super().__init__(numba_jit.notices())
-
-    def counts(
-        self,
-        feature: WindowFeature,
-        frame: Frame,
-        positions: Positions,
-        window: Window,
-        active: npt.NDArray[np.intp],
-    ) -> Counted:
-        """Count windows; see `Kernels.counts`."""
-        table = table_for_counting(active, feature.bins)
-        if _counts_edges(feature):
-            placement = Placement.of(feature, frame, positions, window)
-            cells, totals = count_directions(feature, frame, placement, table)
-            return Counted(cells[:, : table.active], totals)
-        if type(feature) in _COUNTED_PIXELS:
-            placement = Placement.of(feature, frame, positions, window)
-            counts = np.empty((len(positions), table.active), np.int32)
-            _compare_pixels(feature, frame, positions, window, table, counts)
-            return Counted(counts, _planes_of(feature) * placement.areas())
-        return super().counts(feature, frame, positions, window, active)
 
     def similarity(
         self,
@@ -122,7 +90,7 @@ class NumbaKernels(Kernels):
         """Compare windows; see `Kernels.similarity`."""
         if type(feature) in _COUNTED_PIXELS:
             table = table_of(reference)
-            return _compare_pixels(feature, frame, positions, window, table, _NO_COUNTS)
+            return _compare_pixels(feature, frame, positions, window, table)
         if _counts_edges(feature):
             placement, table = Placement.of(feature, frame, positions, window), table_of(reference)
             cells, totals = count_directions(feature, frame, placement, table)
@@ -161,24 +129,19 @@ def _counts_edges(feature: WindowFeature) -> TypeGuard[GradientDirections]:
     return type(feature) is GradientDirections and feature.in_frame
 
 
-def _planes_of(feature: WindowFeature) -> int:
-    """Count the bins that each pixel adds to."""
-    return 3 if type(feature) is RgbMarginals else 1
-
-
 def _compare_pixels(
     feature: WindowFeature,
     frame: Frame,
     positions: Positions,
     window: Window,
     table: CellTable,
-    counts: Counts,
 ) -> Reals:
-    """Compare windows by their pixels, and fill `counts` (N or 0, K) if it has room."""
-    scale = table.values, roots_up_to(_planes_of(feature) * window.width * window.height)
+    """Compare windows by their pixels."""
+    planes = 3 if type(feature) is RgbMarginals else 1
+    scale = table.values, roots_up_to(planes * window.width * window.height)
     if isinstance(feature, JointColour):
         half = window.half_width, window.half_height
-        return compare_joint(frame, positions, feature.bits, half, table.cells, scale, counts)
+        return compare_joint(frame, positions, feature.bits, half, table.cells, scale)
     placement = Placement.of(feature, frame, positions, window)
     left, top, right, bottom = placement.covered()
     region = frame[top:bottom, left:right]
@@ -187,7 +150,7 @@ def _compare_pixels(
     else:
         cells = pair_cells(to_grey(region), table.cells)
     return compare_windows(
-        cells, placement.pixels, placement.extent, (left, top), placement.reach, scale, counts
+        cells, placement.pixels, placement.extent, (left, top), placement.reach, scale
     )
 
 

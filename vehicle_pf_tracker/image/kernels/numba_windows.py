@@ -172,7 +172,6 @@ def _slide(
     origin: tuple[int, int],
     reach: Reach,
     scale: Scale,
-    counts: Counts,
 ) -> Reals:
     """Compare windows that lie close together; parameters as for `compare_windows`."""
     planes, height, width = cells.shape
@@ -200,8 +199,6 @@ def _slide(
                 rho = _overlap(sums, values, planes * across * (bottom - top), roots)
             while i >= 0:
                 result[i] = rho
-                if len(counts):
-                    counts[i] = sums[: counts.shape[1]]
                 i = others[i]
     return result
 
@@ -216,8 +213,8 @@ def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
     return result
 
 
-@compiled(types.float64[::1](CELLS, RECTANGLES, SCALE, _COUNTS))
-def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale, counts: Counts) -> Reals:
+@compiled(types.float64[::1](CELLS, RECTANGLES, SCALE))
+def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale) -> Reals:
     """Compare windows one after the other; parameters as for `compare_windows`."""
     planes = cells.shape[0]
     values, roots = scale
@@ -232,8 +229,6 @@ def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale, count
                     sums[cells[plane, y, x]] += 1
         total = planes * max(right - left, 0) * (bottom - top)
         result[i] = _overlap(sums, values, total, roots)
-        if len(counts):
-            counts[i] = sums[: counts.shape[1]]
     return result
 
 
@@ -250,7 +245,7 @@ def _is_sliding_worthwhile(
     return sliding <= count * (_PIXEL * len(cells) * across * (2 * reach[2] + 1) + bins)
 
 
-@compiled(types.float64[::1](CELLS, RECTANGLES, QUAD, PAIR, REACH, SCALE, _COUNTS))
+@compiled(types.float64[::1](CELLS, RECTANGLES, QUAD, PAIR, REACH, SCALE))
 def compare_windows(
     cells: Cells,
     pixels: Pixels,
@@ -258,7 +253,6 @@ def compare_windows(
     origin: tuple[int, int],
     reach: Reach,
     scale: Scale,
-    counts: Counts,
 ) -> Reals:
     """Compare windows with a reference.
 
@@ -273,8 +267,6 @@ def compare_windows(
         itself, and above it (as many as below).
     scale : (K + 1 or more,) array, (M,) array
         Square roots of the reference at the active bins, followed by zeros; and those of 0, 1, 2, …
-    counts : (N or 0, K) array
-        Filled with each window's counts, if it has room.
 
     Returns
     -------
@@ -282,7 +274,7 @@ def compare_windows(
         Bhattacharyya coefficients.
     """
     if _is_sliding_worthwhile(cells, len(pixels), extent, reach, len(scale[0])):
-        return _slide(cells, pixels, extent, origin, reach, scale, counts)
+        return _slide(cells, pixels, extent, origin, reach, scale)
     _, height, width = cells.shape
     left, right, up = reach
     rectangles = np.empty((len(pixels), 4), np.int64)
@@ -290,10 +282,10 @@ def compare_windows(
         x, y = pixels[i, 0] - origin[0], pixels[i, 1] - origin[1]
         rectangles[i, 0], rectangles[i, 1] = max(x - left, 0), max(y - up, 0)
         rectangles[i, 2], rectangles[i, 3] = min(x + right, width), min(y + up + 1, height)
-    return compare_rectangles(cells, rectangles, scale, counts)
+    return compare_rectangles(cells, rectangles, scale)
 
 
-@compiled(types.float64[::1](FRAME, _POSITIONS, types.int64, PAIR, TABLE, SCALE, _COUNTS))
+@compiled(types.float64[::1](FRAME, _POSITIONS, types.int64, PAIR, TABLE, SCALE))
 def compare_joint(
     frame: Frame,
     positions: Positions,
@@ -301,7 +293,6 @@ def compare_joint(
     half: tuple[int, int],
     table: Table,
     scale: Scale,
-    counts: Counts,
 ) -> Reals:
     """Compare windows of joint colours in one call, the main cost of most trackers' steps.
 
@@ -316,12 +307,12 @@ def compare_joint(
     reach = beside, beside + 1, above
     if (right - left) * (bottom - top) <= len(pixels) * (2 * beside + 1) * (2 * above + 1):
         cells = joint_cells(frame[top:bottom, left:right], bits, table)
-        return compare_windows(cells, pixels, extent, (left, top), reach, scale, counts)
+        return compare_windows(cells, pixels, extent, (left, top), reach, scale)
     result = np.empty(len(pixels))
     for i in range(len(pixels)):  # they share few pixels
         x, y = pixels[i]
         left, top = max(x - beside, 0), max(y - above, 0)
         cells = joint_cells(frame[top : y + above + 1, left : x + beside + 1], bits, table)
         rectangle = np.array([[0, 0, cells.shape[2], cells.shape[1]]])
-        result[i] = compare_rectangles(cells, rectangle, scale, counts[i : i + 1])[0]
+        result[i] = compare_rectangles(cells, rectangle, scale)[0]
     return result

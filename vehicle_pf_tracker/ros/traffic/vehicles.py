@@ -132,6 +132,8 @@ class Vehicles:
         Last crossing of each place.
     waiting : list of Box
         Targets that the first image will start.
+    given : list of Box
+        Targets followed since whoever looks at them emptied it.
     selection : Selection
         The vehicle that is reported like that of a single tracker.
 
@@ -158,6 +160,7 @@ class Vehicles:
         self._is_shown = False
         self._added = 0
         self.waiting: list[Box] = []
+        self.given: list[Box] = []
         self._configured: Box | None = configuration.session.target.box
 
     @property
@@ -204,6 +207,7 @@ class Vehicles:
         if self._is_shown:
             identity = self.session.add(box)
             self._added += 1
+            self.given.append(box)
             return identity
         check_target(box, MAX_SIDE, MAX_SIDE)
         self.waiting.append(box)
@@ -290,10 +294,12 @@ class Vehicles:
     def _try_to_add(self, box: Box, problems: list[str]) -> int:
         """Return the number of the vehicle in `box`, or `NONE` with a problem."""
         try:
-            return self.session.add(box)
+            identity = self.session.add(box)
         except InputError as error:
             problems.append(f"target refused: {error}")
             return NONE
+        self.given.append(box)
+        return identity
 
 
 def plane_of(road: RoadParameters) -> RoadPlane | None:

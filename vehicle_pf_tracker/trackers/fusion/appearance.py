@@ -40,7 +40,7 @@ from vehicle_pf_tracker.image.correlation_filter import (
 )
 from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures, Grey
 from vehicle_pf_tracker.image.kernels.interface import Kernels
-from vehicle_pf_tracker.image.spectra import Spectrum
+from vehicle_pf_tracker.image.spectra import Spectrum, shifted
 from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
 
 _CELLS = 32
@@ -239,7 +239,7 @@ class Appearance:
         offset = (position - view.patch.centre) * view.patch.zoom
         if view.spectrum is not None and np.abs(offset).max() < _SHIFTABLE_PX:
             x, y = (-offset / CELL).tolist()
-            spectrum = self._filter.shifted(view.spectrum, x, y)
+            spectrum = shifted(view.spectrum, x, y)
         else:
             again = self.patch(frame, position, size)
             spectrum = self._filter.spectrum(self._features(again.image, again.grey))

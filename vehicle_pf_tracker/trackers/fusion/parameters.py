@@ -37,16 +37,14 @@ class FilterParameters:
     stiffness: float = parameter(
         5.0,
         "Higher: each frame changes the filter less; steadier, but slower to follow a turn.",
-        minimum=0.0,
-        maximum=1000.0,
+        bounds=(0.0, 1000.0),
         source="STRCF, mu",
         tuned=(1.0, 30.0),
     )
     penalty: float = parameter(
         0.1,
         "Higher: a smoother filter, which discriminates less and bears changed appearance longer.",
-        minimum=0.001,
-        maximum=100.0,
+        bounds=(0.001, 100.0),
         source="STRCF, first gamma",
         effect="relearns",
         tuned=(0.03, 1.0),
@@ -55,8 +53,7 @@ class FilterParameters:
     memory: int = parameter(
         3,
         "More: a hidden vehicle is recognised by what it looked like at more times; 0: only last.",
-        minimum=0,
-        maximum=20,
+        bounds=(0, 20),
         unit="dated filters",
     )
     level_rate: float = share(
@@ -77,8 +74,7 @@ class VehicleMotionParameters:
     position_sigma: float = parameter(
         0.06,
         "Larger: follows jumps of a visible vehicle; steadier if smaller.",
-        minimum=0.001,
-        maximum=2.0,
+        bounds=(0.001, 2.0),
         unit="of the size, per frame",
         tuned=(0.02, 0.15),
     )
@@ -96,8 +92,7 @@ class VehicleMotionParameters:
     hidden_position_sigma: float = parameter(
         0.02,
         "Larger: the search for a hidden vehicle widens faster.",
-        minimum=0.001,
-        maximum=1.0,
+        bounds=(0.001, 1.0),
         unit="of the size, per frame",
         tuned=(0.005, 0.06),
     )
@@ -128,8 +123,7 @@ class VisibilityParameters:
     response_slope: float = parameter(
         12.0,
         "Higher: the filter's response decides about visibility in fewer frames.",
-        minimum=0.1,
-        maximum=100.0,
+        bounds=(0.1, 100.0),
         unit="log ratio per usual response",
         tuned=(5.0, 20.0),
     )
@@ -142,8 +136,7 @@ class VisibilityParameters:
     points_slope: float = parameter(
         4.0,
         "Higher: how many points move with the vehicle counts more; 0: they are not tracked.",
-        minimum=0.0,
-        maximum=50.0,
+        bounds=(0.0, 50.0),
         unit="log ratio per usual share",
         tuned=(0.5, 8.0),
     )
@@ -156,16 +149,14 @@ class VisibilityParameters:
     hiding_rate: float = parameter(
         0.02,
         "Probability that a visible vehicle is hidden in the next frame.",
-        minimum=1e-6,
-        maximum=0.5,
+        bounds=(1e-6, 0.5),
         unit="per frame",
         tuned=(0.003, 0.1),
     )
     return_rate: float = parameter(
         0.05,
         "Probability that a hidden vehicle is visible in the next frame.",
-        minimum=1e-6,
-        maximum=0.5,
+        bounds=(1e-6, 0.5),
         unit="per frame",
         tuned=(0.01, 0.2),
     )
@@ -175,8 +166,7 @@ class VisibilityParameters:
     partial_slope: float = parameter(
         8.0,
         "Higher: a vehicle is taken as partly hidden sooner; 0: never, and walls are learnt.",
-        minimum=0.0,
-        maximum=50.0,
+        bounds=(0.0, 50.0),
         unit="log ratio per usual share",
         tuned=(2.0, 20.0),
     )
@@ -195,22 +185,19 @@ class SizeParameters:
     step: float = parameter(
         0.03,
         "Size step that is tried; 0: the box keeps its first size.",
-        minimum=0.0,
-        maximum=0.2,
+        bounds=(0.0, 0.2),
         tuned=(0.015, 0.06),
     )
     gain: float = parameter(
         0.7,
         "Higher: the size takes on more of what the response says.",
-        minimum=0.0,
-        maximum=2.0,
+        bounds=(0.0, 2.0),
         tuned=(0.3, 1.2),
     )
     aspect_gain: float = parameter(
         0.6,
         "Higher: width and height follow the response separately; 0: only together.",
-        minimum=0.0,
-        maximum=2.0,
+        bounds=(0.0, 2.0),
         tuned=(0.1, 1.2),
     )
     points_gain: float = share(

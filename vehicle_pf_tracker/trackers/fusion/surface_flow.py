@@ -29,10 +29,9 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, Flow, MotionKernels
+from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, Flow, carried_share
 
 _KEPT = 8
 """Patches kept; by less than half a canonical px per frame a vehicle is taken to stand."""
@@ -81,8 +80,6 @@ class SurfaceFlow:
 
     Attributes
     ----------
-    kernels : MotionKernels
-        Implementation that counts the points.
     share : float
         Share of the points in the box that move with the vehicle, of the usual share; 1 where flow
         tells nothing.
@@ -90,8 +87,7 @@ class SurfaceFlow:
         True where flow told something when it was last asked.
     """
 
-    def __init__(self, kernels: MotionKernels = shared_motion) -> None:
-        self.kernels = kernels
+    def __init__(self) -> None:
         self._usual = 0.0
         self._latest = 1.0
         self.restart()
@@ -176,7 +172,7 @@ class SurfaceFlow:
             )
         cells = _cells(patch, position, size)
         flow = _flow(patch, before)
-        return self.kernels.carried_share(flow, cells, places, vehicle, background)
+        return carried_share(flow, cells, places, vehicle, background)
 
 
 def _middle(patch: Patch) -> Patch:

@@ -31,7 +31,6 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.flow import Found, PointFlow, Points
-from vehicle_pf_tracker.image.shared_motion import MotionKernels
 
 _GRID = 6
 """Points along each axis of a set: two thirds of 36 may be lost until they tell no more of the size
@@ -75,14 +74,11 @@ class SurfacePoints:
 
     Attributes
     ----------
-    kernels : MotionKernels
-        Implementation that fits the motion of points.
     stretch : (2,) array
         Change of the logarithm of width and height in the last frame by the points' spread.
     """
 
-    def __init__(self, kernels: MotionKernels = shared_motion) -> None:
-        self.kernels = kernels
+    def __init__(self) -> None:
         self._previous: tuple[Patch, Array] | None = None
         self.restart()
 
@@ -132,7 +128,7 @@ class SurfacePoints:
         for points in self.sets:
             points.age += 1
             present = (points.positions - position) / size
-            points.alive = self.kernels.staying(points.places, present, points.alive, _STRAYED)
+            points.alive = shared_motion.staying(points.places, present, points.alive, _STRAYED)
 
     def renew(self, position: Array, size: Array, *, whole: bool = True) -> None:
         """End old sets, and place a new one if it is time, and the vehicle is whole or has none."""
@@ -154,7 +150,7 @@ class SurfacePoints:
         guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
         end, found = _flow(previous, patch, start, guess, _FLOW)
         after = patch.to_frame(end.astype(np.float64) + 0.5)
-        self.stretch = self.kernels.shared_stretch(before[found], after[found], size)
+        self.stretch = shared_motion.shared_stretch(before[found], after[found], size)
         positions[alive] = after
         alive[alive] = found
         place = 0

@@ -113,10 +113,10 @@ class Track(ParticleTracker[FusionParameters]):
         self._growth = self._grown = 0.0
         self._wholeness = Wholeness()
         self._sightings = Sightings()
-        self._points = SurfacePoints(self.kernels)
-        self._surface = SurfaceFlow(self.kernels)
+        self._points = SurfacePoints()
+        self._surface = SurfaceFlow()
         self._turning = TurningBranch()
-        self._camera = CameraFlow(self.kernels)
+        self._camera = CameraFlow()
         self._camera.measure(small_grey(frame), box)
         estimate = super().start(frame, box)
         patch = self._appearance.patch(frame, self._position, self._size)
@@ -129,8 +129,7 @@ class Track(ParticleTracker[FusionParameters]):
         recoloured = parameters.filter.colour != self.parameters.filter.colour
         super().reconfigure(parameters)
         if self._target is not None:
-            for part in (self._appearance, self._points, self._surface, self._camera):
-                part.kernels = self.kernels
+            self._appearance.kernels = self.kernels
             self._particles = self._particles.resampled(self._rng, parameters.num_particles)
             if recoloured:
                 self._learn()

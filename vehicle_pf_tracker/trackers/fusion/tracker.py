@@ -196,9 +196,7 @@ class FusionTracker(Track):
         view = self._appearance.view(patch, recall=hidden and self.parameters.filter.memory > 0)
         climb = CLIMB_ON_PATH if hidden else CLIMB_FREELY
         climb = STAY if self._set_off else climb
-        evidence = response_evidence(
-            view, particles.positions, climb, self.parameters.visibility, self.kernels
-        )
+        evidence = response_evidence(view, particles.positions, climb, self.parameters.visibility)
         return _Look(view, *evidence, scale)
 
     def _locate(self, frame: Frame, view: View) -> tuple[Array, float]:

@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.kernels.interface import Kernels
+from vehicle_pf_tracker.image.correlation_filter import climbed
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
@@ -77,7 +77,7 @@ def _costs(climb: Climb) -> Array:
 
 
 def response_evidence(
-    view: View, positions: Array, climb: Climb, parameters: VisibilityParameters, kernels: Kernels
+    view: View, positions: Array, climb: Climb, parameters: VisibilityParameters
 ) -> tuple[Array, Array]:
     """Judge hypotheses by the filter's response close by.
 
@@ -87,8 +87,6 @@ def response_evidence(
         The response around the prediction.
     positions : (N, 2) array
         Positions of the hypotheses, px.
-    kernels : Kernels
-        Implementation that climbs.
 
     Returns
     -------
@@ -99,7 +97,7 @@ def response_evidence(
     """
     seen = np.minimum(np.maximum(view.response, 0), np.float32(_HIGHEST_RESPONSE))
     ratios = parameters.response_slope * (seen.astype(np.float64) - parameters.response_middle)
-    moves, log_ratios = kernels.climbed(ratios, view.places(positions), _costs(climb))
+    moves, log_ratios = climbed(ratios, view.places(positions), _costs(climb))
     return positions + moves / view.steps, np.clip(
         log_ratios, -_LARGEST_LOG_RATIO, _LARGEST_LOG_RATIO
     )

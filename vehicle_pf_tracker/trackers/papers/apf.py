@@ -63,31 +63,18 @@ class ApfMotionParameters:
     """Propagation of particles in the two regimes."""
 
     sigma_w: float = parameter(
-        6.0,
-        "About the vehicle's speed: less loses fast vehicles, more follows similar vehicles.",
-        minimum=0.01,
-        maximum=1000.0,
-        unit="px/frame",
-        source="P1 eq. 7, interpretation 11",
-        tuned=True,
-    )
+        6.0, "About the vehicle's speed: less loses fast vehicles, more follows similar vehicles.",
+        bounds=(0.01, 1000.0), unit="px/frame", source="P1 eq. 7, interpretation 11", tuned=True,
+    )  # fmt: skip
     sigma_n: float = parameter(
-        0.0,
-        "Larger: occluded particles spread further across the motion; 0 takes sigma_w.",
-        minimum=0.0,
-        maximum=1000.0,
-        unit="px/frame",
-        source="P1 eq. 10",
-    )
+        0.0, "Larger: occluded particles spread further across the motion; 0 takes sigma_w.",
+        bounds=(0.0, 1000.0), unit="px/frame", source="P1 eq. 10",
+    )  # fmt: skip
     sigma_r: float = parameter(
-        0.0,
-        "Larger: occluded particles drift faster along the motion; 0 takes sigma_w. "
+        0.0, "Larger: occluded particles drift faster along the motion; 0 takes sigma_w. "
         "Counts with drift_from_velocity off.",
-        minimum=0.0,
-        maximum=1000.0,
-        unit="px/frame",
-        source="P1 eq. 9",
-    )
+        bounds=(0.0, 1000.0), unit="px/frame", source="P1 eq. 9",
+    )  # fmt: skip
     drift_from_velocity: bool = parameter(
         True,
         "Drift at the vehicle's own mean speed, sigma_R = |V| / sqrt(pi / 2); off takes sigma_r.",
@@ -100,11 +87,10 @@ class ApfReferenceParameters:
     """Adaptation of the reference histogram to the vehicle."""
 
     alpha: float = share(
-        0.01,
-        "Higher: the reference follows changes of appearance faster. Counts with the fixed "
+        0.01, "Higher: the reference follows changes of appearance faster. Counts with the fixed "
         "occlusion rule.",
         source="P1 Algorithm 1 step 15 (no value printed)",
-    )
+    )  # fmt: skip
     steady_alpha: float = share(
         0.01,
         "Higher: as alpha, with the relative occlusion rule, which is regular in more frames.",
@@ -113,11 +99,8 @@ class ApfReferenceParameters:
     steady_above: float = parameter(
         0.95,
         "Higher: with the relative rule, the reference follows in fewer and better frames only.",
-        minimum=0.0,
-        maximum=2.0,
-        unit="of Pi's clear level",
-        source=RELATIVE,
-    )
+        bounds=(0.0, 2.0), unit="of Pi's clear level", source=RELATIVE,
+    )  # fmt: skip
     frozen_while_occluded: bool = parameter(
         True,
         "Keep the reference while occluded; off lets it learn the occluder, as printed. Counts "
@@ -134,9 +117,8 @@ class ApfOcclusionParameters:
         "relative",
         "fixed compares the similarities with tau, as the paper does, which takes most of a real "
         "video for an occlusion; relative, our extension, with their own clear level.",
-        choices=("fixed", "relative"),
-        source="P1 Algorithm 1 step 4, interpretation 27",
-    )
+        choices=("fixed", "relative"), source="P1 Algorithm 1 step 4, interpretation 27",
+    )  # fmt: skip
     tau: float = share(
         0.8,
         "Higher: smaller changes of the histogram switch to the occlusion regime. Counts with the "
@@ -144,10 +126,9 @@ class ApfOcclusionParameters:
         source="P1 Algorithm 1 step 4, interpretation 8",
     )
     raw_histogram: bool = parameter(
-        True,
-        "Judge the window's own histogram; off judges the blended reference, as printed.",
+        True, "Judge the window's own histogram; off judges the blended reference, as printed.",
         source="P1 Algorithm 1 step 16, interpretation 7",
-    )
+    )  # fmt: skip
     level: ClearLevelParameters = group(ClearLevelParameters)
 
 
@@ -156,33 +137,22 @@ class ApfVelocityParameters:
     """Mean velocity that gives the direction of the drift."""
 
     window: int = parameter(
-        16,
-        "Longer: a steadier direction that follows turns later; 0 takes all estimates.",
-        minimum=0,
-        maximum=10_000,
-        unit="frames",
-        source="P1 section III-B, interpretation 5",
-        tuned=True,
-    )
+        16, "Longer: a steadier direction that follows turns later; 0 takes all estimates.",
+        bounds=(0, 10_000), unit="frames", source="P1 section III-B, interpretation 5", tuned=True,
+    )  # fmt: skip
     delay: int = parameter(
         12,
         "Longer: more of the estimates that an occlusion drags along before it is noticed are kept "
         "out of the drift. Counts with the relative rule, which notices later.",
-        minimum=0,
-        maximum=1000,
-        unit="frames",
-        source=RELATIVE,
-    )
+        bounds=(0, 1000), unit="frames", source=RELATIVE,
+    )  # fmt: skip
     from_origin: bool = parameter(
-        False,
-        "Count the first displacement from (0, 0), as printed.",
+        False, "Count the first displacement from (0, 0), as printed.",
         source="P1 section III-B, interpretation 5",
-    )
+    )  # fmt: skip
     frozen_while_occluded: bool = parameter(
-        True,
-        "Leave estimates of the occlusion regime out of the mean.",
-        source="interpretation 5",
-    )
+        True, "Leave estimates of the occlusion regime out of the mean.", source="interpretation 5",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,10 +173,8 @@ class ApfParameters(ParticleParameters):
         """Newest displacements that the drift leaves out, in frames."""
         return self.velocity.delay if self.occlusion.rule == "relative" else 0
 
-    def effective(self) -> ApfParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        if not self.as_printed:
-            return self
+    def printed(self) -> ApfParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
         return replace(
             self,
             histogram_bits=3,
@@ -272,7 +240,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         cloud = Cloud(particles, *weights)
         position = cloud.mean()  # step 13
         at = np.asarray([position])
-        histogram = self.kernels.histograms(feature, frame, at, window)[0]  # step 14
+        histogram = feature.histograms(frame, at, window)[0]  # step 14
         evidence = hellinger_similarity(histogram, self.reference.histogram)
         self._compare_and_learn(settings, histogram, evidence)  # steps 15 and 16
         self._follow(settings, position, elapsed, regular=regular)

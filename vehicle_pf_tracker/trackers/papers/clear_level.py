@@ -40,35 +40,21 @@ class ClearLevelParameters:
     """Thresholds at which a similarity leaves its clear level and returns to it."""
 
     enter: float = parameter(
-        6.0,
-        "Higher: deeper falls of the similarity are needed to switch to the occlusion regime.",
-        minimum=0.0,
-        maximum=100.0,
-        unit="mean deviations below the level",
-        source=RELATIVE,
-        tuned=True,
-    )
+        6.0, "Higher: deeper falls of the similarity are needed to switch to the occlusion regime.",
+        bounds=(0.0, 100.0), unit="mean deviations below the level", source=RELATIVE, tuned=True,
+    )  # fmt: skip
     leave: float = parameter(
-        4.0,
-        "Higher: the regular regime returns while less of the vehicle is visible.",
-        minimum=0.0,
-        maximum=100.0,
-        unit="mean deviations below the level",
-        source=RELATIVE,
-    )
+        4.0, "Higher: the regular regime returns while less of the vehicle is visible.",
+        bounds=(0.0, 100.0), unit="mean deviations below the level", source=RELATIVE,
+    )  # fmt: skip
     certain: float = share(
-        0.65,
-        "Higher: smaller falls are occlusions however much the similarity varies; 0: never.",
-        unit="of the level",
-        source=RELATIVE,
-        tuned=True,
-    )
+        0.65, "Higher: smaller falls are occlusions however much the similarity varies; 0: never.",
+        unit="of the level", source=RELATIVE, tuned=True,
+    )  # fmt: skip
     rate: float = share(
-        0.05,
-        "Higher: level and deviation follow the similarity faster.",
-        unit="per frame",
+        0.05, "Higher: level and deviation follow the similarity faster.", unit="per frame",
         source=RELATIVE,
-    )
+    )  # fmt: skip
 
 
 class ClearLevel(RunningLevel):

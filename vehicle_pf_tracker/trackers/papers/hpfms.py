@@ -16,13 +16,11 @@
 
 Few particles are spread according to the vehicle's speed and the confidence in the last frame. Each
 then climbs a few mean-shift steps to a maximum near it, so that few are enough. It has no
-occlusion branch. Of large windows every k-th pixel is measured, so that a step takes as long for a
-near vehicle as for others.
+occlusion branch.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,46 +31,11 @@ from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference
-from vehicle_pf_tracker.image.window import Positions, Window
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.parameters import particles_parameter
-
-MOST_PIXELS = 100_000
-"""Most pixels of a window: 25 particles with three shifts each take 30 ms for so many. Vehicles of
-316 px squared and less are not reduced, which are all but the nearest in 1080p."""
-
-
-@dataclass(frozen=True, slots=True)
-class Reduction:
-    """Mapping of positions in a frame to those in its every `step`-th row and column."""
-
-    step: int = 1
-
-    @classmethod
-    def of_window(cls, window: Window) -> Reduction:
-        """Return the least reduction that leaves at most `MOST_PIXELS` of a window."""
-        return cls(max(math.ceil(math.sqrt(window.width * window.height / MOST_PIXELS)), 1))
-
-    def frame(self, frame: Frame) -> Frame:
-        """View of the pixels that are left."""
-        return frame if self.step == 1 else frame[:: self.step, :: self.step]
-
-    def window(self, window: Window) -> Window:
-        """Measure a window in pixels that are left."""
-        if self.step == 1:
-            return window
-        return Window.of_size(window.width / self.step, window.height / self.step)
-
-    def positions(self, positions: Positions) -> Positions:
-        """Positions in the reduced frame: the centre of pixel 0 stays where it is."""
-        return positions if self.step == 1 else (positions - 0.5) / self.step + 0.5
-
-    def back(self, positions: Positions) -> Positions:
-        """Positions in the whole frame of those in the reduced one."""
-        return positions if self.step == 1 else (positions - 0.5) * self.step + 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,22 +43,13 @@ class TransitionParameters:
     """Adaptation of the particles' spread, of which `sigma` is the minimum."""
 
     speed_share: float = parameter(
-        1.0,
-        "Higher: fast vehicles are searched for further away; 0 spreads by sigma alone.",
-        minimum=0.0,
-        maximum=10.0,
-        unit="of the speed",
-        source="Maggio 2005 section 3",
-        tuned=True,
-    )
+        1.0, "Higher: fast vehicles are searched for further away; 0 spreads by sigma alone.",
+        bounds=(0.0, 10.0), unit="of the speed", source="Maggio 2005 section 3", tuned=True,
+    )  # fmt: skip
     widest: float = parameter(
-        2.0,
-        "Higher: the spread grows more after an estimate of low similarity; 1: never.",
-        minimum=1.0,
-        maximum=20.0,
-        unit="times",
-        source="Maggio 2005 section 3",
-    )
+        2.0, "Higher: the spread grows more after an estimate of low similarity; 1: never.",
+        bounds=(1.0, 20.0), unit="times", source="Maggio 2005 section 3",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,18 +57,13 @@ class HpfmsParameters(ColourParameters):
     """Parameters of `hpfms`."""
 
     num_particles: int = particles_parameter(
-        25,
-        "More: steadier estimates, at more time per frame; mean shift makes few enough.",
+        25, "More: steadier estimates, at more time per frame; mean shift makes few enough.",
         source="Maggio 2005 section 4",
-    )
+    )  # fmt: skip
     iterations: int = parameter(
-        3,
-        "More: particles come closer to a maximum, and nearer to each other.",
-        minimum=0,
-        maximum=100,
-        source="Maggio 2005 section 2",
-        tuned=True,
-    )
+        3, "More: particles come closer to a maximum, and nearer to each other.", bounds=(0, 100),
+        source="Maggio 2005 section 2", tuned=True,
+    )  # fmt: skip
     transition: TransitionParameters = group(TransitionParameters)
 
 
@@ -124,16 +73,10 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
     def __init__(self, parameters: HpfmsParameters) -> None:
         super().__init__(parameters)
         self._evidence = 0.0
-        self._reduction = Reduction()
 
     def _learn(self) -> None:
-        self._reduction = reduction = Reduction.of_window(self.window)
-        x, y = reduction.positions(np.array(self.target.centre))
         histogram = kernel_histogram(
-            reduction.frame(self.target.patch),
-            (float(x), float(y)),
-            reduction.window(self.window),
-            self.parameters.histogram_bits,
+            self.target.patch, self.target.centre, self.window, self.parameters.histogram_bits
         )
         self._reference = Reference(histogram)
 
@@ -160,22 +103,11 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
 
     def similarity(self, frame: Frame, positions: Array) -> Array:
         """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
-        feature, reduction = JointColour(self.parameters.histogram_bits), self._reduction
+        feature = JointColour(self.parameters.histogram_bits)
         return self.kernels.kernel_similarity(
-            feature,
-            reduction.frame(frame),
-            reduction.positions(positions),
-            reduction.window(self.window),
-            self._reference,
+            feature, frame, positions, self.window, self._reference
         )
 
     def _shift(self, frame: Frame, positions: Array) -> Array:
-        feature, reduction = JointColour(self.parameters.histogram_bits), self._reduction
-        shifted = self.kernels.mean_shift(
-            feature,
-            reduction.frame(frame),
-            reduction.positions(positions),
-            reduction.window(self.window),
-            self._reference,
-        )
-        return reduction.back(shifted)
+        feature = JointColour(self.parameters.histogram_bits)
+        return self.kernels.mean_shift(feature, frame, positions, self.window, self._reference)

@@ -33,18 +33,13 @@ class LikelihoodParameters:
     """Decrease of the weights with the distance of the histograms."""
 
     sigma_v: float = parameter(
-        0.1,
-        "Smaller: weights fall faster as a particle's histogram departs from the reference.",
-        minimum=1e-3,
-        maximum=100.0,
-        source="P1 eq. 25, interpretation 1 (printed: 1.5)",
-        tuned=True,
-    )
+        0.1, "Smaller: weights fall faster as a particle's histogram departs from the reference.",
+        bounds=(1e-3, 100.0), source="P1 eq. 25, interpretation 1 (printed: 1.5)", tuned=True,
+    )  # fmt: skip
     squared_distance: bool = parameter(
-        True,
-        "False takes the distance unsquared, as printed; the weights are then almost flat.",
+        True, "False takes the distance unsquared, as printed; the weights are then almost flat.",
         source="P1 eq. 25, interpretation 1",
-    )
+    )  # fmt: skip
 
 
 def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Weights:
@@ -71,31 +66,22 @@ def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Wei
 def as_printed_switch(source: str) -> Any:
     """Make the switch that follows the paper to the letter; `source` names what it undoes."""
     return parameter(
-        False,
-        "Follow the paper to the letter: overrides every interpretation below.",
+        False, "Follow the paper to the letter: overrides every interpretation below.",
         source=source,
-    )
+    )  # fmt: skip
 
 
 def histogram_bits_parameter(*, tuned: bool = False) -> Any:
     """Make the resolution of joint colour histograms."""
     return parameter(
-        3,
-        "More: finer colours, more easily upset by light and noise.",
-        minimum=1,
-        maximum=5,
-        unit="bits/channel",
-        source="P1 section III-C",
-        effect="relearns",
-        tuned=tuned,
-    )
+        3, "More: finer colours, more easily upset by light and noise.", bounds=(1, 5),
+        unit="bits/channel", source="P1 section III-C", effect="relearns", tuned=tuned,
+    )  # fmt: skip
 
 
 def resampling_parameter(source: str) -> Any:
     """Make the choice of a resampling scheme; `source` is where the paper resamples."""
     return parameter(
-        "multinomial",
-        "How ancestors are drawn; systematic and stratified vary less.",
-        choices=SCHEMES,
-        source=source,
-    )
+        "multinomial", "How ancestors are drawn; systematic and stratified vary less.",
+        choices=SCHEMES, source=source,
+    )  # fmt: skip

@@ -259,10 +259,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
     def _describe(self, frame: Frame, position: tuple[float, float]) -> list[Histograms]:
         at, window = np.asarray([position]), self.window
-        return [
-            self.kernels.histograms(feature, frame, at, window)[0]
-            for feature in self.features.values()
-        ]
+        return [feature.histograms(frame, at, window)[0] for feature in self.features.values()]
 
     def _similarities(self, histograms: list[Histograms]) -> Array:
         """``1 - BD`` of histograms to the references, shape (F,)."""

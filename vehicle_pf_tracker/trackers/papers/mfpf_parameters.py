@@ -42,12 +42,9 @@ TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
 def texture_parameter() -> Any:
     """Make the choice of the texture feature."""
     return parameter(
-        "glcm",
-        "The histogram that describes texture; the paper tried all three and kept glcm.",
-        choices=TEXTURES,
-        source="P2 section III-D",
-        effect="relearns",
-    )
+        "glcm", "The histogram that describes texture; the paper tried all three and kept glcm.",
+        choices=TEXTURES, source="P2 section III-D", effect="relearns",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,54 +52,34 @@ class DispersionParameters:
     """Dispersion of the particles."""
 
     radius: float = parameter(
-        14.0,
-        "Larger: follows faster changes of speed, and more similar vehicles.",
-        minimum=0.01,
-        maximum=1000.0,
-        unit="px/frame",
-        source="P2 section IV, DR",
-        tuned=True,
-    )
+        14.0, "Larger: follows faster changes of speed, and more similar vehicles.",
+        bounds=(0.01, 1000.0), unit="px/frame", source="P2 section IV, DR", tuned=True,
+    )  # fmt: skip
     noise: str = parameter(
         "disc",
         "Draw the noise evenly from the disc, which bounds the search, or from a Gaussian of the "
         "same variance, as printed.",
-        choices=("disc", "gaussian"),
-        source="P2 eq. 5, interpretation 25",
-    )
+        choices=("disc", "gaussian"), source="P2 eq. 5, interpretation 25",
+    )  # fmt: skip
     uncertain_factor: float = parameter(
-        2.0,
-        "Larger: searches further around the start and around predictions.",
-        minimum=1.0,
-        maximum=100.0,
-        unit="radii",
-        source="P2 section IV",
-    )
+        2.0, "Larger: searches further around the start and around predictions.",
+        bounds=(1.0, 100.0), unit="radii", source="P2 section IV",
+    )  # fmt: skip
     start: float = parameter(
         1.0,
         "Longer: the wider search around the start lasts until the speed is known, which a radius "
         "of about the speed needs; 1 is the first step alone, as printed.",
-        minimum=1.0,
-        maximum=1000.0,
-        unit="frames",
-        source="P2 section IV, DR0, interpretation 30",
-    )
+        bounds=(1.0, 1000.0), unit="frames", source="P2 section IV, DR0, interpretation 30",
+    )  # fmt: skip
     growth: float = parameter(
-        1.0,
-        "Larger: the search around predictions widens faster during an occlusion.",
-        minimum=0.0,
-        maximum=100.0,
-        unit="px/frame",
+        1.0, "Larger: the search around predictions widens faster during an occlusion.",
+        bounds=(0.0, 100.0), unit="px/frame",
         source="P2 section IV, interpretation 19 (no value printed)",
-    )
+    )  # fmt: skip
     largest: float = parameter(
-        60.0,
-        "Larger: the search may widen further, at more time per frame.",
-        minimum=0.0,
-        maximum=10_000.0,
-        unit="px",
-        source="interpretation 19",
-    )
+        60.0, "Larger: the search may widen further, at more time per frame.",
+        bounds=(0.0, 10_000.0), unit="px", source="interpretation 19",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,16 +90,13 @@ class ConfidenceParameters:
         0.1,
         "Higher: the average similarity takes in particles further from the vehicle; 1 takes all, "
         "as printed.",
-        unit="share of the particles",
-        source="P2 section IV, interpretation 19",
-    )
+        unit="share of the particles", source="P2 section IV, interpretation 19",
+    )  # fmt: skip
     threshold: float = share(
-        0.7,
-        "Higher: features drop out at smaller losses of similarity (printed: 0.8).",
-        unit="share of the initial average similarity",
-        source="P2 Table II, interpretation 19",
+        0.7, "Higher: features drop out at smaller losses of similarity (printed: 0.8).",
+        unit="share of the initial average similarity", source="P2 Table II, interpretation 19",
         tuned=True,
-    )
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,37 +104,26 @@ class EdgeParameters:
     """Definition of edge points and of their direction."""
 
     threshold: float = parameter(
-        0.3,
-        "Higher: only the strongest edges count (printed: 0.8).",
-        minimum=0.01,
-        maximum=1.0,
+        0.3, "Higher: only the strongest edges count (printed: 0.8).", bounds=(0.01, 1.0),
         unit="share of the window's strongest gradient",
-        source="P2 section III-C, interpretation 14",
-        effect="relearns",
-        tuned=True,
-    )
+        source="P2 section III-C, interpretation 14", effect="relearns", tuned=True,
+    )  # fmt: skip
     floor: float = parameter(
         40.0,
         "Higher: noise and faint edges count less; 0 counts them in windows with nothing else, as "
         "printed. A step of one grey level makes a gradient of 4.",
-        minimum=0.0,
-        maximum=1500.0,
-        unit="grey levels",
-        source="P2 section III-C, interpretation 14",
+        bounds=(0.0, 1500.0), unit="grey levels", source="P2 section III-C, interpretation 14",
         effect="relearns",
-    )
+    )  # fmt: skip
     in_frame: bool = parameter(
-        True,
-        "Take the gradient in the frame; off takes it in each window by itself, as printed.",
-        source="P2 eq. 6, interpretation 14",
-        effect="relearns",
-    )
+        True, "Take the gradient in the frame; off takes it in each window by itself, as printed.",
+        source="P2 eq. 6, interpretation 14", effect="relearns",
+    )  # fmt: skip
     signed: bool = parameter(
         True,
         "Distinguish light-to-dark from dark-to-light; off folds them by the printed arctangent.",
-        source="P2 eq. 7, interpretation 13",
-        effect="relearns",
-    )
+        source="P2 eq. 7, interpretation 13", effect="relearns",
+    )  # fmt: skip
 
 
 def edge_feature(parameters: EdgeParameters) -> GradientDirections:
@@ -176,33 +139,22 @@ class FeatureFilterParameters(ParticleParameters):
 
     as_printed: bool = as_printed_switch("interpretations 1, 12 to 19, 25, 26 and 30")
     reference_weight: float = share(
-        0.7,
-        "Higher: the reference keeps more of the first frame and follows the last one less.",
-        source="P2 eq. 9, interpretation 15 (no value printed)",
-        tuned=True,
-    )
+        0.7, "Higher: the reference keeps more of the first frame and follows the last one less.",
+        source="P2 eq. 9, interpretation 15 (no value printed)", tuned=True,
+    )  # fmt: skip
     velocity_window: int = parameter(
-        5,
-        "Longer: a steadier speed that follows turns later; 1 takes the last move, as printed.",
-        minimum=1,
-        maximum=10_000,
-        unit="frames",
-        source="P2 eq. 5, interpretation 12",
-        tuned=True,
-    )
+        5, "Longer: a steadier speed that follows turns later; 1 takes the last move, as printed.",
+        bounds=(1, 10_000), unit="frames", source="P2 eq. 5, interpretation 12", tuned=True,
+    )  # fmt: skip
     estimate: str = parameter(
-        "mean",
-        "The weighted mean of the particles, or the best one, as printed.",
-        choices=("mean", "best"),
-        source="P2 eq. 12, 13 and 18, interpretation 17",
-    )
+        "mean", "The weighted mean of the particles, or the best one, as printed.",
+        choices=("mean", "best"), source="P2 eq. 12, 13 and 18, interpretation 17",
+    )  # fmt: skip
     resampling: str = resampling_parameter("P2 eq. 15")
     resample_below: float = share(
-        0.5,
-        "Higher: resamples at larger effective sample sizes; 1 always.",
-        unit="share of the particles",
-        source="P2 eq. 14, interpretation 16",
-    )
+        0.5, "Higher: resamples at larger effective sample sizes; 1 always.",
+        unit="share of the particles", source="P2 eq. 14, interpretation 16",
+    )  # fmt: skip
     likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.1)
     dispersion: DispersionParameters = group(DispersionParameters)
     confidence: ConfidenceParameters = group(ConfidenceParameters)
@@ -227,10 +179,8 @@ class MfpfParameters(FeatureFilterParameters):
         source="P2 section IV, interpretation 18",
     )
 
-    def effective(self) -> MfpfParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        if not self.as_printed:
-            return self
+    def printed(self) -> MfpfParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
         printed = common_print(self)
         return replace(
             printed,

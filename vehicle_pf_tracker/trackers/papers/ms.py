@@ -44,22 +44,13 @@ class MsParameters(CommonParameters):
 
     histogram_bits: int = histogram_bits_parameter(tuned=True)
     iterations: int = parameter(
-        15,
-        "More: vehicles that moved further are still reached, where steps stay long.",
-        minimum=1,
-        maximum=100,
-        source="Comaniciu 2003 section 4.2 (at most 20)",
-        tuned=True,
-    )
+        15, "More: vehicles that moved further are still reached, where steps stay long.",
+        bounds=(1, 100), source="Comaniciu 2003 section 4.2 (at most 20)", tuned=True,
+    )  # fmt: skip
     shortest_step: float = parameter(
-        1.0,
-        "Lower: more steps until the position counts as found.",
-        minimum=0.01,
-        maximum=100.0,
-        unit="px",
-        source="Comaniciu 2003 section 4.2 (epsilon)",
-        tuned=True,
-    )
+        1.0, "Lower: more steps until the position counts as found.", bounds=(0.01, 100.0),
+        unit="px", source="Comaniciu 2003 section 4.2 (epsilon)", tuned=True,
+    )  # fmt: skip
 
 
 class MsTracker(BaseTracker[MsParameters]):

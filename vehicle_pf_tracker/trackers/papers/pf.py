@@ -58,14 +58,9 @@ class ColourParameters(ParticleParameters):
     """Parameters of every colour particle filter."""
 
     sigma: float = parameter(
-        8.0,
-        "About the vehicle's speed: less loses fast vehicles, more follows similar vehicles.",
-        minimum=0.01,
-        maximum=1000.0,
-        unit="px/frame",
-        source="P1 eq. 7",
-        tuned=True,
-    )
+        8.0, "About the vehicle's speed: less loses fast vehicles, more follows similar vehicles.",
+        bounds=(0.01, 1000.0), unit="px/frame", source="P1 eq. 7", tuned=True,
+    )  # fmt: skip
     histogram_bits: int = histogram_bits_parameter(tuned=True)
     resampling: str = resampling_parameter("P1 Algorithm 2")
     # 0.158 is Perez's lambda of 20.

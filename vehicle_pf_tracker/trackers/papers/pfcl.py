@@ -42,38 +42,21 @@ class LineParameters:
     """Definition of lines, and their part in the likelihood."""
 
     sigma_v: float = parameter(
-        0.35,
-        "Smaller: weights fall faster as a particle's lines depart from the reference.",
-        minimum=1e-3,
-        maximum=100.0,
-        source="Xiong 2004 (no value printed)",
-        tuned=True,
-    )
+        0.35, "Smaller: weights fall faster as a particle's lines depart from the reference.",
+        bounds=(1e-3, 100.0), source="Xiong 2004 (no value printed)", tuned=True,
+    )  # fmt: skip
     bins: int = parameter(
-        8,
-        "More: finer directions, more easily upset by noise.",
-        minimum=1,
-        maximum=90,
-        unit="bins over 180 degrees",
-        effect="relearns",
-    )
+        8, "More: finer directions, more easily upset by noise.", bounds=(1, 90),
+        unit="bins over 180 degrees", effect="relearns",
+    )  # fmt: skip
     edge_threshold: float = parameter(
-        150.0,
-        "Higher: only edges of more contrast make lines.",
-        minimum=1.0,
-        maximum=2000.0,
-        unit="levels of 255",
-        effect="relearns",
-        tuned=True,
-    )
+        150.0, "Higher: only edges of more contrast make lines.", bounds=(1.0, 2000.0),
+        unit="levels of 255", effect="relearns", tuned=True,
+    )  # fmt: skip
     shortest: int = parameter(
-        6,
-        "Higher: short lines, and the noise among them, are left out.",
-        minimum=2,
-        maximum=1000,
-        unit="px",
-        effect="relearns",
-    )
+        6, "Higher: short lines, and the noise among them, are left out.", bounds=(2, 1000),
+        unit="px", effect="relearns",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,42 +57,28 @@ class RepeatedResamplingParameters(ColourParameters):
     sigma: float = parameter(
         14.0,
         "About 1.75 times the speed: less loses fast vehicles, more follows similar vehicles.",
-        minimum=0.01,
-        maximum=1000.0,
-        unit="px/frame",
-        source="P3 Table I step 5, interpretation 23",
+        bounds=(0.01, 1000.0), unit="px/frame", source="P3 Table I step 5, interpretation 23",
         tuned=True,
-    )
+    )  # fmt: skip
     jitter: float = parameter(
-        0.5,
-        "Larger: regenerated particles lie further from the ones they are copies of.",
-        minimum=0.0,
-        maximum=10.0,
-        unit="share of sigma",
-        source="P3 Table I step 16, interpretation 23",
+        0.5, "Larger: regenerated particles lie further from the ones they are copies of.",
+        bounds=(0.0, 10.0), unit="share of sigma", source="P3 Table I step 16, interpretation 23",
         tuned=True,
-    )
+    )  # fmt: skip
     criterion: float = share(
         0.7,
         "Higher: more passes a frame until the effective sample size is reached; 1, as printed, "
         "never is.",
-        unit="share of the particles",
-        source="P3 Table I step 13, interpretation 21",
-        tuned=True,
-    )
+        unit="share of the particles", source="P3 Table I step 13, interpretation 21", tuned=True,
+    )  # fmt: skip
     most_passes: int = parameter(
-        20,
-        "Lower: a frame takes less time at most.",
-        minimum=0,
-        maximum=1000,
-        unit="passes/frame",
+        20, "Lower: a frame takes less time at most.", bounds=(0, 1000), unit="passes/frame",
         source="P3 section VI",
-    )
+    )  # fmt: skip
     weighted_mean: bool = parameter(
-        True,
-        "Weigh particles in the estimate; off takes their plain mean, as printed.",
+        True, "Weigh particles in the estimate; off takes their plain mean, as printed.",
         source="P3 section V, interpretation 29",
-    )
+    )  # fmt: skip
     likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.2)
 
 
@@ -176,9 +162,9 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
 class ConventionalParameters(RepeatedResamplingParameters):
     """Parameters of `conventional`."""
 
-    def effective(self) -> ConventionalParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        return common_print(self) if self.as_printed else self
+    def printed(self) -> ConventionalParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
+        return common_print(self)
 
 
 class ConventionalTracker(RepeatedResampling[ConventionalParameters]):
@@ -204,33 +190,22 @@ class OcclusionTestParameters:
     """Occlusion test, and the regeneration around the best particle that follows it."""
 
     test: str = parameter(
-        "n_eff",
-        "Take a small effective sample size as occlusion, as printed, or a low similarity "
+        "n_eff", "Take a small effective sample size as occlusion, as printed, or a low similarity "
         "of the best particle.",
-        choices=OCCLUSION_TESTS,
-        source="P3 Table II step 15, interpretation 22",
-    )
+        choices=OCCLUSION_TESTS, source="P3 Table II step 15, interpretation 22",
+    )  # fmt: skip
     n_eff: float = share(
-        0.3,
-        "Higher: more peaked weights count as occlusion.",
-        unit="share of the particles",
-        source="P3 T_thres, interpretation 22",
-        tuned=True,
-    )
+        0.3, "Higher: more peaked weights count as occlusion.", unit="share of the particles",
+        source="P3 T_thres, interpretation 22", tuned=True,
+    )  # fmt: skip
     similarity: float = share(
-        0.7,
-        "Higher: smaller losses of the best particle's similarity count as occlusion.",
-        unit="share of the clear level",
-        source="interpretation 22",
-    )
+        0.7, "Higher: smaller losses of the best particle's similarity count as occlusion.",
+        unit="share of the clear level", source="interpretation 22",
+    )  # fmt: skip
     jitter: float = parameter(
-        0.25,
-        "Larger: searches further around the best particle.",
-        minimum=0.0,
-        maximum=10.0,
-        unit="share of sigma",
-        source="P3 Table II step 17, interpretation 23",
-    )
+        0.25, "Larger: searches further around the best particle.", bounds=(0.0, 10.0),
+        unit="share of sigma", source="P3 Table II step 17, interpretation 23",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,20 +213,13 @@ class AdaptiveParameters(RepeatedResamplingParameters):
     """Parameters of `adaptive`."""
 
     low_weight: float = parameter(
-        1.0,
-        "Higher: more particles are replaced in each pass.",
-        minimum=0.0,
-        maximum=100.0,
-        unit="of the mean weight 1/N",
-        source="P3 Table II step 19, interpretation 23",
-        tuned=True,
-    )
+        1.0, "Higher: more particles are replaced in each pass.", bounds=(0.0, 100.0),
+        unit="of the mean weight 1/N", source="P3 Table II step 19, interpretation 23", tuned=True,
+    )  # fmt: skip
     occlusion: OcclusionTestParameters = group(OcclusionTestParameters)
 
-    def effective(self) -> AdaptiveParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        if not self.as_printed:
-            return self
+    def printed(self) -> AdaptiveParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
         return replace(common_print(self), occlusion=replace(self.occlusion, test="n_eff"))
 
 

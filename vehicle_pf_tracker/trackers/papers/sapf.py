@@ -98,43 +98,27 @@ class AnnealingParameters:
     """The layers of one frame's search."""
 
     layers: int = parameter(
-        4,
-        "More: the search narrows in smaller steps, at the time of num_particles each.",
-        minimum=1,
-        maximum=50,
-        source="Deutscher 2000 section 3",
-        tuned=True,
-    )
+        4, "More: the search narrows in smaller steps, at the time of num_particles each.",
+        bounds=(1, 50), source="Deutscher 2000 section 3", tuned=True,
+    )  # fmt: skip
     survival: float = parameter(
-        0.5,
-        "Lower: each layer keeps fewer particles, and settles on a maximum sooner.",
-        minimum=0.01,
-        maximum=1.0,
-        unit="share of the particles",
+        0.5, "Lower: each layer keeps fewer particles, and settles on a maximum sooner.",
+        bounds=(0.01, 1.0), unit="share of the particles",
         source="Deutscher 2000 section 3 (alpha)",
-    )
+    )  # fmt: skip
     decay: float = parameter(
-        0.6,
-        "Lower: later layers spread their particles less.",
-        minimum=0.01,
-        maximum=1.0,
-        unit="of the layer before",
-        source="in place of Deutscher's tie, see tied",
-        tuned=True,
-    )
+        0.6, "Lower: later layers spread their particles less.", bounds=(0.01, 1.0),
+        unit="of the layer before", source="in place of Deutscher's tie, see tied", tuned=True,
+    )  # fmt: skip
     tied: bool = parameter(
-        False,
-        "On: each layer's covariance shrinks by the share of particles that survived, as "
+        False, "On: each layer's covariance shrinks by the share of particles that survived, as "
         "Deutscher ties them; off: its spread shrinks by decay.",
         source="Deutscher 2000 section 3 (covariance scaled by the survival rates)",
-    )
+    )  # fmt: skip
     largest_rate: float = parameter(
-        1.0,
-        "Higher: layers may weight more sharply than the likelihood, to let fewer survive.",
-        minimum=0.01,
-        maximum=1e6,
-        source="Deutscher 2000 section 3 (beta)",
-    )
+        1.0, "Higher: layers may weight more sharply than the likelihood, to let fewer survive.",
+        bounds=(0.01, 1e6), source="Deutscher 2000 section 3 (beta)",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

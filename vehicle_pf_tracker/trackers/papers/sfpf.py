@@ -42,9 +42,9 @@ from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
 class SfpfColorParameters(FeatureFilterParameters):
     """Parameters of `sfpf_color`."""
 
-    def effective(self) -> SfpfColorParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        return common_print(self) if self.as_printed else self
+    def printed(self) -> SfpfColorParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
+        return common_print(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +53,9 @@ class SfpfEdgeParameters(FeatureFilterParameters):
 
     edges: EdgeParameters = group(EdgeParameters)
 
-    def effective(self) -> SfpfEdgeParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        return replace(common_print(self), edges=PRINTED_EDGES) if self.as_printed else self
+    def printed(self) -> SfpfEdgeParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
+        return replace(common_print(self), edges=PRINTED_EDGES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,9 +64,9 @@ class SfpfTextureParameters(FeatureFilterParameters):
 
     texture: str = texture_parameter()
 
-    def effective(self) -> SfpfTextureParameters:
-        """Return the effective parameters: as printed where `as_printed` is set."""
-        return replace(common_print(self), texture="glcm") if self.as_printed else self
+    def printed(self) -> SfpfTextureParameters:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
+        return replace(common_print(self), texture="glcm")
 
 
 class SfpfColorTracker(FeatureFilter[SfpfColorParameters]):

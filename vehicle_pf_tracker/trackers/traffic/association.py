@@ -61,8 +61,8 @@ def check_library() -> None:
     """
     if importlib.util.find_spec("scipy") is None:
         raise InputError(
-            "traffic needs the Python module scipy: install the extra [traffic], "
-            "pip install 'vehicle_pf_tracker[traffic]', or with apt python3-scipy"
+            "traffic needs the Python module scipy: install the extra [video], "
+            "pip install 'vehicle_pf_tracker[video]', or with apt python3-scipy"
         )
 
 

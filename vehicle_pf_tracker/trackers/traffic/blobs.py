@@ -29,11 +29,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.detections import (
     SHIPPED,
     TrafficNumbers,
     areas,
-    intersections,
     overlaps,
 )
 

@@ -29,6 +29,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import intersections
 
 MOST_DETECTIONS = 1000
 """Detections of a frame that are looked at, the highest scores first. No camera shows as many
@@ -102,13 +103,6 @@ class Detections:
         _, first = np.unique(boxes[kept], axis=0, return_index=True)
         kept = kept[np.sort(first)][:MOST_DETECTIONS]
         return self.take(np.sort(kept))
-
-
-def intersections(edges: Array, others: Array) -> Array:
-    """Measure the common areas in px² of one box (4,) with others (N, 4)."""
-    width = np.minimum(edges[2], others[:, 2]) - np.maximum(edges[0], others[:, 0])
-    height = np.minimum(edges[3], others[:, 3]) - np.maximum(edges[1], others[:, 1])
-    return np.asarray(np.maximum(width, 0.0) * np.maximum(height, 0.0))
 
 
 def areas(edges: Array) -> Array:

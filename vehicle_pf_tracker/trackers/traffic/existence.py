@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.detections import (
     SHIPPED,
     DetectionEvidence,
@@ -26,7 +27,6 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     TrafficNumbers,
     areas,
     inside_image,
-    intersections,
     overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters

@@ -23,8 +23,9 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import INWARD, deviations
-from vehicle_pf_tracker.trackers.traffic.detections import areas, intersections
+from vehicle_pf_tracker.trackers.traffic.detections import areas
 from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 

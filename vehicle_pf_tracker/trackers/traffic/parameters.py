@@ -31,26 +31,17 @@ class RoadMotionParameters:
         -0.2,
         "Row of the horizon, 0 the upper border and 1 the lower one; negative: above the image. "
         "Far below zero: vehicles keep their size and speed in px.",
-        minimum=-100.0,
-        maximum=0.9,
-        unit="of the image's height",
-        tuned=(-0.5, 0.3),
-    )
+        bounds=(-100.0, 0.9), unit="of the image's height", tuned=(-0.5, 0.3),
+    )  # fmt: skip
     acceleration: float = parameter(
         2.0,
         "Larger: follows brakes and turns faster; a hidden vehicle is found over a wider place.",
-        minimum=0.01,
-        maximum=50.0,
-        unit="m/s^2",
-        tuned=(0.7, 5.0),
-    )
+        bounds=(0.01, 50.0), unit="m/s^2", tuned=(0.7, 5.0),
+    )  # fmt: skip
     top_speed: float = parameter(
-        25.0,
-        "Larger: a new vehicle is looked for further away in its second frame.",
-        minimum=0.1,
-        maximum=100.0,
-        unit="m/s",
-    )
+        25.0, "Larger: a new vehicle is looked for further away in its second frame.",
+        bounds=(0.1, 100.0), unit="m/s",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,28 +49,18 @@ class DetectionParameters:
     """Use of detections."""
 
     edge_noise: float = parameter(
-        0.05,
-        "Larger: boxes are smoothed more.",
-        minimum=0.001,
-        maximum=0.5,
-        unit="of the size",
+        0.05, "Larger: boxes are smoothed more.", bounds=(0.001, 0.5), unit="of the size",
         tuned=(0.02, 0.1),
-    )
+    )  # fmt: skip
     covered: float = parameter(
-        2.5,
-        "Smaller: an edge that jumps inward is sooner taken to be covered and not measured.",
-        minimum=0.5,
-        maximum=20.0,
-        unit="standard deviations",
-        tuned=(1.5, 4.0),
-    )
+        2.5, "Smaller: an edge that jumps inward is sooner taken to be covered and not measured.",
+        bounds=(0.5, 20.0), unit="standard deviations", tuned=(1.5, 4.0),
+    )  # fmt: skip
     colour_cost: float = parameter(
         8.0,
         "Higher: colours count more in deciding which detection is which vehicle; 0: not at all.",
-        minimum=0.0,
-        maximum=100.0,
-        tuned=(0.0, 20.0),
-    )
+        bounds=(0.0, 100.0), tuned=(0.0, 20.0),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,29 +68,17 @@ class BirthParameters:
     """Evidence that a new vehicle needs."""
 
     matches: int = parameter(
-        3,
-        "More: a new vehicle is reported later, and fewer false ones are.",
-        minimum=1,
-        maximum=100,
-        unit="detections",
-        tuned=(2, 6),
-    )
+        3, "More: a new vehicle is reported later, and fewer false ones are.", bounds=(1, 100),
+        unit="detections", tuned=(2, 6),
+    )  # fmt: skip
     evidence: float = parameter(
-        3.0,
-        "Higher: a new vehicle is reported later, and fewer false ones are.",
-        minimum=0.0,
-        maximum=8.0,
-        unit="log odds",
-        tuned=(1.0, 6.0),
-    )
+        3.0, "Higher: a new vehicle is reported later, and fewer false ones are.",
+        bounds=(0.0, 8.0), unit="log odds", tuned=(1.0, 6.0),
+    )  # fmt: skip
     displacement: float = parameter(
-        0.4,
-        "Larger: unless its scores speak for it, a vehicle is reported after a longer way.",
-        minimum=0.0,
-        maximum=10.0,
-        unit="of the width",
-        tuned=(0.1, 1.0),
-    )
+        0.4, "Larger: unless its scores speak for it, a vehicle is reported after a longer way.",
+        bounds=(0.0, 10.0), unit="of the width", tuned=(0.1, 1.0),
+    )  # fmt: skip
 
 
 MOTION, MODEL, TOPIC, NONE = "motion", "model", "topic", "none"
@@ -123,14 +92,12 @@ class DetectorParameters:
         MOTION,
         "Source of detections: what moves before a standing camera, a network of yours, a topic "
         "(of a node), or none (targets given by hand).",
-        choices=(MOTION, MODEL, TOPIC, NONE),
-        read_only=True,
-    )
+        choices=(MOTION, MODEL, TOPIC, NONE), read_only=True,
+    )  # fmt: skip
     model: str = parameter(
-        "",
-        "File of the network, .onnx: YOLOX, YOLOv8 or SSD by the form of its outputs.",
+        "", "File of the network, .onnx: YOLOX, YOLOv8 or SSD by the form of its outputs.",
         read_only=True,
-    )
+    )  # fmt: skip
     classes: str = parameter(
         "car,motorcycle,bus,truck",
         "Classes of the network that are vehicles, by name or number, apart by commas; empty takes "
@@ -144,43 +111,29 @@ class DetectorParameters:
         read_only=True,
     )
     min_score: float = parameter(
-        0.1,
-        "Higher: fewer false alarms, more vehicles missed; the tracker itself weighs scores.",
-        minimum=0.0,
-        maximum=1.0,
-        read_only=True,
-    )
+        0.1, "Higher: fewer false alarms, more vehicles missed; the tracker itself weighs scores.",
+        bounds=(0.0, 1.0), read_only=True,
+    )  # fmt: skip
     overlap: float = parameter(
-        0.65,
-        "Higher: more of the boxes that overlap are kept, as intersection over union.",
-        minimum=0.05,
-        maximum=1.0,
-        read_only=True,
-    )
+        0.65, "Higher: more of the boxes that overlap are kept, as intersection over union.",
+        bounds=(0.05, 1.0), read_only=True,
+    )  # fmt: skip
     input_size: int = parameter(
         640,
         "Longer side of the network's input where the file leaves it open; larger finds smaller "
         "vehicles, and takes longer.",
-        minimum=32,
-        maximum=4096,
-        unit="px",
-        read_only=True,
-    )
+        bounds=(32, 4096), unit="px", read_only=True,
+    )  # fmt: skip
     max_wait: float = parameter(
         0.5,
         "Longer: an image waits longer for its detections from a topic, and a detector that has "
         "stopped delays everything for longer.",
-        minimum=0.0,
-        maximum=60.0,
-        unit="s",
-    )
+        bounds=(0.0, 60.0), unit="s",
+    )  # fmt: skip
     every: int = parameter(
-        1,
-        "Above 1: the detector of a topic answers every k-th image, and the others do not wait.",
-        minimum=1,
-        maximum=1000,
-        unit="images",
-    )
+        1, "Above 1: the detector of a topic answers every k-th image, and the others do not wait.",
+        bounds=(1, 1000), unit="images",
+    )  # fmt: skip
 
     def validate(self) -> None:
         """Refuse a network without its file."""
@@ -193,32 +146,21 @@ class TrafficParameters:
     """Parameters of `traffic`: of the tracker, its clock and its detector."""
 
     seed: int = parameter(
-        0,
-        "Seed of everything random; -1: another one in each run, which is reported.",
-        minimum=-1,
-        maximum=2**31 - 1,
-        effect="restarts",
-    )
+        0, "Seed of everything random; -1: another one in each run, which is reported.",
+        bounds=(-1, 2**31 - 1), effect="restarts",
+    )  # fmt: skip
     num_particles: int = parameter(
-        50,
-        "More: steadier where pixels alone hold a vehicle, at more time per frame.",
-        minimum=10,
-        maximum=10_000,
-    )
+        50, "More: steadier where pixels alone hold a vehicle, at more time per frame.",
+        bounds=(10, 10_000),
+    )  # fmt: skip
     lost_after: float = parameter(
-        2.0,
-        "Longer: a hidden vehicle is predicted for longer before it is LOST.",
-        minimum=0.0,
-        maximum=60.0,
-        unit="s",
-    )
+        2.0, "Longer: a hidden vehicle is predicted for longer before it is LOST.",
+        bounds=(0.0, 60.0), unit="s",
+    )  # fmt: skip
     forgotten_after: float = parameter(
-        3.0,
-        "Longer: a LOST vehicle keeps its number for longer, should it reappear.",
-        minimum=0.0,
-        maximum=600.0,
-        unit="s",
-    )
+        3.0, "Longer: a LOST vehicle keeps its number for longer, should it reappear.",
+        bounds=(0.0, 600.0), unit="s",
+    )  # fmt: skip
     pixels: bool = parameter(True, "Off: a vehicle that is not detected is only predicted.")
     occlusions: bool = parameter(
         True, "Off: vehicles are followed as if none could hide another; to compare."
@@ -231,10 +173,8 @@ class TrafficParameters:
     birth: BirthParameters = group(BirthParameters)
     frame_rate: float = frame_rate_parameter()
     lines: str = parameter(
-        "",
-        "YAML of lines and zones to count at; empty: nothing is counted.",
-        read_only=True,
-    )
+        "", "YAML of lines and zones to count at; empty: nothing is counted.", read_only=True,
+    )  # fmt: skip
     detector: DetectorParameters = group(DetectorParameters)
 
     def validate(self) -> None:

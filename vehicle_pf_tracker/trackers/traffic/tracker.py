@@ -22,7 +22,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.box import Box, check_target, intersections
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.road.plane import RoadPlane
@@ -40,7 +40,6 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     Detections,
     TrafficNumbers,
     areas,
-    intersections,
 )
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence

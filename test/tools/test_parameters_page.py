@@ -1,0 +1,50 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+import re
+
+from tools.parameters_page import parameters_page
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.trackers.registry import NODES, TRAFFIC, VARIANTS
+
+
+def test_the_document_names_every_parameter_of_every_variant():
+    _, *sections = parameters_page().split("\n## ")
+    texts = {section.partition("\n")[0]: section for section in sections}
+    assert list(texts) == ["Every node", "Several variants", *NODES]
+    for name, variant in VARIANTS.items():
+        for one, spec in Configuration.of(variant).specs().items():
+            rows = [
+                line
+                for part in ("Every node", "Several variants", name)
+                for line in texts[part].splitlines()
+                if line.startswith(f"| `{one}` |")
+                and (part != "Several variants" or f"`{name}`" in line.rpartition(" | ")[2])
+            ]
+            assert len(rows) == 1, (name, one)
+            default = str(spec.default).lower() if spec.kind is bool else str(spec.default)
+            assert f"| {default} |" in rows[0]
+            assert spec.bounds_text in rows[0]
+            assert spec.unit.replace("|", "\\|") in rows[0]
+            assert spec.doc.replace("|", "\\|") in rows[0]
+
+
+def test_the_document_says_how_traffic_differs_from_every_node():
+    _, every, *_, last = parameters_page().split("\n## ")
+    present = Configuration.of(TRAFFIC).specs()
+    for name, spec in present.items():
+        row = f"| `{name}` | {str(spec.default).lower() if spec.kind is bool else spec.default} |"
+        assert (row in last) or (row in every), name
+    lacking = set(re.findall(r"`([\w.]+)`", last.partition("\n\n|")[0]))
+    assert lacking == set(re.findall(r"^\| `([\w.]+)`", every, re.M)) - set(present)

@@ -1,0 +1,87 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The pages of the site that are made of something else, for mkdocs (`make docs`).
+
+The README is the first page; the commands are those of the parser, the Python interface that of the
+package's public names, and the changes those of CHANGELOG.rst.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+import vehicle_pf_tracker
+from vehicle_pf_tracker.cli.console import PROGRAM
+from vehicle_pf_tracker.cli.main import VERBS, main
+
+ROOT = Path(__file__).resolve().parents[1]
+OUTSIDE = re.compile(r"\[([^\]]*)\]\(\.\./([^)]*)\)")
+"""A link from a page to a file of the repository that the site does not have."""
+
+
+def on_files(files: Any, config: Any) -> Any:
+    """Add the pages that are not in docs/."""
+    from mkdocs.structure.files import File  # noqa: PLC0415 - with `make docs` only
+
+    pages = {
+        "index.md": first_page,
+        "commands.md": commands,
+        "python.md": python_interface,
+        "changes.md": changes,
+    }
+    for name, write in pages.items():
+        files.append(File.generated(config, name, content=write()))
+    return files
+
+
+def on_page_markdown(markdown: str, **_: Any) -> str:
+    """Name files of the repository instead of linking to them."""
+    return OUTSIDE.sub(r"\1 (`\2` in the repository)", markdown)
+
+
+def first_page() -> str:
+    """Return the README with its links as seen from docs/."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    return re.sub(r"\]\((?!https?:|#|docs/)", "](../", text).replace("](docs/", "](")
+
+
+def commands() -> str:
+    """Return what every verb says with ``--help``."""
+    os.environ["COLUMNS"] = "100"
+    parts = ["# Commands", f"What `{PROGRAM} VERB --help` prints."]
+    for verb in VERBS:
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            main([verb, "--help"])
+        parts += [f"## {verb}", f"```text\n{printed.getvalue().strip()}\n```"]
+    return "\n\n".join(parts) + "\n"
+
+
+def python_interface() -> str:
+    """Return the public names, for mkdocstrings to describe."""
+    objects = [getattr(vehicle_pf_tracker, name) for name in vehicle_pf_tracker.__all__]
+    names = (f"::: {one.__module__}.{one.__name__}\n" for one in objects)
+    return "\n".join(["# Python\n\nWhat `import vehicle_pf_tracker` has.\n", *names])
+
+
+def changes() -> str:
+    """Return CHANGELOG.rst as Markdown: its headings, lists and code are all that it uses."""
+    text = (ROOT / "CHANGELOG.rst").read_text(encoding="utf-8").split("\n\n", 1)[1]
+    headed = re.sub(r"^(\S.*)\n-{3,}$", r"## \1", text, flags=re.MULTILINE)
+    return "# Changes\n\n" + headed.replace("``", "`")
