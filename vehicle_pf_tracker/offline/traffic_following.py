@@ -131,7 +131,7 @@ class TrafficRun:
                 self.paths.add(found.frame, estimates)
                 words = _words(number, found.stamp_ns - start_ns, estimates)
                 draw = partial(annotated, found.frame, words, estimates, self.counter)
-                take((), draw, found.frame)
+                take((), draw, found.frame, found.stamp_ns)
 
     def _step(self, number: int, found: StampedFrame) -> tuple[TrackEstimate, ...] | None:
         """Take a frame; None where it is rejected, so that nothing is known of its time."""
