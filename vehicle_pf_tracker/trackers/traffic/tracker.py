@@ -71,11 +71,6 @@ _STRONG = -0.4
 """Least log odds of a detection that is offered to the tracks in the first round."""
 _NESTED = 0.7
 """Share of a detection inside a detected vehicle above which it is a part of that vehicle."""
-_HELD_WITHIN = 4.0
-"""Nominal periods since it was seen, up to which pixels can hold a vehicle: later the points lie on
-what hides it."""
-_HELD_SHARE = 0.3
-"""Least visible share of a vehicle, and share in the image, for pixels to hold it."""
 _LEARNING_SHARE = 0.8
 """Least visible share of a vehicle for its colours to be learnt."""
 
@@ -159,7 +154,7 @@ class TrafficTracker:
         if detections is not None:
             self._take(detections.usable(*self._size), elapsed)
         if self.parameters.pixels:
-            self._hold(normals)
+            self._pixels.hold(self._tracks, self._colours, normals)
         self._end()
         self._learn_similarity()
         ordered = sorted(self._tracks, key=lambda one: (one.identity or math.inf, one.serial))
@@ -344,25 +339,6 @@ class TrafficTracker:
         track = Track(self._serial, state)
         self._tracks.append(track)
         return track
-
-    def _hold(self, normals: Array) -> None:
-        """Measure by their pixels the vehicles that were not detected."""
-        held = [
-            track
-            for track in self._tracks
-            if track.confirmed
-            and track.undetected > 0
-            and track.unseen < _HELD_WITHIN
-            and min(track.visible, track.inside) > _HELD_SHARE
-        ]
-        for track, hold in zip(
-            held, self._pixels.measure(held, self._colours, normals), strict=True
-        ):
-            if hold is not None:
-                track.unseen = 0.0
-                for edge in Edge:
-                    value, deviation = hold.edges[edge], hold.deviations[edge]
-                    track.state.measure(edge, float(value), float(deviation))
 
     def _drop_bad_states(self) -> None:
         """Drop vehicles of an unsound state: association with them would fail for all."""
