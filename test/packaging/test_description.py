@@ -25,6 +25,7 @@ import setuptools
 
 import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.main import EVALUATION_MODULES, EXTRAS
+from vehicle_pf_tracker.evaluation.baselines import LOCK
 from vehicle_pf_tracker.ros import executables
 from vehicle_pf_tracker.trackers.registry import NODES
 
@@ -129,7 +130,7 @@ def test_three_extras_bring_what_the_readme_shows(setup):
 
 
 @pytest.mark.parametrize(
-    "path", sorted((ROOT / "requirements").glob("*.txt")), ids=lambda p: p.stem
+    "path", [*sorted((ROOT / "requirements").glob("*.txt")), LOCK], ids=lambda p: p.stem
 )
 def test_every_pin_has_hashes_and_no_lock_names_an_index(path):
     pins = re.findall(r"^\S+==.*(?:\n    .*)*", path.read_text(), re.M)

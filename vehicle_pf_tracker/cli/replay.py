@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -42,6 +41,7 @@ from vehicle_pf_tracker.cli.requests import (
 )
 from vehicle_pf_tracker.cli.tracking_options import parse_box
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.estimates import write_estimates
 from vehicle_pf_tracker.offline.output_files import make_folder
@@ -80,14 +80,14 @@ ANSWERS = ("estimates.csv", "*/estimates.csv")
 def _seconds(text: str) -> float:
     value = number(text)
     if value < 0:
-        raise argparse.ArgumentTypeError(f"{text} is less than 0")
+        raise InputError(f"{text} is less than 0")
     return value
 
 
 def _remapping(text: str) -> tuple[str, str]:
     old, separator, new = text.partition(":=")
     if not (separator and old and new):
-        raise argparse.ArgumentTypeError(f"{text!r} is not FROM:=TO")
+        raise InputError(f"{text!r} is not FROM:=TO")
     return _absolute(old), new
 
 
@@ -141,11 +141,10 @@ class Request(RosOption, OverwriteOption):
     )  # fmt: skip
     target: Box | None = option(
         type=parse_box, metavar="X,Y,W,H",
-        exclusive="target",
         help="box to start on in px, top-left corner and size; otherwise the first true box",
     )  # fmt: skip
     set_target: bool = option(
-        "--no-target", action="store_false", exclusive="target",
+        "--no-target", action="store_false",
         help="neither set the nodes' targets nor reset them",
     )  # fmt: skip
     timeout: float = option(
@@ -166,6 +165,8 @@ def run(request: Request) -> int:
     UsageError
         If options contradict each other, or there is no target to start on.
     """
+    if request.target is not None and not request.set_target:
+        raise UsageError("--target is not allowed with --no-target; leave one out")
     if request.loop and request.output:
         raise UsageError("-o cannot be combined with --loop, which never ends")
     from vehicle_pf_tracker.ros.replay.player import NoTargetError

@@ -16,6 +16,7 @@ import csv
 import io
 import json
 import statistics
+from dataclasses import replace
 
 import pytest
 from evaluation_samples import ALONE, HIDDEN, SEEDS, VARIANTS
@@ -26,7 +27,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     read_document,
 )
 from vehicle_pf_tracker.evaluation.report import writing
-from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, aggregate
+from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, aggregate, findings
 from vehicle_pf_tracker.evaluation.report.page_tables import overall_table
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
 
@@ -133,3 +134,12 @@ def test_the_typical_run_has_the_median_error(evaluation):
     runs = evaluation.of("free", "pf")
     assert typical(runs).metrics.rmse_px == min(run.metrics.rmse_px for run in runs)
     assert typical([]) is None
+
+
+def test_runs_with_other_versions_of_a_library_are_named(evaluation, aggregates):
+    assert not any("are compared" in line for line in findings(evaluation, aggregates))
+    first, *others = evaluation.runs
+    older = replace(first, versions={**first.versions, "opencv": "4.6.0"})
+    mixed = replace(evaluation, runs=(older, *others))
+    (said,) = [line for line in findings(mixed, aggregates) if "are compared" in line]
+    assert said.startswith(f"Runs with opencv 4.6.0 and {first.versions['opencv']} are compared")

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
@@ -276,7 +276,20 @@ def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
     result = f"All {cells} of the grid have a result."
     if failed:
         result = f"{failed} of {cells} have no result; see Failed cells."
-    return [*_leader(aggregates), *filter(None, best), result]
+    return [*_leader(aggregates), *filter(None, best), result, *_mixed_versions(evaluation)]
+
+
+def _mixed_versions(evaluation: ScoredEvaluation) -> Iterator[str]:
+    """Name the libraries that not all runs of variants were made with the same version of."""
+    ours = {entry.label for entry in evaluation.systems if not entry.kind.startswith("baseline:")}
+    for library in ("vehicle_pf_tracker", "numpy", "opencv", "numba"):
+        found = {run.versions.get(library) for run in evaluation.runs if run.system in ours}
+        if len(found) > 1:
+            versions = listing(sorted(str(version or "none") for version in found))
+            yield (
+                f"Runs with {library} {versions} are compared: differences of half a pixel may be "
+                "the library's."
+            )
 
 
 def _leader(aggregates: Aggregates) -> list[str]:
