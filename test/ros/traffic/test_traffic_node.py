@@ -93,8 +93,9 @@ def test_the_node_says_what_the_session_says_without_ros(rig):
     rig.play(frames)
     for index, estimates in enumerate(offline(frames)):
         said = rig.said(index)
-        assert list(said) == [one.identity for one in estimates]
-        for one in estimates:
+        confirmed = [one for one in estimates if one.identity]
+        assert [number for number in said if number] == [one.identity for one in confirmed]
+        for one in confirmed:
             values = said[one.identity]
             found = tuple(float(values[name]) for name in ("x", "y", "width", "height"))
             assert found == (*one.position, one.box.width, one.box.height)

@@ -66,7 +66,7 @@ class Selection:
         InputError
             If no vehicle has it.
         """
-        numbers = [one.identity for one in estimates]
+        numbers = [one.identity for one in estimates if one.identity]
         if identity != NONE and identity not in numbers:
             known = ", ".join(map(str, numbers[:_SHOWN])) + (", …" if numbers[_SHOWN:] else "")
             there = f"there are {known}" if numbers else "there is none"
@@ -81,7 +81,7 @@ class Selection:
         InputError
             If there is none, within the size of a vehicle.
         """
-        shown = [one for one in estimates if one.mode is not TrackMode.LOST]
+        shown = [one for one in estimates if one.identity and one.mode is not TrackMode.LOST]
         inside = [one for one in shown if _contains(one.box, point)]
         if inside:
             self.identity = min(inside, key=lambda one: (one.box.area, one.identity)).identity
@@ -97,7 +97,8 @@ class Selection:
 
     def of(self, estimates: Sequence[TrackEstimate]) -> TrackEstimate | None:
         """Return the estimate of the selected vehicle, where there is one."""
-        return next((one for one in estimates if one.identity == self.identity), None)
+        chosen = self.identity
+        return next((one for one in estimates if chosen and one.identity == chosen), None)
 
 
 def _contains(box: Box, point: Position) -> bool:
