@@ -79,6 +79,11 @@ class TrackEstimate:
     serial: int = 0
 
     @property
+    def id(self) -> int:
+        """Number of the vehicle, as other libraries call it."""
+        return self.identity
+
+    @property
     def position(self) -> Position:
         """Centre of the box in px."""
         return self.box.centre
