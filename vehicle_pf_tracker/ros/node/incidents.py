@@ -21,6 +21,7 @@ import os
 import time
 from collections import deque
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -103,13 +104,13 @@ class IncidentRecorder:
         """
         if not self._kept:
             raise InputError("no image has come yet")
-        try:
-            from vehicle_pf_tracker.recordings.writer import RecordingWriter  # noqa: PLC0415
+        try:  # the one thing of a node that needs more than a robot has from apt
+            recordings = import_module("vehicle_pf_tracker.recordings.writer")
         except ModuleNotFoundError as error:
             raise InputError(f"writing a recording needs {error.name} (pip)") from None
         ros_folder().mkdir(parents=True, exist_ok=True)
         folder = ros_folder() / f"{self._name}_{time.strftime('%Y%m%d_%H%M%S')}"
-        with RecordingWriter(folder, overwrite=True) as writer:
+        with recordings.RecordingWriter(folder, overwrite=True) as writer:
             for _, stamp, kind, data in self._kept:
                 topic, type_name = _TOPICS[kind]
                 writer.write_serialized(topic.format(self._name), type_name, stamp, data)
