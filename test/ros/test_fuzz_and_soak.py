@@ -72,7 +72,7 @@ def test_a_few_vehicles_come_and_go_before_the_node(start_process, detector):
 def test_each_fault_of_a_detector_in_turn(start_process):
     if find_spec("vision_msgs") is None and (reason := missing()):
         pytest.skip(f"vision_msgs is not installed, and cannot be built: {reason}")
-    told = run(start_process, "traffic_faults.py", "--seconds", "1", timeout=300)
+    told = run(start_process, "traffic_faults.py", "--seconds", "4", timeout=500)
     row = re.compile(r"^\| (.*?) \| \d+ of \d+ \| (\d+) of (\d+) \| (.*)", re.MULTILINE)
     rows = row.findall(told)
     told = {fault: sentences for fault, _, _, sentences in rows}

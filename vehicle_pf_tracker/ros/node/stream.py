@@ -19,7 +19,6 @@ Kernels may be loaded meanwhile: until then every image is answered with the rea
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping
 from typing import Any
 
@@ -34,12 +33,12 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
-from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
 from vehicle_pf_tracker.image.stillness import PATIENCE, Stillness
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import NOT_READY, WAITING, stamp_ns
+from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
 from vehicle_pf_tracker.ros.node.diagnostics import Health
+from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
@@ -50,63 +49,6 @@ _STILL = (
     f"the target has not moved for {PATIENCE:g} s while other things did: it stands, or it is "
     "no vehicle"
 )
-_THREAD = "loading kernels"
-_REASON = f"{NOT_READY}; the first start compiles them, for up to a minute"
-
-
-class KernelLoading:
-    """Loads kernels in a thread of its own where that takes long, else at once.
-
-    Numba leaves the interpreter to others while LLVM works, and most of the time goes there: the
-    node answers its services and obeys signals meanwhile.
-
-    Parameters
-    ----------
-    choice : str
-        As for `load_kernels`.
-
-    Raises
-    ------
-    InputError
-        If numba's kernels are asked for where numba is not installed.
-    """
-
-    def __init__(self, choice: str) -> None:
-        self.choice = choice
-        self._problem = ""
-        self._thread: threading.Thread | None = None
-        if takes_long(choice):
-            self._thread = threading.Thread(target=self._load, name=_THREAD, daemon=True)
-            self._thread.start()
-        else:
-            load_kernels(choice)
-
-    @property
-    def is_done(self) -> bool:
-        """True once the kernels are loaded."""
-        return not self._problem and not self._is_running
-
-    @property
-    def reason(self) -> str:
-        """Reason why there are no kernels (yet), in one sentence."""
-        return self._problem or _REASON
-
-    @property
-    def _is_running(self) -> bool:
-        return self._thread is not None and self._thread.is_alive()
-
-    def _load(self) -> None:
-        try:
-            load_kernels(self.choice)
-        except InputError as error:
-            self._problem = str(error)
-        except Exception as error:  # as numba raises it; the node lives and says so
-            self._problem = f"the kernels cannot be loaded: {type(error).__name__}: {error}"
-
-
-def is_loading() -> bool:
-    """Return whether a thread of this process still loads kernels; it cannot be ended."""
-    return any(thread.name == _THREAD for thread in threading.enumerate())
 
 
 class Stream(NodeStream):
