@@ -39,6 +39,7 @@ from vehicle_pf_tracker.evaluation.report.page_tables import (
     overall_table,
     ranks_table,
     recording_table,
+    starts_table,
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
@@ -61,9 +62,11 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     """Return the findings, the means, the ranks and each recording as Markdown."""
     parts = [f"# {title(evaluation)}\n"]
     parts.append("".join(f"- {line}\n" for line in findings(evaluation, aggregates)))
+    starts = starts_table(aggregates)
     tables = {
         "Means over recordings": overall_table(aggregates),
         "Ranks": ranks_table(aggregates),
+        **({"Shifted starts": starts} if starts else {}),
         **{
             entry.name: recording_table(aggregates, entry.name, COLUMNS)
             for entry in evaluation.recordings
@@ -72,7 +75,7 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     for heading, table in tables.items():
         parts.append(f"## {heading}\n\n{markdown(*table.texts())}")
     if evaluation.failed:
-        cells = [[c.system, c.recording, str(c.seed), c.reason] for c in evaluation.failed]
+        cells = [[c.system, c.recording, c.run, c.reason] for c in evaluation.failed]
         header = ["system", "recording", "seed", "reason"]
         parts.append("## Failed cells\n\n" + markdown(header, cells))
     return "\n".join(parts)
@@ -80,16 +83,18 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
 
 def summary_csv(aggregates: Aggregates) -> str:
     """Return every mean with its spread and interval, a line each, with every digit."""
-    places = {ALL_RECORDINGS: aggregates.overall, **aggregates.recordings}
+    starts = {"true": aggregates, "shifted": aggregates.shifted}
     rows = [
-        [recording, system, column.key, column.unit, *astuple(found)]
-        for recording, by_system in places.items()
+        [recording, system, column.key, column.unit, *astuple(found), start]
+        for start, some in starts.items()
+        if some is not None
+        for recording, by_system in {ALL_RECORDINGS: some.overall, **some.recordings}.items()
         for system, summaries in by_system.items()
         for column in COLUMNS
         if (found := summaries.get(column.key)) is not None
     ]
-    header = ("recording", "system", "metric", "unit", "count", "mean", "spread", "low", "high")
-    return csv_text(header, rows)
+    numbers = ("count", "mean", "spread", "low", "high")
+    return csv_text(("recording", "system", "metric", "unit", *numbers, "start"), rows)
 
 
 def summary_tex(aggregates: Aggregates) -> str:
