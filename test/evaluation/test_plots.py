@@ -28,36 +28,22 @@ RUNS = {
 }
 
 
-def errors_of(runs):
-    return overview_figure(FRAME, runs).axes[1]
-
-
-def named_lines(axes):
-    return {line.get_label(): line for line in axes.lines if line.get_label()[0] != "_"}
-
-
 def test_errors_are_drawn_by_frame_on_a_scale_that_has_a_foot():
-    line = named_lines(errors_of(RUNS))["two"]
-    assert list(line.get_xdata()) == list(range(1, 31))
-    assert line.get_ydata()[0] == 2
-    assert line.get_ydata()[-1] == 0.5
+    axes = overview_figure(FRAME, RUNS).axes[1]
+    lines = {line.get_label(): line for line in axes.lines}
+    assert list(lines["two"].get_xdata()) == list(range(1, 31))
+    assert (lines["two"].get_ydata()[0], lines["two"].get_ydata()[-1]) == (2, 0.5)
+    assert lines["one"].get_color() != lines["two"].get_color()
+    assert lines["one"].get_linestyle() != lines["two"].get_linestyle()
 
 
 def test_occlusions_are_shaded_once():
-    axes = errors_of(RUNS)
-    spans = [
-        (patch.get_label(), patch.get_extents().transformed(axes.transData.inverted()))
-        for patch in axes.patches
-    ]
-    found = {label: (round(box.x0, 3), round(box.x1, 3)) for label, box in spans}
-    assert found == {"partly hidden": (10.5, 14.5), "hidden": (14.5, 20.5)}
-    assert len(spans) == 2
-
-
-def test_runs_differ_in_colour_and_in_line():
-    lines = named_lines(errors_of(RUNS))
-    assert lines["one"].get_color() != lines["two"].get_color()
-    assert lines["one"].get_linestyle() != lines["two"].get_linestyle()
+    axes = overview_figure(FRAME, RUNS).axes[1]
+    found = []
+    for patch in axes.patches:
+        box = patch.get_extents().transformed(axes.transData.inverted())
+        found.append((patch.get_label(), round(box.x0, 3), round(box.x1, 3)))
+    assert found == [("partly hidden", 10.5, 14.5), ("hidden", 14.5, 20.5)]
 
 
 def test_paths_are_dashed_exactly_where_the_vehicle_is_hidden():

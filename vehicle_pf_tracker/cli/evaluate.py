@@ -57,7 +57,7 @@ if TYPE_CHECKING:
 
 _GRID_ONLY = (
     "params", "without_defaults", "baseline_model", "max_rmse", "topic", "recordings",
-    "shifted_starts",
+    "shifted_starts", "figures", "write",
 )  # fmt: skip
 """Options of the grid that do not apply."""
 

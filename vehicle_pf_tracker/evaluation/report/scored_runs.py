@@ -69,6 +69,8 @@ class ScoredRun:
         Estimates by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
+    versions : mapping of str to str
+        Versions of the program and its libraries that ran a variant; empty for baselines.
     """
 
     recording: str
@@ -80,6 +82,7 @@ class ScoredRun:
     boxes: Sequence[Box | None]
     rows: Sequence[EstimateRow]
     curves: Mapping[str, Curve]
+    versions: Mapping[str, str | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +199,7 @@ def _result(
         boxes=[_box(frame) for frame in frames],
         rows=cell.rows,
         curves={name: curve for name, curve in curves.items() if curve is not None},
+        versions=cell.run.get("versions", {}) if "variant" in cell.run else {},
     )
 
 

@@ -34,7 +34,8 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     aggregate,
     findings,
 )
-from vehicle_pf_tracker.evaluation.report.page import make_page, title
+from vehicle_pf_tracker.evaluation.report.figures import write_figures
+from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
 from vehicle_pf_tracker.evaluation.report.page_tables import (
     overall_table,
     ranks_table,
@@ -46,6 +47,7 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
     score_folder,
     write_estimate_recordings,
 )
+from vehicle_pf_tracker.evaluation.report.toolkits import write_toolkits
 from vehicle_pf_tracker.evaluation.tables import csv_text, markdown
 from vehicle_pf_tracker.offline.output_files import write_json, write_text
 
@@ -149,6 +151,8 @@ def write_report(
     *,
     images: bool = True,
     recordings: bool = False,
+    figures: Sequence[str] = (),
+    toolkits: Sequence[str] = (),
     notify: Callable[[str], object] = lambda _: None,
     on_stage: Callable[[str], object] = lambda _: None,
 ) -> Report:
@@ -164,6 +168,10 @@ def write_report(
         True for stills of the recordings in the page.
     recordings : bool
         True for recordings with truth and all estimates, in ``estimates/``.
+    figures : sequence of str
+        Formats of the figures in ``figures/``: ``pdf``, ``svg`` and ``png``.
+    toolkits : sequence of str
+        Formats of the runs in ``results/``: ``otb``, ``vot`` and ``mot``.
     notify : callable
         Called with a sentence for each file that could not be made.
     on_stage : callable
@@ -181,6 +189,10 @@ def write_report(
     on_stage("drawing the page")
     write_text(page, make_page(evaluation, aggregates, images=images))
     written = [page, *_write_summaries(folder, evaluation, aggregates)]
+    if figures:
+        on_stage("drawing the figures")
+        written += write_figures(evaluation, aggregates, styled(aggregates), figures)
+    written += write_toolkits(evaluation, toolkits)
     if recordings:
         written += write_estimate_recordings(evaluation, notify, on_stage)
     return Report(written, evaluation, aggregates)
