@@ -26,7 +26,7 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 .PHONY: help demo test test-all test-offline test-footage test-ros test-noble kernels lint types format config colcon baselines bench reproduce docs dist clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
-	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
+	BIN=$(abspath $(BIN)) .ci/demo results/demo
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*  ## \(.*\)/\1|\2/p' $(firstword $(MAKEFILE_LIST)) | \
@@ -120,8 +120,8 @@ clean:  ## remove what the other targets made
 .venv-noble/locked: requirements/noble.txt requirements/ros-jazzy.txt
 	.ci/make-venv .venv-noble requirements/noble.txt $(or $(NOBLE_PYTHON),3.12 3.11 3.10)
 
-.venv-baselines/locked: requirements/baselines.txt
-	.ci/make-venv --without-ros .venv-baselines requirements/baselines.txt $(PYTHON)
+.venv-baselines/locked: vehicle_pf_tracker/evaluation/baselines.txt
+	.ci/make-venv --without-ros .venv-baselines vehicle_pf_tracker/evaluation/baselines.txt $(PYTHON)
 
 .venv/installed .venv-noble/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml package.xml \
 		vehicle_pf_tracker/trackers/registry.py

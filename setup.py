@@ -96,6 +96,7 @@ setup(
         NAME: ["py.typed"],
         f"{NAME}.cli": ["pick.html", "pick.js"],
         f"{NAME}.recordings": ["ImageAnnotations.msg"],
+        f"{NAME}.evaluation": ["baselines.txt"],
         f"{NAME}.evaluation.report": ["templates/*"],
     },
     data_files=[

@@ -15,6 +15,7 @@
 """One tracker node on a camera: `ros2 launch vehicle_pf_tracker tracker.launch.py variant:=apf`."""
 
 import sys
+from pathlib import Path
 
 from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
@@ -23,7 +24,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import Parameter
 from launch_ros.substitutions import FindPackageShare
 
-from vehicle_pf_tracker.ros.launching import parameter_file, write_profile
+from vehicle_pf_tracker.ros.launching import parameter_file
 from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
 
 ALLOCATOR = {
@@ -100,7 +101,7 @@ def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     )
     if not is_true(given["large_images"]):
         return [node]
-    path = write_profile()
+    path = str(Path(share, "config", "large_images.xml"))
     return [*(SetEnvironmentVariable(name, path) for name in PROFILE_VARIABLES), node]
 
 

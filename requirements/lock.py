@@ -84,7 +84,7 @@ def main() -> None:
     parser.add_argument("interpreters", nargs="*")
     args = parser.parse_args()
     if args.hashes:
-        for path in sorted(HERE.glob("*.txt")):
+        for path in (*sorted(HERE.glob("*.txt")), path_of("baselines")):
             header, *pins = pins_of(path)
             path.write_text(hashed(header, pins))
         return
@@ -107,7 +107,13 @@ def lock_by_interpreters(interpreters: list[str], only: str | None) -> None:
             locks.setdefault(lock, {})[version] = found
     for lock, by_version in locks.items():
         header = f"# Written by requirements/lock.py for Python {', '.join(by_version)}."
-        (HERE / f"{lock}.txt").write_text(hashed(header, merged(by_version)))
+        path_of(lock).write_text(hashed(header, merged(by_version)))
+
+
+def path_of(lock: str) -> Path:
+    """Return the file of a lock; that of the baselines is installed with the package."""
+    folder = ROOT / "vehicle_pf_tracker" / "evaluation" if lock == "baselines" else HERE
+    return folder / f"{lock}.txt"
 
 
 def lock_docs() -> None:

@@ -29,6 +29,7 @@ from tools import rooms
 from tools.parameters_page import parameters_page
 from tools.sros2_policy import policy
 from vehicle_pf_tracker.cli.params import default_yaml
+from vehicle_pf_tracker.ros.transport import LAUNCHED_SEGMENT, profile
 from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -59,6 +60,7 @@ def generated_files(root: Path = ROOT) -> dict[Path, str]:
     variants, nodes = VARIANTS.values(), NODES.values()
     files = {root / "config" / f"{one.name}.yaml": default_yaml(one) for one in nodes}
     files[root / "config" / "sros2_policy.xml"] = policy(nodes)
+    files[root / "config" / "large_images.xml"] = profile(LAUNCHED_SEGMENT)
     files[root / "docs" / "parameters.md"] = parameters_page()
     for page, columns in TABLES.items():
         text = (root / page).read_text(encoding="utf-8")

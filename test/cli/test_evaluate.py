@@ -113,7 +113,7 @@ def test_a_baseline_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_pa
     assert evaluate(tmp_path / "out", bags / "one", *words) == 1
     assert "baseline:csrt cannot run: there is no interpreter" in capsys.readouterr().err
     failed = tmp_path / "out" / "cells" / "one" / "baseline_csrt" / "seed-0" / "failed.json"
-    assert "make baselines" in json.loads(failed.read_text())["reason"]
+    assert "python3 -m venv" in json.loads(failed.read_text())["reason"]
 
 
 def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):

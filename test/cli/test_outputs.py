@@ -158,11 +158,6 @@ def test_what_exists_is_replaced_on_request_only(here, capsys, words):
     assert main([*third, "--overwrite"]) == 0
 
 
-def test_the_demo_keeps_what_exists(here, capsys):
-    (here / "demo.png").touch()
-    fails(["demo", "-o", "."], "demo.png exists; give --overwrite", capsys)
-
-
 def test_files_of_others_in_the_folder_are_in_nobody_s_way(here):
     (here / "notes.txt").write_text("mine")
     assert main(["run", "clip.mp4", "--variant", "pf", "--target", TARGET, "-o", "."]) == 0
@@ -195,7 +190,6 @@ def hold(here):
         ("folder", "out", ["evaluate", "bag", "--variants", "pf", "--seeds", "1", "-o", "out"]),
         ("folder", "out", ["tune", "bag", "--variant", "pf", "--trials", "1", "-o", "out"]),
         ("folder", "out", ["report", "out"]),
-        ("folder", "out", ["demo", "-o", "out"]),
         ("path", "out", ["import", "frames", "out"]),
         ("path", "out", ["synth", "bar", "out"]),
         ("path", "out", ["synth", "traffic-pair", "out"]),

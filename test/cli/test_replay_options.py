@@ -81,7 +81,6 @@ def test_words_become_options(words, expected):
         ("-m /a", "'/a' is not FROM:=TO"),
         ("-m :=/b", "':=/b' is not FROM:=TO"),
         ("--target 1,2,3", "not x,y,w,h"),
-        ("--target 1,2,3,4 --no-target", "not allowed with"),
         ("--timeout 0", "not more than 0"),
     ],
 )
@@ -90,6 +89,18 @@ def test_words_that_do_not_fit_are_usage_errors(capsys, words, told):
         parse(*words.split())
     assert ended.value.code == 2
     assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("--target 1,2,3,4 --no-target", "--target is not allowed with --no-target"),
+        ("--loop -o out", "-o cannot be combined with --loop"),
+    ],
+)
+def test_options_that_contradict_each_other_are_usage_errors(words, told):
+    with pytest.raises(UsageError, match=told):
+        replay.run(parse(*words.split()))
 
 
 def test_a_loop_has_no_estimates_to_write():

@@ -52,3 +52,8 @@ def test_no_piece_is_large_enough_for_a_second_thread(rows, columns, monkeypatch
     assert (product(left, right) == 30).all()
     assert len(pieces) > 1
     assert max(pieces) <= 1 << 18
+
+
+def test_kind_of_the_numbers_is_kept():
+    left, right = np.ones((40, 300), np.float32), np.ones((300, 400), np.float32)
+    assert product(left, right).dtype == np.float32

@@ -84,3 +84,7 @@ def test_disc_is_filled_evenly():
     # Half of the area lies within 10 / sqrt(2); the mean distance is two thirds of the radius.
     assert np.mean(distance < 10.0 / math.sqrt(2)) == pytest.approx(0.5, abs=0.005)
     assert distance.mean() == pytest.approx(20 / 3, rel=0.005)
+
+
+def test_disc_of_no_radius_is_its_middle():
+    assert not sample_disc(np.random.default_rng(8), 3, 0.0).any()

@@ -70,9 +70,10 @@ def test_mono16_keeps_the_high_byte_in_both_byte_orders(order, big):
     assert frame[0, :, 2].tolist() == [0x00, 0x12, 0xFF]
 
 
-def test_opencvs_names_are_grey_and_bgr():
+def test_grey_is_repeated_and_opencvs_names_are_grey_and_bgr():
     grey = np.array([[0, 128, 255]], np.uint8)
-    assert np.array_equal(convert("8UC1", grey, 3), convert("mono8", grey, 3))
+    for name in ("mono8", "8UC1"):
+        assert np.array_equal(convert(name, grey, 3), np.repeat(grey[..., np.newaxis], 3, axis=2))
     assert np.array_equal(convert("8UC3", COLOURS[..., ::-1], 3), COLOURS)
 
 
@@ -108,8 +109,10 @@ def mosaic(pattern, colour, size=8):
 @pytest.mark.parametrize("pattern", ["rggb", "bggr", "gbrg", "grbg"])
 @pytest.mark.parametrize("colour", [RED, GREEN, BLUE])
 def test_bayer_patterns_by_their_ros_names(pattern, colour):
-    frame = convert(f"bayer_{pattern}8", mosaic(pattern, colour), 8)
-    assert np.array_equal(frame[2:-2, 2:-2], np.full((4, 4, 3), colour, np.uint8))
+    pixels = mosaic(pattern, colour)
+    for name, data in (("8", pixels), ("16", pixels.astype("<u2") * 256 + 99)):
+        frame = convert(f"bayer_{pattern}{name}", data, 8)
+        assert np.array_equal(frame[2:-2, 2:-2], np.full((4, 4, 3), colour, np.uint8))
 
 
 def bt601(y, u, v):

@@ -105,3 +105,14 @@ def test_segments_go_through_the_centres_of_pixels():
     assert len(segments)
     assert np.all(segments % 1 == 0.5)
     assert set(segments[:, [0, 2]].ravel()) <= {39.5, 40.5}
+
+
+def test_segments_are_in_the_frames_coordinates():
+    frame = drawn()
+    frame[30:, :] = 255  # an edge at y = 30
+    whole = DETECTOR.detect(frame, windows((0, 0, 80, 60)))
+    part = DETECTOR.detect(frame, windows((40, 20, 70, 40), (45, 25, 75, 45)))
+    assert whole[:, [1, 3]] == pytest.approx(30, abs=1.0)
+    assert part[:, [1, 3]] == pytest.approx(30, abs=1.0)
+    assert part[:, [0, 2]].min() == pytest.approx(40, abs=4)
+    assert part[:, [0, 2]].max() == pytest.approx(75, abs=4)

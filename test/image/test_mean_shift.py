@@ -125,3 +125,10 @@ def test_positions_stay_in_the_image(start, half_width, half_height, seed):
     shifted = mean_shift(frame, inside, window, reference, 1)
     assert np.all(shifted >= 0.5 - 1e-9)
     assert np.all(shifted <= [16.5 + 1e-9, 11.5 + 1e-9])
+
+
+def test_kernel_histogram_in_a_corner_takes_the_pixels_that_exist():
+    # The middle, two neighbours and a corner: 1 + 10/9 + 1/9 = 20/9, of which red is 9/9.
+    found = kernel_histogram(image("rg.", "g..", "..."), (0.5, 0.5), CROSS, 1)
+    assert found[RED_BIN] == pytest.approx(9 / 20)
+    assert found[GREEN_BIN] == pytest.approx(10 / 20)

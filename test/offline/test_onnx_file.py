@@ -178,5 +178,5 @@ def test_a_file_that_does_not_do_is_one_sentence(tmp_path, make, parameters, sai
 
 def test_without_onnx_runtime_the_extra_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "onnxruntime", None)
-    with pytest.raises(InputError, match=r"vehicle_pf_tracker\[onnx\]"):
+    with pytest.raises(InputError, match=r"vehicle_pf_tracker\[video\]"):
         detector_maker(DetectorParameters(kind="model", model=str(tmp_path / "net.onnx")))

@@ -39,9 +39,9 @@ def estimate(identity, mode, box=None, label=""):
 def summed(*lives):
     """Add the lives of vehicles 1, 2, ...: a letter per frame, - where it is not followed."""
     summary = TrafficSummary()
-    for index, modes in enumerate(zip(*lives, strict=True)):
+    for modes in zip(*lives, strict=True):
         found = [estimate(k, mode) for k, mode in enumerate(modes, start=1) if mode != "-"]
-        summary.add(index + 1, index * 100_000_000, found, {})
+        summary.add(found, {})
     return summary
 
 
@@ -60,15 +60,10 @@ def test_a_vehicle_that_is_never_confirmed_is_none():
     assert summary.to_json()["vehicles"] == 0
 
 
-def test_the_longest_is_by_what_was_seen():
-    summary = summed("TTOOOOOOOO", "-TTTTTTTT-")
-    assert "longest: vehicle 2, for 0:00.7 (frames 2 to 9)" in summary.sentences()
-
-
 def test_a_late_class_counts():
     summary = TrafficSummary()
-    summary.add(1, 0, [estimate(1, "T")], {})
-    summary.add(2, 1, [estimate(1, "T", label="bus")], {})
+    summary.add([estimate(1, "T")], {})
+    summary.add([estimate(1, "T", label="bus")], {})
     assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences()
 
 

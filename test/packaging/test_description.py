@@ -18,6 +18,7 @@ import re
 import runpy
 import sys
 import xml.etree.ElementTree as ET
+from configparser import ConfigParser
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,7 @@ import setuptools
 
 import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.main import EVALUATION_MODULES, EXTRAS
+from vehicle_pf_tracker.evaluation.baselines import LOCK
 from vehicle_pf_tracker.ros import executables
 from vehicle_pf_tracker.trackers.registry import NODES
 
@@ -96,9 +98,10 @@ def test_layouts_of_viewers_are_installed(setup):
 
 
 def test_executables_are_installed_where_ros2_run_looks():
-    text = (ROOT / "setup.cfg").read_text()
-    assert text.count("scripts=$base/lib/vehicle_pf_tracker") == 1
-    assert text.count("script_dir=$base/lib/vehicle_pf_tracker") == 1
+    config = ConfigParser()
+    config.read(ROOT / "setup.cfg")
+    folder = "$base/lib/vehicle_pf_tracker"
+    assert config["develop"]["script_dir"] == config["install"]["install_scripts"] == folder
 
 
 @pytest.mark.parametrize("command", [("install",), ("egg_info", "build", "install"), ("develop",)])
@@ -129,7 +132,7 @@ def test_three_extras_bring_what_the_readme_shows(setup):
 
 
 @pytest.mark.parametrize(
-    "path", sorted((ROOT / "requirements").glob("*.txt")), ids=lambda p: p.stem
+    "path", [*sorted((ROOT / "requirements").glob("*.txt")), LOCK], ids=lambda p: p.stem
 )
 def test_every_pin_has_hashes_and_no_lock_names_an_index(path):
     pins = re.findall(r"^\S+==.*(?:\n    .*)*", path.read_text(), re.M)

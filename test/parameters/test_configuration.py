@@ -64,3 +64,10 @@ def test_a_side_of_zero_is_no_target_yet(defaults):
     assert defaults.updated({"target.width": 20.0}).session.target.box is None
     both = defaults.updated({"target.width": 20.0, "target.height": 10.0})
     assert both.session.target.box is not None
+
+
+def test_a_later_update_keeps_an_earlier_one(defaults):
+    changed = defaults.updated({"sigma": 3.0, "queue_depth": 5})
+    changed = changed.updated({"histogram_bits": 4, "autostart": False})
+    assert (changed.tracker.sigma, changed.tracker.histogram_bits) == (3.0, 4)
+    assert (changed.node.queue_depth, changed.node.autostart) == (5, False)

@@ -21,7 +21,7 @@ import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml
-from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.trackers.papers.apf import ApfParameters
 
 HEAD = "/**:\n  ros__parameters:\n"
@@ -88,4 +88,12 @@ def test_a_pipe_is_no_file(tmp_path):
 def test_values_of_any_length_are_named_briefly(name, value):
     with pytest.raises(InputError, match=name) as caught:
         from_mapping(ApfParameters, {name: value})
+    assert len(str(caught.value)) < 400
+
+
+@pytest.mark.parametrize("name", ["num_particles", "motion.sigma_w"])
+@pytest.mark.parametrize("value", [LONG, TOO_LONG, "1e999", "x" * 10**5], ids=lambda one: one[:5])
+def test_assignments_of_any_length_are_named_briefly(name, value):
+    with pytest.raises(InputError, match=name) as caught:
+        parse_assignments(specs(ApfParameters), [f"{name}={value}"])
     assert len(str(caught.value)) < 400

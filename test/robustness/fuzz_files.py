@@ -51,7 +51,6 @@ from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.ros.rclpy_internals import (
     RCLError,
     UnknownROSArgsError,
-    parameter_overrides,
 )
 from vehicle_pf_tracker.trackers.registry import find_variant
 
@@ -136,8 +135,7 @@ def _in_node(path: Path) -> str:
             rclpy.init(args=["--ros-args", "--params-file", str(path)], context=context)
             node = TrackerNode(VARIANT, context=context)
         given = {name: one.value for name, one in node.get_parameters_by_prefix("").items()}
-        asked = parameter_overrides(node, ())
-        wrong = {n: v for n, v in asked.items() if n in given and given[n] != v}
+        wrong = {n: v for n, v in node.overrides.items() if n in given and given[n] != v}
         if wrong:
             raise WrongError(f"the node has other values than {wrong}")
     except (InputError, RCLError, UnknownROSArgsError):

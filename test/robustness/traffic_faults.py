@@ -28,23 +28,18 @@ sentence came more often than every 5 s, or the node did not end well.
 from __future__ import annotations
 
 import argparse
-import math
 import re
-import struct
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from detector import Detector, Fault, sightings, vision
 from lanes import Corners, Road, Traffic
 from node_process import NodeProcess
-from rclpy.serialization import serialize_message
 from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
-from traffic_node_soak import Detector, sightings, vision
 
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 
@@ -59,65 +54,9 @@ INTERVAL = 5.0
 """Seconds between two sentences of one kind that the node promises."""
 IMAGES = ("queue_depth:=20", "qos_overrides./image.subscription.reliability:=reliable")
 """Parameters by which no image is lost on its way, so that each has to be answered."""
-LOW = 0.05
-"""Score of a flood's boxes: that of what a detector gives without a threshold."""
 MOVES = "motion, the camera moves for a second"
 MOVING = 1.0
 """Seconds that it moves, and stands where it is then."""
-STAMP = 4
-"""Byte at which the stamp is in a serialized message."""
-NAN, HUGE = math.nan, 1e300
-UNUSABLE = {
-    "NaN": (NAN, 5.0, 9.0, 9.0),
-    "infinite size": (5.0, 5.0, math.inf, 9.0),
-    "negative size": (40.0, 40.0, -20.0, -10.0),
-    "no area": (5.0, 5.0, 0.0, 0.0),
-    "outside": (5e3, 5.0, 9.0, 9.0),
-    "huge": (-HUGE, 5.0, HUGE, 9.0),
-}
-
-Fault = Callable[[Header, np.ndarray], object]
-
-
-class Faults:
-    """Ways in which a detector fails; each is called with an image's header and the right boxes."""
-
-    def __init__(self, node: NodeProcess, messages: Any) -> None:
-        self._detector = Detector(node, messages)
-        self._topic = node.publisher(messages.Detection2DArray, "detections")
-        self.right = self._detector.publish
-        self._turn = 0
-        self.all: dict[str, Fault] = {
-            "10 000 boxes, once a second": self._flood(10_000),
-            "1 500 boxes, once a second": self._flood(1_500),
-            **{words: self._bad(row) for words, row in UNUSABLE.items()},
-            "each box five times": lambda header, boxes: self.right(header, np.tile(boxes, (5, 1))),
-            "stamps that never match": self._stray,
-            "no detections any more": lambda header, boxes: None,
-        }
-
-    def _flood(self, count: int) -> Fault:
-        rows = np.random.default_rng(3).uniform(0, 150, (count, 4))
-        serialized = bytearray(serialize_message(self._detector.message(Header(), rows, LOW)))
-
-        def flood(header: Header, boxes: np.ndarray) -> None:
-            stamp = header.stamp
-            self._turn += 1
-            if self._turn % RATE:
-                self.right(header, boxes)
-                return
-            struct.pack_into("<iI", serialized, STAMP, stamp.sec, stamp.nanosec)
-            self._topic.publish(bytes(serialized))
-
-        return flood
-
-    def _bad(self, row: tuple[float, float, float, float]) -> Fault:
-        return lambda header, boxes: self.right(header, np.concatenate([boxes, [row]]))
-
-    def _stray(self, header: Header, boxes: np.ndarray) -> None:
-        other = Header(frame_id=header.frame_id)
-        other.stamp.sec, other.stamp.nanosec = header.stamp.sec, header.stamp.nanosec ^ 1
-        self.right(other, boxes)
 
 
 class Trial:
@@ -256,11 +195,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="traffic_faults_") as folder:
         messages = vision(Path(folder))
         node = NodeProcess("traffic", "detector.kind:=topic", *IMAGES, target=None)
-        faults, trial = Faults(node, messages), Trial(node, args.seconds)
-        trial.begin(faults.right)
-        for words, fault in faults.all.items():
+        detector, trial = Detector(node, messages, round(RATE)), Trial(node, args.seconds)
+        trial.begin(detector.right)
+        for words, fault in detector.faults.items():
             if args.only in words:
-                trial.give(words, fault, faults.right)
+                trial.give(words, fault, detector.right)
         node.end()
     is_good = trial.is_good
     node = NodeProcess("traffic", "detector.kind:=motion", *IMAGES, target=None)

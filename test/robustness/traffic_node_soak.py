@@ -19,8 +19,8 @@
 Vehicles drive through in lanes, under a bridge that hides each of them for a few images. A
 detector publishes their boxes (vision_msgs, built from its definitions where it is not installed),
 misses some, and sees what is not there; with `--detector motion` the node finds them itself. Once
-in a while the detector fails: a flood of ten thousand boxes, boxes that cannot be used, stamps of
-no image, silence. Prints what was answered, which numbers were given and counted, what the node
+in a while the detector fails: a flood of boxes, boxes that cannot be used, stamps of no image,
+silence. Prints what was answered, which numbers were given and counted, what the node
 said, and how the resident memory went. Exit status 1 if an image stayed unanswered, was rejected or
 answered twice, a number was issued twice, a vehicle never had one, or memory grew; a traceback or
 an end that is not clean ends it with the node's log.
@@ -29,24 +29,17 @@ an end that is not clean ends it with the node's log.
 from __future__ import annotations
 
 import argparse
-import contextlib
-import io
-import math
-import os
+import itertools
 import re
-import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from detector import Detector, sightings, vision
 from diagnostic_msgs.msg import DiagnosticArray
-from lanes import Corners, Numbers, Road, Sighting, Traffic
+from lanes import Corners, Numbers, Road, Traffic
 from node_process import NodeProcess, growth
 from sensor_msgs.msg import Image, PointCloud2
 from std_msgs.msg import Header
@@ -64,104 +57,8 @@ LINE = 260
 GROWTH = 2.0
 """MB that the resident memory may grow by from then on: 200 bytes for each vehicle."""
 FAULT_EVERY = 20.0
-SILENCE = 2.0
-"""Seconds between two failures of the detector, and how long a silence lasts."""
-FLOOD = 10_000
-CONFIRMED = (1, 2, 3)
-"""Modes in ~/tracks of vehicles that have had enough evidence."""
-FORMATS = {2: "u1", 6: "<u4", 7: "<f4"}
-"""numpy's words for the datatypes of sensor_msgs/PointField that ~/tracks has."""
-
-
-def vision(folder: Path) -> Any:
-    """Import vision_msgs.msg, built in `folder` from its definitions where it is not installed."""
-    if find_spec("vision_msgs") is None:
-        sys.path.append(str(Path(__file__).resolve().parents[1] / "ros"))
-        built = import_module("built_messages")
-        with contextlib.redirect_stdout(io.StringIO()):  # each file that is written
-            path = str(built.build("vision_msgs", built.VISION, folder))
-        sys.path.append(path)
-        # For the node's process.
-        known = os.environ.get("PYTHONPATH")
-        os.environ["PYTHONPATH"] = os.pathsep.join([path, *([known] if known else [])])
-    return import_module("vision_msgs.msg")
-
-
-def sightings(cloud: PointCloud2) -> list[Sighting]:
-    """Read ~/tracks by the fields that the message itself names."""
-    kind = np.dtype(
-        {
-            "names": [one.name for one in cloud.fields],
-            "formats": [FORMATS[one.datatype] for one in cloud.fields],
-            "offsets": [one.offset for one in cloud.fields],
-            "itemsize": cloud.point_step,
-        }
-    )
-    points = np.frombuffer(bytes(cloud.data), kind)
-    return [
-        Sighting(int(one["id"]), float(one["x"]), float(one["y"]), int(one["mode"]) in CONFIRMED)
-        for one in points
-    ]
-
-
-class Detector:
-    """Publishes boxes, right ones and faulty ones.
-
-    Parameters
-    ----------
-    node : NodeProcess
-        The node.
-    messages : module
-        vision_msgs.msg.
-    """
-
-    def __init__(self, node: NodeProcess, messages: Any) -> None:
-        self._messages = messages
-        self._topic = node.publisher(messages.Detection2DArray, "detections")
-        rows = np.random.default_rng(3).uniform(0, 150, (FLOOD, 4))
-        self._flood = self.message(Header(), rows)
-
-    def publish(self, header: Header, boxes: np.ndarray) -> None:
-        """Publish boxes (left, top, width, height) of an image."""
-        self._topic.publish(self.message(header, boxes))
-
-    def flood(self, header: Header, _: np.ndarray) -> None:
-        """Publish far too many boxes."""
-        self._flood.header = header
-        self._topic.publish(self._flood)
-
-    def unusable(self, header: Header, boxes: np.ndarray) -> None:
-        """Publish the right boxes, each twice, among some that cannot be used."""
-        nan, huge = math.nan, 1e300
-        bad = [
-            (nan, 5, 9, 9),
-            (40, 40, -20, -10),
-            (5, 5, 0, 0),
-            (5e3, 5, 9, 9),
-            (-huge, 5, huge, 9),
-        ]
-        self.publish(header, np.concatenate([boxes, bad, boxes]))
-
-    def stray(self, header: Header, boxes: np.ndarray) -> None:
-        """Publish the right boxes, and many under stamps that no image has."""
-        for step in range(120):
-            other = Header(frame_id=header.frame_id)
-            other.stamp.sec, other.stamp.nanosec = header.stamp.sec + 10_000, step
-            self.publish(other, boxes[:1])
-        self.publish(header, boxes)
-
-    def message(self, header: Header, boxes: np.ndarray, score: float = 0.8) -> Any:
-        """Make detections (left, top, width, height)."""
-        made = self._messages.Detection2DArray(header=header)
-        for x, y, width, height in boxes.tolist():
-            one = self._messages.Detection2D()
-            one.bbox.center.position.x, one.bbox.center.position.y = x + width / 2, y + height / 2
-            one.bbox.size_x, one.bbox.size_y = width, height
-            result = self._messages.ObjectHypothesisWithPose()
-            result.hypothesis.class_id, result.hypothesis.score = "car", score
-            one.results = [result]
-            made.detections.append(one)
-        return made
+LASTS = 2.0
+"""Seconds between two failures of the detector, and how long one lasts."""
 
 
 class Soak:
@@ -212,11 +109,7 @@ class Soak:
             node.collect(DiagnosticArray, "modes"),
             node.collect(MarkerArray, "markers"),
         ]
-        self._faults = self._drawn_faults()
-
-    def _drawn_faults(self) -> Iterator[str]:
-        while True:
-            yield from ("flood", "unusable", "stray", "silence")
+        self._faults = itertools.cycle((detector.faults if detector else {}).items())
 
     def begin(self) -> None:
         """Wait until the node answers an image of the empty road."""
@@ -264,17 +157,13 @@ class Soak:
         is_hidden = (middle >= BRIDGE.start) & (middle < BRIDGE.stop)
         boxes = boxes[~is_hidden & (boxes[:, 2] >= LEAST)]
         since = number % round(FAULT_EVERY * self._rate)
-        if not self._has_faults:
-            detector.publish(header, boxes)
+        if not self._has_faults or number < FAULT_EVERY * self._rate or since > LASTS * self._rate:
+            detector.right(header, boxes)
             return
         if since == 0:
-            self._fault = next(self._faults)
-            self.answers[f"fault: {self._fault}"] += 1
-        if number < FAULT_EVERY * self._rate or since > SILENCE * self._rate:
-            detector.publish(header, boxes)
-        elif self._fault != "silence":
-            fault = getattr(detector, self._fault) if since == 0 else detector.publish
-            fault(header, boxes)
+            words, self._fault = next(self._faults)
+            self.answers[f"fault: {words}"] += 1
+        self._fault(header, boxes)
 
     def _hear(self) -> None:
         now = time.monotonic()
@@ -343,7 +232,7 @@ def run(args: argparse.Namespace, folder: Path) -> bool:
     lines.write_text(f"lines: {{exit: {{from: [{LINE}, {HEIGHT}], to: [{LINE}, 0]}}}}\n")
     words = [f"detector.kind:={args.detector}", f"lines:={lines}", "queue_depth:=20"]
     node = NodeProcess("traffic", *words, target=None)
-    detector = None if messages is None else Detector(node, messages)
+    detector = None if messages is None else Detector(node, messages, round(args.rate))
     soak = Soak(
         node, detector, road, args.vehicles, args.rate, args.seed, has_faults=not args.no_faults
     )

@@ -38,9 +38,9 @@ def run(start_process, script: str, *words: str, timeout: float = 120.0) -> str:
 
 
 def test_fuzzed_messages_cost_no_good_image_its_estimate(start_process):
-    told = run(start_process, "fuzz_node.py", "--images", "100", "--targets", "60", "--seed", "5")
+    told = run(start_process, "fuzz_node.py", "--messages", "300", "--seed", "5")
     assert "faulty: REJECTED" in told
-    assert "targets            60" in told
+    assert "targets " in told
 
 
 def test_fuzzed_files_end_in_a_sentence_or_in_the_truth(start_process):
@@ -72,6 +72,16 @@ def test_each_fault_of_a_detector_in_turn(start_process):
     if find_spec("vision_msgs") is None and (reason := missing()):
         pytest.skip(f"vision_msgs is not installed, and cannot be built: {reason}")
     told = run(start_process, "traffic_faults.py", "--seconds", "1", timeout=300)
-    rows = [line for line in told.splitlines() if line.startswith("| ")][1:]
-    assert len(rows) == 12
-    assert "the camera moves, or the light was switched" in rows[-1]
+    rows = [line.strip("| ").split(" | ") for line in told.splitlines() if line.startswith("| ")]
+    told = {fault: sentences for fault, _, _, sentences in rows[1:]}
+    unusable = "detections of an image cannot be used: not finite, without an area, outside"
+    assert "MB that are read" in told.pop("10 000 boxes, once a second")
+    assert "detections, of which the N of the highest" in told.pop("1 500 boxes, once a second")
+    assert "waited in vain for detections" in told.pop("stamps that never match")
+    assert "waited in vain for detections" in told.pop("no detections any more")
+    assert "the light was switched" in told.pop("motion, the camera moves for a second")
+    assert len(told) == 7
+    assert all(unusable in sentences for sentences in told.values()), told
+    # Vehicles keep their numbers, whatever the detector says meanwhile.
+    kept = [tuple(map(int, numbers.split(" of "))) for _, _, numbers, _ in rows[1:]]
+    assert all(same >= there - 1 for same, there in kept), kept

@@ -180,3 +180,18 @@ def test_localisation_waits_for_lens_and_pose():
     local.set_pose(turned)
     follow(2 * PERIOD)
     assert local.road.position[1] < 38
+
+
+def test_a_new_start_begins_the_speed_anew():
+    follower = RoadFollower(TENTH, 1.0)
+    drive(follower, [(50 + 4 * index, 80) for index in range(40)])
+    one = estimate((400.0, 80.0), regime=START)
+    assert follower.follow(one, np.eye(2), 40 * PERIOD).speed == 0
+
+
+def test_parameters_that_ask_for_nothing_from_outside_take_nothing():
+    local = Localisation("pf", RoadParameters(pairs=PAIRS))
+    local.set_lens(Lens((1.0, 1.0), (0.0, 0.0)))
+    local.set_pose(Pose(np.eye(3), np.zeros(3)))
+    local.follow(estimate(regime=START), 0, 0.04)
+    assert local.road.position == pytest.approx([10.0, 8.5])

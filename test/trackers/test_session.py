@@ -369,3 +369,12 @@ def test_a_changed_target_parameter_starts_on_it_and_others_keep_the_track():
 def test_a_target_that_an_images_border_cuts_is_accepted():
     values = {"target.x": -10.0, "target.y": -5.0, "target.width": 24.0, "target.height": 30.0}
     assert from_mapping(SessionParameters, values).target.box.centre == (2.0, 10.0)
+
+
+@pytest.mark.parametrize(("x", "y"), [(-50.0, 10.0), (10.0, -15.5)])
+def test_a_target_outside_every_image_is_refused(x, y):
+    with pytest.raises(InputError, match="centre outside every image"):
+        from_mapping(
+            SessionParameters,
+            {"target.x": x, "target.y": y, "target.width": 24.0, "target.height": 30.0},
+        )

@@ -86,3 +86,11 @@ def test_calibrations_are_of_variants_and_an_unknown_one_gets_that_of_all():
     assert {"*", "fusion"} <= set(CALIBRATIONS) <= {"*", *VARIANTS}
     assert calibration_of("new", CALIBRATIONS) is CALIBRATIONS["*"]
     assert calibration_of("pf", CALIBRATIONS) is CALIBRATIONS["pf"]
+
+
+def test_time_that_goes_back_is_not_negative():
+    track = Uncertainty(Calibration(NOTHING, Spread(0.0, 0.0, 0.0, 0.0, 1.0)))
+    hidden = estimate(mode=Mode.OCCLUDED)
+    for stamp in (10 * SECOND, 2 * SECOND, 3 * SECOND):
+        track.follow(hidden, stamp)
+    assert track.covariance(hidden, 1.0)[0, 0] == pytest.approx(200.0)

@@ -16,8 +16,6 @@
 
 from __future__ import annotations
 
-import argparse
-import re
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -43,6 +41,7 @@ from vehicle_pf_tracker.cli.requests import (
 )
 from vehicle_pf_tracker.cli.tracking_options import parse_box
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.estimates import write_estimates
 from vehicle_pf_tracker.offline.output_files import make_folder
@@ -67,7 +66,7 @@ def shown_replay(
                 began = clock()
             count, seconds = progress.frames, clock() - began
             words = f"{count} frame{'s' * (count > 1)}"
-            if seconds > 0:
+            if count > 1 and seconds > 0:
                 words += f", {(count - 1) / seconds:.1f} frames/s"
             show(words, progress.position / progress.length if progress.position else None)
 
@@ -81,22 +80,14 @@ ANSWERS = ("estimates.csv", "*/estimates.csv")
 def _seconds(text: str) -> float:
     value = number(text)
     if value < 0:
-        raise argparse.ArgumentTypeError(f"{text} is less than 0")
+        raise InputError(f"{text} is less than 0")
     return value
-
-
-def _pattern(text: str) -> str:
-    try:
-        re.compile(text)
-    except re.error as error:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a pattern: {error}") from None
-    return text
 
 
 def _remapping(text: str) -> tuple[str, str]:
     old, separator, new = text.partition(":=")
     if not (separator and old and new):
-        raise argparse.ArgumentTypeError(f"{text!r} is not FROM:=TO")
+        raise InputError(f"{text!r} is not FROM:=TO")
     return _absolute(old), new
 
 
@@ -124,18 +115,9 @@ class Request(RosOption, OverwriteOption):
     topics: Sequence[str] = option(
         type=_absolute, nargs="+", default=[], metavar="TOPIC", help="play these topics only"
     )
-    regex: str = option("-e", type=_pattern, default="", help="play topics that match this whole")
     exclude: Sequence[str] = option(
         "--exclude", "--exclude-topics", type=_absolute, nargs="+", default=[], metavar="TOPIC",
         help="play all but these topics",
-    )  # fmt: skip
-    exclude_regex: str = option(
-        "-x", type=_pattern, default="", metavar="REGEX",
-        help="play all but topics that match this whole",
-    )  # fmt: skip
-    qos_profile_overrides_path: Path | None = option(
-        type=Path, metavar="FILE",
-        help="YAML of QoS by recorded topic; others are published as recorded, but reliably",
     )  # fmt: skip
     remap: Sequence[tuple[str, str]] = option(
         "-m", nargs="+", action="extend", default=[], type=_remapping,
@@ -159,11 +141,10 @@ class Request(RosOption, OverwriteOption):
     )  # fmt: skip
     target: Box | None = option(
         type=parse_box, metavar="X,Y,W,H",
-        exclusive="target",
         help="box to start on in px, top-left corner and size; otherwise the first true box",
     )  # fmt: skip
     set_target: bool = option(
-        "--no-target", action="store_false", exclusive="target",
+        "--no-target", action="store_false",
         help="neither set the nodes' targets nor reset them",
     )  # fmt: skip
     timeout: float = option(
@@ -184,16 +165,18 @@ def run(request: Request) -> int:
     UsageError
         If options contradict each other, or there is no target to start on.
     """
+    if request.target is not None and not request.set_target:
+        raise UsageError("--target is not allowed with --no-target; leave one out")
     if request.loop and request.output:
         raise UsageError("-o cannot be combined with --loop, which never ends")
-    from vehicle_pf_tracker.ros.replay.replaying import NoTargetError, noted_interrupts, replay
+    from vehicle_pf_tracker.ros.replay.player import NoTargetError
+    from vehicle_pf_tracker.ros.replay.replaying import noted_interrupts, replay
 
     recording = Recording(request.recording, request.topic)
     told = recording.notices
     tell_notices(told)
     outputs = [Products(request.output, ANSWERS)] if request.output else []
-    inputs = (request.recording, request.qos_profile_overrides_path)
-    with claimed(outputs, inputs, overwrite=request.overwrite), noted_interrupts():
+    with claimed(outputs, (request.recording,), overwrite=request.overwrite), noted_interrupts():
         if request.output:
             make_folder(request.output)
         try:
@@ -211,13 +194,11 @@ def run(request: Request) -> int:
 
 def options_of(request: Request) -> ReplayOptions:
     """Return the options of the player, most of which are fields of the request."""
-    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, read_qos_overrides
+    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
     names = {one.name for one in fields(ReplayOptions)} & {one.name for one in fields(request)}
     shared = {name: getattr(request, name) for name in names}
-    qos_file = request.qos_profile_overrides_path
-    qos = read_qos_overrides(qos_file) if qos_file else {}
-    return ReplayOptions(**{**shared, "qos": qos, "remap": dict(request.remap)})
+    return ReplayOptions(**{**shared, "remap": dict(request.remap)})
 
 
 def write_answers(folder: Path, nodes: Sequence[NodeReport]) -> list[Path]:

@@ -88,7 +88,7 @@ def run(request: Request) -> int:
 def write(folder: Path, request: ReportParts) -> Report:
     """Write the report of `folder` with the parts that are asked for."""
     from vehicle_pf_tracker.evaluation.report import write_report
-    from vehicle_pf_tracker.evaluation.report.aggregates import version_notes
+    from vehicle_pf_tracker.evaluation.report.scored_runs import version_notes
 
     with stages("report") as on_stage:
         report = write_report(

@@ -17,14 +17,16 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import inspect
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any, TypeVar
 
 from vehicle_pf_tracker.core.clock import MAX_DIFF
+from vehicle_pf_tracker.core.errors import InputError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,24 +47,22 @@ class VerbRequest:
 RequestT = TypeVar("RequestT", bound=VerbRequest)
 
 
-def option(*flags: str, exclusive: str = "", **settings: Any) -> Any:
+def option(*flags: str, **settings: Any) -> Any:
     """Declare the option that a field is read from.
 
     Parameters
     ----------
     flags : str
         Its words; to a short one alone, as to none, comes ``--`` with the field's name.
-    exclusive : str
-        Name that options share of which only one may be given.
     settings
-        Those of `argparse.ArgumentParser.add_argument`.
+        Those of `argparse.ArgumentParser.add_argument`; `type` may raise an `InputError`.
     """
-    return field(metadata={"flags": flags, "exclusive": exclusive, "settings": settings})
+    return field(metadata={"flags": flags, "settings": settings})
 
 
-def switch(*flags: str, exclusive: str = "", help: str) -> Any:  # noqa: A002 - as in argparse
+def switch(*flags: str, help: str) -> Any:  # noqa: A002 - as in argparse
     """Declare the option without a value that makes a field true."""
-    return option(*flags, exclusive=exclusive, action="store_true", help=help)
+    return option(*flags, action="store_true", help=help)
 
 
 def positional(**settings: Any) -> Any:
@@ -73,20 +73,30 @@ def positional(**settings: Any) -> Any:
 def add_options(parser: argparse.ArgumentParser, kind: type[VerbRequest]) -> None:
     """Add the options that the fields of a request are read from."""
     declared = {one.name: one.metadata for one in fields(kind) if one.metadata}
-    places: dict[str, Any] = {}
     for base in reversed(kind.__mro__):
         heading = vars(base).get("GROUP")
         place: Any = parser.add_argument_group(heading) if heading else parser
         for name in filter(declared.__contains__, inspect.get_annotations(base)):
-            settings = declared[name]["settings"]
-            if "flags" not in declared[name]:
+            settings = dict(declared[name]["settings"])
+            if "type" in settings:
+                settings["type"] = _telling_why(settings["type"])
+            if "flags" in declared[name]:
+                place.add_argument(*_words(name, declared[name]["flags"]), dest=name, **settings)
+            else:
                 place.add_argument(name, **settings)
-                continue
-            exclusive = declared[name]["exclusive"]
-            if exclusive and exclusive not in places:
-                places[exclusive] = place.add_mutually_exclusive_group()
-            words = _words(name, declared[name]["flags"])
-            places.get(exclusive, place).add_argument(*words, dest=name, **settings)
+
+
+def _telling_why(read: Callable[[str], Any]) -> Callable[[str], Any]:
+    """Let argparse print the sentence of an `InputError`."""
+
+    @functools.wraps(read)
+    def read_or_tell(text: str) -> Any:
+        try:
+            return read(text)
+        except InputError as error:
+            raise argparse.ArgumentTypeError(str(error)) from None
+
+    return read_or_tell
 
 
 def _words(name: str, flags: Sequence[str]) -> Sequence[str]:
@@ -153,7 +163,7 @@ def natural(text: str) -> int:
 
 def _at_least(least: int, text: str) -> int:
     if not text.isascii() or not text.isdigit() or int(text) < least:
-        raise argparse.ArgumentTypeError(f"{text!r} is not an integer >= {least}")
+        raise InputError(f"{text!r} is not an integer >= {least}")
     return int(text)
 
 
@@ -161,7 +171,7 @@ def positive_number(text: str) -> float:
     """Read a finite number above 0."""
     value = number(text)
     if value <= 0:
-        raise argparse.ArgumentTypeError(f"{text} is not more than 0")
+        raise InputError(f"{text} is not more than 0")
     return value
 
 
@@ -172,7 +182,7 @@ def number(text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+        raise InputError(f"{text!r} is not a number")
     return value
 
 

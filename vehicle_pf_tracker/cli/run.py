@@ -24,14 +24,12 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, show, tell_notices
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, option, switch
+from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.cli.tracking_options import (
     TrackingRequest,
     by_name,
     chosen,
-    cut_short,
-    numbered_frames,
-    peeked,
 )
 from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -89,10 +87,9 @@ def run(request: Request) -> int:
 
 
 def _track(request: Request, variant: Variant, source: Source, folder: RunFolder) -> int:
-    window = request.source if request.show else ""
-    pictures = Pictures(request.video, particles=request.particles, window=window)
+    pictures = Pictures(request.video, particles=request.particles)
     with stopping() as stop, counting("tracked") as progress:
-        (first, found), frames = peeked(numbered_frames(source, request, stop, progress))
+        (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
         trackers = _trackers(request, variant, source, first, found.stamp_ns)
         recording: AbstractContextManager[OnFrame | None] = nullcontext()
         if request.recording is not None:

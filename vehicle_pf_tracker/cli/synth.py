@@ -141,7 +141,7 @@ def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
         counting("rendered") as progress,
     ):
         for number, rendered in enumerate(scene.frames(), start=1):
-            write(rendered.frame)
+            write(rendered.frame, (number - 1) / scene.frame_rate)
             box = rendered.truth.box
             boxes.append(box)
             cells = (f"{value:.3f}" for value in (box.x, box.y, box.width, box.height))

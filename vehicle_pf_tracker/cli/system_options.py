@@ -187,8 +187,8 @@ class EvaluationRequest(WorkersOption):
     without_defaults: bool = switch(help="run the parameter sets alone, where a variant has any")
     baselines_python: Path | None = option(
         type=Path, metavar="FILE",
-        help="interpreter of the baselines (default: .venv-baselines/bin/python, built by "
-        "`make baselines`)",
+        help="interpreter of the baselines (default: .venv-baselines/bin/python, else the one "
+        "in your cache; without either, evaluate prints the command that builds it)",
     )  # fmt: skip
     baseline_model: Sequence[str] = option(
         action="append", default=[], metavar="BASELINE:NAME=FILE",

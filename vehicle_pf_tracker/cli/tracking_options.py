@@ -12,36 +12,30 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Options of the verbs that track: parameters, targets, and the part of the source to track in."""
+"""Options of the verbs that track: parameters, targets, and what they are to show."""
 
 from __future__ import annotations
 
-import argparse
-import itertools
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import yaml
 
-from vehicle_pf_tracker.cli.console import OnFrames
 from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
     SourceOptions,
     VerbRequest,
     option,
-    switch,
 )
-from vehicle_pf_tracker.cli.stopping import Stop
+from vehicle_pf_tracker.cli.source_part import Moment
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs, unknown_name
-from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.recordings.source import Moment, Source, numbered_part
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
 
 if TYPE_CHECKING:
@@ -74,9 +68,9 @@ def parse_box(text: str) -> Box:
     try:
         x, y, width, height = map(float, text.split(","))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not x,y,w,h in px") from None
+        raise InputError(f"{text!r} is not x,y,w,h in px") from None
     if not all(map(math.isfinite, (x, y, width, height))):
-        raise argparse.ArgumentTypeError(f"{text!r} has a number that is not finite")
+        raise InputError(f"{text!r} has a number that is not finite")
     return Box(x, y, width, height)
 
 
@@ -155,12 +149,12 @@ def parse_target(text: str) -> TargetOption:
     """Read ``[NAME][@FRAME:]x,y,w,h`` of a command line."""
     found = _WORDS.fullmatch(text)
     if found is None:
-        raise argparse.ArgumentTypeError(
+        raise InputError(
             f"{text!r} is not [NAME][@FRAME:]x,y,w,h, as 310,202,40,30 or van@130:310,202,40,30"
         )
     frame = int(found["frame"]) if found["frame"] else None
     if frame == 0:
-        raise argparse.ArgumentTypeError(f"{text!r} has frame 0; frames are counted from 1")
+        raise InputError(f"{text!r} has frame 0; frames are counted from 1")
     return TargetOption(parse_box(found["box"]), found["name"] or "", frame)
 
 
@@ -234,18 +228,7 @@ def _entry(entry: dict[str, object]) -> TargetOption:
     if not isinstance(numbers, list):
         raise TypeError(numbers)
     frame, name = entry.get("frame", 1), str(entry.get("name", ""))
-    text = f"{name}@{frame}:{','.join(map(str, numbers))}"
-    try:
-        return parse_target(text)
-    except argparse.ArgumentTypeError as error:
-        raise InputError(str(error)) from None
-
-
-def _moment(text: str) -> Moment:
-    try:
-        return Moment.parse(text)
-    except InputError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
+    return parse_target(f"{name}@{frame}:{','.join(map(str, numbers))}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -253,10 +236,10 @@ class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
     """Request to track in a source, or in a part of it."""
 
     start: Moment | None = option(
-        type=_moment, metavar="AT",
+        type=Moment.parse, metavar="AT",
         help="first frame: its number, from 1, or its time in seconds, as 4.3s",
     )  # fmt: skip
-    end: Moment | None = option(type=_moment, metavar="AT", help="last frame, likewise")
+    end: Moment | None = option(type=Moment.parse, metavar="AT", help="last frame, likewise")
     target: Sequence[TargetOption] = option(
         type=parse_target, action="append", default=[], metavar="[NAME][@FRAME:]X,Y,W,H",
         help="vehicle to follow: top-left corner and size of its box in px, in the first frame or "
@@ -267,7 +250,6 @@ class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
     video: Path | None = option(
         type=Path, metavar="FILE", help="write the frames with all that is followed to FILE, an mp4"
     )
-    show: bool = switch(help="show them in a window meanwhile; q ends the run")
 
     @property
     def inputs(self) -> tuple[str | Path | None, ...]:
@@ -277,40 +259,3 @@ class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
     def given_targets(self) -> list[TargetOption]:
         """Collect the targets of the command line and of the file."""
         return [*self.target, *(read_targets(self.targets) if self.targets else [])]
-
-
-Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
-
-
-def numbered_frames(
-    source: Source, request: TrackingRequest, stop: Stop, progress: OnFrames
-) -> Numbered:
-    """Yield the frames from ``--start`` to ``--end`` with their numbers, until a stop comes."""
-    part = numbered_part(stop.until(source.frames()), request.start, request.end)
-    for number, found in part:
-        progress(number, source.frame_count)
-        yield number, found
-
-
-def peeked(frames: Numbered) -> tuple[tuple[int, StampedFrame], Numbered]:
-    """Return the first frame, and all frames.
-
-    Raises
-    ------
-    InputError
-        If there is none.
-    """
-    first = next(frames, None)
-    if first is None:
-        raise InputError("the source ended before its first image")
-    return first, itertools.chain([first], frames)
-
-
-def cut_short(stop: Stop, source: Source, done: int) -> list[str]:
-    """Say that a signal ended the run after `done` frames; empty if it is whole.
-
-    A live source ends by a signal, and so its run is whole then.
-    """
-    if not stop.came or source.frame_count is None:
-        return []
-    return [f"a signal ended the run after {done} of {source.frame_count} frames"]

@@ -19,6 +19,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import shlex
 import subprocess
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -40,7 +41,10 @@ VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 """Environment variable that names the interpreter."""
 
 DEFAULT = Path(".venv-baselines/bin/python")
-"""Interpreter that `make baselines` builds, below the working directory."""
+"""Interpreter that `make baselines` builds in a clone, below the working directory."""
+
+LOCK = Path(__file__).with_name("baselines.txt")
+"""What is installed for them, with hashes."""
 
 WORKER = Path(__file__).with_name("baseline_worker.py")
 Self = TypeVar("Self", bound="Worker")
@@ -52,20 +56,35 @@ def baseline_python(chosen: Path | None = None) -> Path:
     Parameters
     ----------
     chosen : Path or None
-        The user's choice; None takes what `VARIABLE` names, else `DEFAULT`.
+        The user's choice; None takes what `VARIABLE` names, else `DEFAULT`, else the one in the
+        user's cache, which the command in the error builds.
 
     Raises
     ------
     InputError
         If there is no such file.
     """
-    python = chosen or Path(os.environ.get(VARIABLE) or DEFAULT)
-    if not python.is_file():
-        raise InputError(
-            f"there is no interpreter {python} to run the baselines with; build {DEFAULT} with "
-            f"`make baselines`, or name another one in the environment variable {VARIABLE}"
-        )
-    return python.absolute()  # not resolved: a link is what makes it the environment's
+    named = chosen or os.environ.get(VARIABLE)
+    cached = _cache() / "bin" / "python"
+    for python in [Path(named)] if named else [DEFAULT, cached]:
+        if python.is_file():
+            return python.absolute()  # not resolved: a link is what makes it the environment's
+    raise InputError(
+        f"there is no interpreter {named or cached} to run the baselines with; build it once with "
+        f"`{install_command()}`, or name one in the environment variable {VARIABLE}"
+    )
+
+
+def install_command() -> str:
+    """Return the one command that builds the environment of the baselines in the user's cache."""
+    folder, lock = (shlex.quote(str(path)) for path in (_cache(), LOCK))
+    pip = f"{folder}/bin/python -m pip install --no-deps --requirement {lock}"
+    return f"python3 -m venv {folder} && {pip}"
+
+
+def _cache() -> Path:
+    root = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(root, "vehicle_pf_tracker", "baselines")
 
 
 class Worker:

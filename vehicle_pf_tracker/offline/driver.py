@@ -22,7 +22,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
@@ -43,6 +43,7 @@ from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS, Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TrackerError
 
+ItemT = TypeVar("ItemT")
 Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
 """Frames with their numbers in the source."""
 _DEFAULT_RATE = 30.0
@@ -114,27 +115,38 @@ class OfflineTracker:
         InputError
             If the target is invalid in the first frame, or no frame belongs to the first truth.
         """
-        stamped = itertools.chain(frames, [None])
-        for number, (current, following) in enumerate(itertools.pairwise(stamped), start=first):
-            assert current is not None
-            self._on_road.append({})
-            truth = self._first_truth
-            if truth is not None and self._is_start(truth, current[0], following):
-                self._give(truth.box, is_first=True)
-                self._first_truth = None
-            if number in self._targets:
-                self._give(self._targets[number], is_first=number == first)
-                self._doubt(self._targets[number], current[1])
-            yield self._row(number, *current)
+        stamped = (StampedFrame(*one) for one in frames)
+        for number, (found, following) in enumerate(_with_next(stamped), start=first):
+            yield self.row(number, found, following, is_first=number == first)
+        self.check_started()
+
+    def row(
+        self, number: int, found: StampedFrame, following: StampedFrame | None, *, is_first: bool
+    ) -> EstimateRow:
+        """Take the next frame, with its number and the one after it; see `rows`."""
+        stamp_ns, frame = found.stamp_ns, found.frame
+        next_ns = None if following is None else following.stamp_ns
+        self._on_road.append({})
+        truth = self._first_truth
+        if truth is not None and self._is_start(truth, stamp_ns, next_ns):
+            self._configure_target(truth.box)
+            self._first_truth = None
+        if (box := self._targets.get(number)) is not None:
+            if is_first:
+                self._configure_target(box)
+            else:
+                self.session.set_target(box)
+            reasons = [] if frame is None else doubts(frame, box)
+            self._notices += [f"the target {box} is doubtful: {why}" for why in reasons]
+        return self._estimated(number, stamp_ns, frame)
+
+    def check_started(self) -> None:
+        """Raise an `InputError` if no frame belonged to the first truth."""
         if self._first_truth is not None:
             raise InputError(
                 f"no image is within {self._limit_ns / 1e9:g} s of the first truth, "
                 f"at {self._first_truth.stamp_ns / 1e9:.3f} s; give a target with --target x,y,w,h"
             )
-
-    def _doubt(self, box: Box, frame: Frame | None) -> None:
-        found = [] if frame is None else doubts(frame, box)
-        self._notices += [f"the target {box} is doubtful: {why}" for why in found]
 
     @property
     def road_columns(self) -> dict[str, list[float | None]]:
@@ -152,23 +164,18 @@ class OfflineTracker:
         )
         return [*self._notices, *off_road]
 
-    def _is_start(
-        self, truth: Truth, stamp_ns: int, following: tuple[int, Frame | None] | None
-    ) -> bool:
+    def _is_start(self, truth: Truth, stamp_ns: int, next_ns: int | None) -> bool:
         """Return whether the image at `stamp_ns` is the one nearest to the first truth."""
         distance = abs(stamp_ns - truth.stamp_ns)
-        is_nearest = following is None or abs(following[0] - truth.stamp_ns) >= distance
+        is_nearest = next_ns is None or abs(next_ns - truth.stamp_ns) >= distance
         return distance <= self._limit_ns and is_nearest
 
-    def _give(self, box: Box, *, is_first: bool) -> None:
-        """Give the session a target; the first is configured: a loop starts on it again."""
-        if is_first:
-            settings = with_target(self.session.settings, box)
-            self.session.reconfigure(self.session.tracker.parameters, settings)
-        else:
-            self.session.set_target(box)
+    def _configure_target(self, box: Box) -> None:
+        """Start on `box`, and again where the recording loops."""
+        settings = with_target(self.session.settings, box)
+        self.session.reconfigure(self.session.tracker.parameters, settings)
 
-    def _row(self, number: int, stamp_ns: int, frame: Frame | None) -> EstimateRow:
+    def _estimated(self, number: int, stamp_ns: int, frame: Frame | None) -> EstimateRow:
         self.estimate = None
         if frame is None:
             return EstimateRow.without(number, stamp_ns, REJECTED)
@@ -264,31 +271,38 @@ def follow(
     if not ahead:
         return rows
     first, start_ns = ahead[0][0], ahead[0][1].stamp_ns
-    shown, *streams = itertools.tee(itertools.chain(ahead, frames), 1 + len(trackers))
-    runs = [
-        tracker.rows(((found.stamp_ns, found.frame) for _, found in stream), first)
-        for tracker, stream in zip(trackers.values(), streams, strict=True)
-    ]
     annotators = [
         Annotator(name if len(trackers) > 1 else "", particles=pictures.particles)
         for name in trackers
     ]
     with pictures.drawing(frame_rate_of(ahead)) as take:
-        for (_, found), *of_frame in zip(shown, *runs, strict=True):
-            for name, row in zip(trackers, of_frame, strict=True):
+        all_frames = (found for _, found in itertools.chain(ahead, frames))
+        for number, (found, following) in enumerate(_with_next(all_frames), start=first):
+            of_frame = {
+                name: tracker.row(number, found, following, is_first=number == first)
+                for name, tracker in trackers.items()
+            }
+            states = []
+            for annotator, (name, row) in zip(annotators, of_frame.items(), strict=True):
                 rows[name].append(row)
+                annotator.follow(trackers[name].estimate)
+                states.append((annotator, row, trackers[name].estimate))
             if on_frame is not None:
-                on_frame(found, dict(zip(trackers, of_frame, strict=True)))
-            estimates = [tracker.estimate for tracker in trackers.values()]
-            for annotator, estimate in zip(annotators, estimates, strict=True):
-                annotator.follow(estimate)
-            if found.frame is None:
-                continue
-            states = list(zip(annotators, of_frame, estimates, strict=True))
-            draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
-            if not take(tuple(row.mode for row in of_frame), draw, found.frame):
-                break
+                on_frame(found, of_frame)
+            if found.frame is not None:
+                draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
+                modes = tuple(row.mode for row in of_frame.values())
+                take(modes, draw, found.frame, found.stamp_ns)
+    for tracker in trackers.values():
+        tracker.check_started()
     return rows
+
+
+def _with_next(items: Iterable[ItemT]) -> Iterator[tuple[ItemT, ItemT | None]]:
+    """Yield each item with the one after it; None after the last."""
+    for current, following in itertools.pairwise(itertools.chain(items, [None])):
+        assert current is not None
+        yield current, following
 
 
 def frame_rate_of(frames: list[tuple[int, StampedFrame]]) -> float:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Pictures of a run: a video that browsers play, a window, and a sheet of its key frames."""
+"""Pictures of a run: a video that browsers play, and a sheet of its key frames."""
 
 from __future__ import annotations
 
@@ -33,18 +33,24 @@ from vehicle_pf_tracker.offline.output_files import make_folder, replacing, writ
 from vehicle_pf_tracker.recordings.video import quiet_opencv
 
 Draw: TypeAlias = Callable[[], Frame]
+Take: TypeAlias = Callable[[tuple[str, ...], Draw, Frame, int], None]
+"""Takes the modes, the drawing, the image and the stamp in ns of a frame."""
 
 SUFFIX = ".mp4"
 NO_ENCODER = (
     "this video is MPEG-4 Part 2, which browsers do not play; for H.264 install the extra [video], "
     "pip install 'vehicle_pf_tracker[video]'"
 )
+_TICKS = 90_000
+"""Ticks of an H.264 video's clock per second, those of MPEG: whole for every usual frame rate."""
+_LONGEST_GAP = 10.0
+"""Longest time that a frame is shown, s: stamps that leap do not make a video of hours."""
 _QUALITY = {"preset": "veryfast", "crf": "23"}
 """x264's own middle quality, with the preset that costs 4 ms for a frame of 640x360 px."""
 
 
-Write: TypeAlias = Callable[[Frame], None]
-"""Appends an RGB frame to a video."""
+Write: TypeAlias = Callable[[Frame, float], None]
+"""Appends an RGB frame to a video, which is shown from a time after the beginning on, s."""
 
 
 @contextmanager
@@ -60,7 +66,7 @@ def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Wri
     size : (int, int)
         Width and height of the frames in px; odd ones lose their last row or column.
     rate : float
-        Frames per second.
+        Usual number of frames per second.
 
     Raises
     ------
@@ -73,7 +79,7 @@ def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Wri
     even = size[0] // 2 * 2, size[1] // 2 * 2
     encoded = _h264 if has_encoder() else _mpeg4
     with replacing(path) as partial, encoded(partial, even, rate) as write:
-        yield lambda frame: write(np.ascontiguousarray(frame[: even[1], : even[0]]))
+        yield lambda frame, at: write(np.ascontiguousarray(frame[: even[1], : even[0]]), at)
 
 
 def has_encoder() -> bool:
@@ -88,10 +94,11 @@ def _mpeg4(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
         raise InputError("this OpenCV cannot write mp4v videos")
     count = 0
 
-    def write(frame: Frame) -> None:
+    def write(frame: Frame, at: float) -> None:
         nonlocal count
-        count += 1
-        writer.write(cv2.cvtColor(frame, cv2.COLOR_RGB2BGR))
+        for _ in range(max(round(at * rate) + 1 - count, 1)):  # over a gap it stands still
+            count += 1
+            writer.write(cv2.cvtColor(frame, cv2.COLOR_RGB2BGR))
 
     with quiet_opencv():
         try:
@@ -110,12 +117,17 @@ def _h264(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
     container: Any = av.open(str(path), "w")
     exact = Fraction(rate).limit_denominator(1001)  # 30000/1001 is the oddest in use
     stream = container.add_stream("libx264", rate=exact)
+    stream.codec_context.time_base = Fraction(1, _TICKS)
     stream.width, stream.height = size
     stream.pix_fmt, stream.options = "yuv420p", _QUALITY
     try:
-        yield lambda frame: container.mux(
-            stream.encode(av.VideoFrame.from_ndarray(frame, format="rgb24"))
-        )
+
+        def write(frame: Frame, at: float) -> None:
+            picture = av.VideoFrame.from_ndarray(frame, format="rgb24")
+            picture.pts, picture.time_base = round(at * _TICKS), Fraction(1, _TICKS)
+            container.mux(stream.encode(picture))
+
+        yield write
         container.mux(stream.encode())
     finally:
         container.close()
@@ -126,39 +138,6 @@ def has_display() -> bool:
     return os.name != "posix" or bool(
         os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
     )
-
-
-class PictureWindow:
-    """Shows one frame after the other.
-
-    Parameters
-    ----------
-    title : str
-        Title of the window.
-
-    Raises
-    ------
-    InputError
-        If there is no display, or this OpenCV has no windows.
-    """
-
-    def __init__(self, title: str) -> None:
-        self._title = title
-        try:
-            # Without a display, Qt would end the program instead of raising.
-            if not has_display():
-                raise InputError("--show needs a display, and there is none; use --video FILE")
-            cv2.namedWindow(title, cv2.WINDOW_NORMAL)
-        except cv2.error:
-            raise InputError(
-                "--show needs an OpenCV with windows (opencv-python, not -headless); "
-                "use --video FILE"
-            ) from None
-
-    def show(self, picture: Frame) -> bool:
-        """Show a frame; False when the user presses q or Escape."""
-        cv2.imshow(self._title, cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
-        return cv2.waitKey(1) & 0xFF not in (ord("q"), 27)
 
 
 THUMB_WIDTH = 400
@@ -227,7 +206,7 @@ def _tiled(thumbs: list[Frame]) -> Frame:
 
 
 class Pictures:
-    """Annotated frames: a video, a window, and the key frames.
+    """Annotated frames: a video, and the key frames.
 
     Parameters
     ----------
@@ -235,8 +214,6 @@ class Pictures:
         Video to write.
     particles : bool
         Draw the particles.
-    window : str
-        Title of a window that shows each annotated frame; empty for none. Its user can end the run.
 
     Attributes
     ----------
@@ -244,17 +221,10 @@ class Pictures:
         The key frames.
     """
 
-    def __init__(
-        self,
-        video: Path | None = None,
-        *,
-        particles: bool = False,
-        window: str = "",
-    ) -> None:
+    def __init__(self, video: Path | None = None, *, particles: bool = False) -> None:
         self.video = video
         self.particles = particles
         self.sheet = ContactSheet()
-        self._window = PictureWindow(window) if window else None
 
     @property
     def notices(self) -> list[str]:
@@ -262,19 +232,24 @@ class Pictures:
         return [NO_ENCODER] if self.video and not has_encoder() else []
 
     @contextmanager
-    def drawing(self, rate: float) -> Iterator[Callable[[tuple[str, ...], Draw, Frame], bool]]:
-        """Give a function that takes modes, drawing and image of each frame; False ends the run."""
+    def drawing(self, rate: float) -> Iterator[Take]:
+        """Give a function that takes each frame; `rate` is the usual number of them per second."""
         with ExitStack() as stack:
             write: Write | None = None
+            at, last_ns = 0.0, 0
 
-            def take(modes: tuple[str, ...], draw: Draw, frame: Frame) -> bool:
-                nonlocal write
+            def take(modes: tuple[str, ...], draw: Draw, frame: Frame, stamp_ns: int) -> None:
+                nonlocal write, at, last_ns
                 self.sheet.add(modes, draw)
-                if self.video is not None and write is None:
+                if self.video is None:
+                    return
+                if write is None:
                     writing = video_writer(self.video, frame_size(frame), rate)
                     write = stack.enter_context(writing)
-                if write is not None:
-                    write(draw())
-                return self._window is None or self._window.show(draw())
+                else:
+                    gap = (stamp_ns - last_ns) / 1e9
+                    at += gap if 0 < gap <= _LONGEST_GAP else 1 / rate
+                last_ns = stamp_ns
+                write(draw(), at)
 
             yield take

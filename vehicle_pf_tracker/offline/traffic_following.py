@@ -131,8 +131,7 @@ class TrafficRun:
                 self.paths.add(found.frame, estimates)
                 words = _words(number, found.stamp_ns - start_ns, estimates)
                 draw = partial(annotated, found.frame, words, estimates, self.counter)
-                if not take((), draw, found.frame):
-                    break
+                take((), draw, found.frame, found.stamp_ns)
 
     def _step(self, number: int, found: StampedFrame) -> tuple[TrackEstimate, ...] | None:
         """Take a frame; None where it is rejected, so that nothing is known of its time."""
@@ -186,7 +185,7 @@ class TrafficRun:
         crossings = self.counter.update(estimates, stamp_ns) if self.counter is not None else ()
         files.write(number, stamp_ns, estimates, crossings)
         occupancy = self.counter.occupancy if self.counter is not None else {}
-        self.summary.add(number, stamp_ns, estimates, occupancy)
+        self.summary.add(estimates, occupancy)
 
 
 def _words(number: int, elapsed_ns: int, estimates: Sequence[TrackEstimate]) -> str:

@@ -154,7 +154,7 @@ def read_yaml(path: Path, node_name: str) -> dict[str, object]:
         )
     merged: dict[str, object] = {}
     for body in chosen:
-        merged.update(_flatten(body, ""))
+        merged.update(flatten(body))
     return merged
 
 
@@ -175,12 +175,13 @@ def _matches(section: str, node_name: str) -> bool:
     return section.rsplit("/", 1)[-1] in {node_name, "*", "**"}
 
 
-def _flatten(body: Mapping[str, Any], prefix: str) -> dict[str, object]:
+def flatten(body: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
+    """Return nested parameters by dotted name."""
     flat: dict[str, object] = {}
     for key, value in body.items():
         name = f"{prefix}{key}"
         if isinstance(value, Mapping):
-            flat.update(_flatten(value, name + "."))
+            flat.update(flatten(value, name + "."))
         else:
             flat[name] = value
     return flat

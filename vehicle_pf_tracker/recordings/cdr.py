@@ -36,7 +36,6 @@ IMAGE_ANNOTATIONS = "foxglove_msgs/msg/ImageAnnotations"
 
 # rosbags before 0.11 lets what a broken message causes through as it is.
 _BROKEN = (SerdeError, struct.error, ValueError, IndexError, AssertionError)
-_HEADER_TYPES = {"std_msgs/Header", "std_msgs/msg/Header", "Header"}
 
 
 @cache
@@ -100,19 +99,6 @@ def type_hash(type_name: str) -> str:
     """Return the type's hash as ROS 2 computes it (REP 2011, ``RIHS01_...``)."""
     message_class(type_name)
     return _store().hash_rihs01(type_name)
-
-
-def starts_with_header(type_name: str, definition: str) -> bool:
-    """Return whether a message begins with a `std_msgs/Header`, by its type or its `.msg` text."""
-    known = _store().fielddefs.get(type_name)
-    if known is not None:
-        fields = known[1]
-        return bool(fields) and fields[0][1][1] == "std_msgs/msg/Header"
-    for line in definition.splitlines():
-        words = line.partition("#")[0].split()
-        if words and "=" not in line:
-            return words[0] in _HEADER_TYPES
-    return False
 
 
 def header_stamp_ns(data: memoryview) -> int | None:

@@ -58,7 +58,7 @@ class RecordedMessage:
     log_time_ns : int
         Time of recording, ns.
     stamp_ns : int or None
-        Stamp of its header in ns; None where its type has no header.
+        Stamp of its header in ns; None for types other than those of our recordings.
     data : bytes
         The message in CDR, encapsulation header included.
     """
@@ -217,7 +217,8 @@ class Recording:
         types = {info.name: info for info in self.topics}
         for index, message in self._select(topics, start_offset, duration):
             info = types[index.channels[message.channel_id].topic]
-            stamp = header_stamp_ns(message.data) if info.has_header else None
+            is_stamped = info.is_cdr and info.type_name in names.STAMPED_TYPES
+            stamp = header_stamp_ns(message.data) if is_stamped else None
             yield RecordedMessage(
                 info.name, info.type_name, message.log_time_ns, stamp, bytes(message.data)
             )

@@ -12,13 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Images, or a part of them, from any source: recordings, videos, folders, cameras, streams."""
+"""Images from any source: recordings, videos, folders, cameras, streams."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
@@ -104,77 +102,3 @@ def frame_at(
                 raise InputError(f"frame {number} cannot be read")
             return found.frame
     raise InputError(f"there is no frame {number}; the source has {count}")
-
-
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """A point in a source: the number of a frame, or a time after the first one.
-
-    Attributes
-    ----------
-    frame : int or None
-        Number of the frame, from 1.
-    seconds : float or None
-        Time in s, by the stamps; given where `frame` is None.
-    """
-
-    frame: int | None = None
-    seconds: float | None = None
-
-    @classmethod
-    def parse(cls, text: str) -> Moment:
-        """Read ``130`` as a frame, and ``4.3s`` as a time.
-
-        Raises
-        ------
-        InputError
-            If it is neither.
-        """
-        if text.isdecimal() and 1 <= len(text) <= 9 and int(text) >= 1:
-            return cls(frame=int(text))
-        try:
-            seconds = float(text.removesuffix("s")) if text.endswith("s") else math.nan
-        except ValueError:
-            seconds = math.nan
-        if not (math.isfinite(seconds) and seconds >= 0):
-            raise InputError(
-                f"{text!r} is neither a frame (an integer >= 1) nor a time in seconds, as 4.3s"
-            )
-        return cls(seconds=seconds)
-
-    def after(self, number: int, elapsed: float) -> float:
-        """Return by how much the moment is later than frame `number`, `elapsed` s from the first.
-
-        The result is negative where it is earlier, and its unit is the moment's own.
-        """
-        if self.frame is not None:
-            return self.frame - number
-        assert self.seconds is not None
-        return round(self.seconds - elapsed, 9)  # a stamp's rounding
-
-
-def numbered_part(
-    frames: Iterable[StampedFrame], start: Moment | None = None, end: Moment | None = None
-) -> Iterator[tuple[int, StampedFrame]]:
-    """Yield frames with their numbers in the source, from `start` to `end`, both included.
-
-    Raises
-    ------
-    InputError
-        If no frame is in that part.
-    """
-    first_ns: int | None = None
-    number = yielded = 0
-    for number, found in enumerate(frames, start=1):
-        first_ns = found.stamp_ns if first_ns is None else first_ns
-        elapsed = (found.stamp_ns - first_ns) * 1e-9
-        if start is not None and start.after(number, elapsed) > 0:
-            continue
-        if end is not None and end.after(number, elapsed) < 0:
-            break
-        yielded += 1
-        yield number, found
-    if not yielded and (start is not None or end is not None):
-        raise InputError(
-            f"no frame lies between --start and --end; {number} frames were read from the source"
-        )

@@ -24,7 +24,6 @@ from mcap.records import Channel
 from mcap.well_known import MessageEncoding
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.cdr import starts_with_header
 from vehicle_pf_tracker.recordings.mcap_blocks import Block, DamageError
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex
 from vehicle_pf_tracker.recordings.topics import IMAGE_TYPES
@@ -34,15 +33,14 @@ from vehicle_pf_tracker.recordings.topics import IMAGE_TYPES
 class TopicInfo:
     """A topic: its ROS type (empty where unknown), its encoding and its number of messages.
 
-    `is_cdr` is true where the messages are serialized as in ROS 2, `has_header` where they begin
-    with a header. `offered_qos` is the recorded QoS as YAML text, empty where unknown.
+    `is_cdr` is true where the messages are serialized as in ROS 2. `offered_qos` is the recorded
+    QoS as YAML text, empty where unknown.
     """
 
     name: str
     type_name: str
     message_count: int
     is_cdr: bool
-    has_header: bool
     offered_qos: str = ""
 
     @property
@@ -108,11 +106,7 @@ def _describe(index: McapIndex, channel: Channel) -> TopicInfo:
     schema = index.schemas.get(channel.schema_id)
     is_cdr = channel.message_encoding == MessageEncoding.CDR
     qos = channel.metadata.get("offered_qos_profiles", "")
-    if schema is None:
-        return TopicInfo(channel.topic, "", 0, is_cdr, has_header=False, offered_qos=qos)
-    definition = schema.data.decode(errors="replace")
-    has_header = is_cdr and starts_with_header(schema.name, definition)
-    return TopicInfo(channel.topic, schema.name, 0, is_cdr, has_header, qos)
+    return TopicInfo(channel.topic, "" if schema is None else schema.name, 0, is_cdr, qos)
 
 
 def _listed(topics: Sequence[TopicInfo]) -> str:

@@ -30,6 +30,8 @@ POLYGON_STAMPED = "geometry_msgs/msg/PolygonStamped"
 DIAGNOSTIC_ARRAY = "diagnostic_msgs/msg/DiagnosticArray"
 
 IMAGE_TYPES = (IMAGE, COMPRESSED_IMAGE)
+STAMPED_TYPES = (*IMAGE_TYPES, POINT_STAMPED, POLYGON_STAMPED, DIAGNOSTIC_ARRAY)
+"""Types that begin with a header, of those in our recordings."""
 
 CAMERA_FRAME = "camera"
 """The `frame_id` of everything in our recordings."""

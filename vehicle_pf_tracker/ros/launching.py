@@ -26,16 +26,14 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from rclpy.exceptions import InvalidTopicNameException
+from rclpy.validate_topic_name import validate_topic_name
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml, read_yaml_file
+from vehicle_pf_tracker.parameters.files import check_yaml_file, flatten, read_yaml, read_yaml_file
 from vehicle_pf_tracker.parameters.table import unknown_name
-from vehicle_pf_tracker.ros.transport import profile
 from vehicle_pf_tracker.trackers.registry import find_node
-
-_SEGMENT = 64 * 2**20
-"""Bytes of shared memory for `large_images`: ten raw images of 1080p, or two of 4K."""
 
 _KEYS = ("topic", "variant", "transport", "target", "params_file", "parameters")
 _TARGET = ("x", "y", "width", "height")
@@ -51,13 +49,6 @@ def parameter_file(given: str, variant: str, share: str) -> str:
     """
     path = Path(given) if given else Path(share, "config", f"{find_node(variant).name}.yaml")
     check_yaml_file(path, "parameter file")
-    return str(path)
-
-
-def write_profile() -> str:
-    """Write a profile of Fast DDS for large images; returns its path."""
-    path = _scratch_folder() / "large_images.xml"
-    path.write_text(profile(_SEGMENT), encoding="utf-8")
     return str(path)
 
 
@@ -133,6 +124,10 @@ def _check_entry(name: str, entry: Any) -> None:
     for key in entry:
         if key not in _KEYS:
             raise InputError(unknown_name(str(key), _KEYS))
+    try:
+        validate_topic_name(str(entry["topic"]))
+    except InvalidTopicNameException:  # ROS's own words are of a remap rule, from each respawn
+        raise InputError(f"its topic {entry['topic']!r} is not a topic name") from None
     if not name.replace("_", "a").isalnum() or name[0].isdigit():
         raise InputError("its name is no name of a namespace: letters, digits and _ are")
 
@@ -144,7 +139,10 @@ def _camera(name: str, entry: dict[str, Any], folder: Path) -> Camera:
     values: dict[str, object] = {}
     if "params_file" in entry:
         values |= read_yaml(folder / str(entry["params_file"]), f"{variant}_tracker")
-    values |= _flat(entry.get("parameters") or {})
+    given = entry.get("parameters") or {}
+    if not isinstance(given, dict):
+        raise InputError("parameters are not names with values")
+    values |= flatten(given)
     if "transport" in entry:
         values["image_transport"] = entry["transport"]
     if "target" in entry:
@@ -161,13 +159,3 @@ def _target(numbers: Any) -> dict[str, object]:
     if not isinstance(numbers, list) or len(numbers) != len(_TARGET):
         raise InputError("target is not [x, y, width, height] in px")
     return {f"target.{key}": number for key, number in zip(_TARGET, numbers, strict=True)}
-
-
-def _flat(values: Any, prefix: str = "") -> dict[str, object]:
-    if not isinstance(values, dict):
-        raise InputError("parameters are not names with values")
-    flat: dict[str, object] = {}
-    for key, value in values.items():
-        name = f"{prefix}{key}"
-        flat |= _flat(value, f"{name}.") if isinstance(value, dict) else {name: value}
-    return flat

@@ -21,8 +21,8 @@ from __future__ import annotations
 
 import array
 import math
-from collections.abc import Mapping
-from typing import Any, Protocol
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -38,9 +38,12 @@ from sensor_msgs.msg import Image, PointCloud2, PointField
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import Box, Position
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+
+if TYPE_CHECKING:  # a node imports the code of its own variant only
+    from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 
 try:
     from vision_msgs.msg import Detection2D, Detection2DArray, ObjectHypothesisWithPose
@@ -77,25 +80,6 @@ _PARTICLE_FIELDS = [
 ]
 
 
-class Located(Protocol):
-    """Estimate of a vehicle: of the only one, or of one of many."""
-
-    @property
-    def position(self) -> Position:
-        """Centre in px."""
-        ...
-
-    @property
-    def box(self) -> Box:
-        """Box in px."""
-        ...
-
-    @property
-    def velocity(self) -> tuple[float, float]:
-        """Velocity in px per nominal frame period."""
-        ...
-
-
 def stamp_ns(header: Header) -> int:
     """Stamp of a header in ns."""
     return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
@@ -117,7 +101,12 @@ def _text(value: object) -> str:
 
 
 def mode_message(
-    header: Header, name: str, hardware_id: str, mode: str, values: Mapping[str, object]
+    header: Header,
+    name: str,
+    hardware_id: str,
+    mode: str,
+    values: Mapping[str, object],
+    level: bytes | None = None,
 ) -> DiagnosticArray:
     """Make the `~/mode` of one image.
 
@@ -131,33 +120,34 @@ def mode_message(
         A `Mode`, `WAITING` or `REJECTED`.
     values : mapping
         Scalars of the estimate, or the reason of a rejection.
+    level : bytes, optional
+        At least this level.
     """
-    one = status(LEVELS[mode], name, mode, hardware_id, {"mode": mode, **values})
+    highest = max(LEVELS[mode], level or LEVELS[mode])
+    one = status(highest, name, mode, hardware_id, {"mode": mode, **values})
     return DiagnosticArray(header=header, status=[one])
 
 
-def position_message(
-    header: Header, estimate: Located, kept: PointStamped | None = None
-) -> PointStamped:
-    """Make the position, px; reuses the message `kept` if there is one."""
-    message = PointStamped() if kept is None else kept
-    message.header = header
-    message.point.x, message.point.y = map(float, estimate.position)
+def point_message(header: Header, point: Sequence[float] | Array) -> PointStamped:
+    """Make a position: in px, or in m on the road; z = 0."""
+    message = PointStamped(header=header)
+    message.point.x, message.point.y = map(float, point)
     return message
 
 
-def box_message(header: Header, estimate: Located) -> PolygonStamped:
+def box_message(header: Header, box: Box) -> PolygonStamped:
     """Make the four corners, in px, clockwise in the image from the top left."""
     message = PolygonStamped(header=header)
-    message.polygon.points = [Point32(x=float(x), y=float(y)) for x, y in estimate.box.corners]
+    message.polygon.points = [Point32(x=float(x), y=float(y)) for x, y in box.corners]
     return message
 
 
-def velocity_message(header: Header, estimate: Located, frame_period: float) -> Vector3Stamped:
-    """Make the velocity in px/s, with the nominal frame period in s."""
+def velocity_message(
+    header: Header, velocity: Sequence[float] | Array, period: float = 1.0
+) -> Vector3Stamped:
+    """Make a velocity per second of one per `period` s: in px/s, or in m/s on the road."""
     message = Vector3Stamped(header=header)
-    message.vector.x = float(estimate.velocity[0] / frame_period)
-    message.vector.y = float(estimate.velocity[1] / frame_period)
+    message.vector.x, message.vector.y = (float(value / period) for value in velocity)
     return message
 
 
@@ -178,20 +168,6 @@ def particles_message(header: Header, estimate: Estimate) -> PointCloud2:
         data=packed(points),
         is_dense=True,
     )
-
-
-def place_message(header: Header, position: Array) -> PointStamped:
-    """Make a place on the road, m; z = 0."""
-    message = PointStamped(header=header)
-    message.point.x, message.point.y = map(float, position)
-    return message
-
-
-def road_velocity_message(header: Header, velocity: Array) -> Vector3Stamped:
-    """Make a velocity on the road, m/s."""
-    message = Vector3Stamped(header=header)
-    message.vector.x, message.vector.y = map(float, velocity)
-    return message
 
 
 def pose_message(header: Header, position: Array, covariance: Array) -> PoseWithCovarianceStamped:
@@ -233,15 +209,6 @@ CLASS = "vehicle"
 """Class of a detection that goes out."""
 
 
-class Judged(Located, Protocol):
-    """Estimate with a confidence."""
-
-    @property
-    def confidence(self) -> float:
-        """Score of the class, 0 to 1."""
-        ...
-
-
 def detection_type() -> Any:
     """Return the message type; None where vision_msgs is not installed."""
     return Detection2D
@@ -252,7 +219,9 @@ def detections_type() -> Any:
     return Detection2DArray
 
 
-def detection_message(header: Header, estimate: Judged, identity: str, label: str = CLASS) -> Any:
+def detection_message(
+    header: Header, estimate: Estimate | TrackEstimate, identity: str, label: str = CLASS
+) -> Any:
     """Make the detection: box in px, confidence as score, class, and the id of the track."""
     message = Detection2D(header=header, id=identity)
     x, y = estimate.box.centre

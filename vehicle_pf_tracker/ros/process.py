@@ -20,17 +20,20 @@ import itertools
 import os
 import signal
 import sys
-import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import FrameType
+from typing import TypeVar
 
 import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import check_yaml_file
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
+from vehicle_pf_tracker.ros.transport import image_transport
 
 
 class _Interrupts:
@@ -45,30 +48,12 @@ class _Interrupts:
         signal.signal(signal.SIGINT, self)
         signal.signal(signal.SIGTERM, self)
         if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as nohup sets it
-            _turn_hangup_into_termination()
+            # Within a second: every node has a timer that lets Python's handlers run.
+            signal.signal(signal.SIGHUP, lambda *_: os.kill(os.getpid(), signal.SIGTERM))
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         if not self.left_to_ros:
             raise KeyboardInterrupt
-
-
-def _turn_hangup_into_termination() -> None:
-    """Send SIGTERM on SIGHUP, from a thread: Python's handlers wait while rclpy waits for messages.
-
-    Blocking the signal instead would leave it deadly in threads that libraries have started before.
-    """
-    reader, writer = os.pipe()
-    os.set_blocking(writer, False)
-    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
-    signal.signal(signal.SIGHUP, lambda number, frame: None)
-    threading.Thread(target=_await_hangup, args=(reader,), name="SIGHUP", daemon=True).start()
-
-
-def _await_hangup(reader: int) -> None:
-    """Read the numbers of signals until SIGHUP is one of them."""
-    while os.read(reader, 1) != bytes([signal.SIGHUP]):
-        pass
-    os.kill(os.getpid(), signal.SIGTERM)
 
 
 def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]], int]) -> int:
@@ -111,6 +96,48 @@ def answer_usage(name: str, words: Sequence[str], usage: str) -> int:
         print(f"{name}: unknown arguments: {' '.join(words)}", file=sys.stderr)
     print(usage, file=sys.stdout if is_asked else sys.stderr)
     return 0 if is_asked else 2
+
+
+NodeT = TypeVar("NodeT", bound=Node)
+
+
+def spin_node(
+    make_node: Callable[[], NodeT],
+    image_bytes: int,
+    spin: Callable[[SingleThreadedExecutor, NodeT], int],
+) -> int:
+    """Make a node, run `spin`, and destroy the node.
+
+    Parameters
+    ----------
+    make_node : callable
+        Makes the node.
+    image_bytes : int
+        Size of the images of which shared memory should have room for some.
+    spin : callable
+        Runs the node's callbacks; returns the exit status.
+
+    Returns
+    -------
+    int
+        That of `spin`; 0 where a signal took the ground from under a call.
+    """
+    executor, node = SingleThreadedExecutor(), None
+    try:
+        with image_transport(image_bytes, rclpy.get_rmw_implementation_identifier()) as notices:
+            node = make_node()
+        for notice in notices:
+            node.get_logger().warning(notice)
+        executor.add_node(node)
+        return spin(executor, node)
+    except Exception:
+        if rclpy.ok():
+            raise
+    finally:
+        if node is not None:
+            node.destroy_node()
+        executor.shutdown()
+    return 0
 
 
 def end_at_once(status: int) -> None:

@@ -69,6 +69,11 @@ _PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
+LAUNCHED_SEGMENT = 64 * 2**20
+"""Bytes of shared memory for `large_images` of the launch files, as ``config/large_images.xml`` has
+them: ten raw images of 1080p, or two of 4K."""
+
+
 def segment_size(image_bytes: int, free_bytes: int) -> int | None:
     """Size of the segment for images of `image_bytes`, or None where there is no room for one.
 

@@ -116,21 +116,24 @@ def concrete(shape: tuple[int, int], rng: np.random.Generator) -> Image:
     return _tinted((164, 161, 152), shade)
 
 
+def _standing(colour: Array, box: Box) -> Actor:
+    """Make an opaque thing that stands in `box` for ever."""
+    return Actor(Sprite(colour.clip(0, 255), np.ones(colour.shape[:2])), Still(box))
+
+
 def pillar(middle: float, width: float, height: int, rng: np.random.Generator) -> list[Actor]:
     """Make a dark concrete pillar as high as the stage, `height` px."""
     columns = max(round(width), 1)
     light = 0.34 - 0.12 * np.abs(np.linspace(-0.6, 1, columns))
     colour = concrete((height, columns), rng) * light[np.newaxis, :, np.newaxis]
-    sprite = Sprite(colour, np.ones((height, columns)))
-    return [Actor(sprite, Still(Box(middle - width / 2, 0.0, width, height)))]
+    return [_standing(colour, Box(middle - width / 2, 0.0, width, height))]
 
 
 def post(middle: float, width: float, top: float, bottom: float) -> list[Actor]:
     """Make a lamp post or a pole, lit from the right."""
     light = np.linspace(0.55, 1.05, max(round(4 * width), 4))
     colour = np.asarray(STEEL) * light[np.newaxis, :, np.newaxis]
-    box = Box(middle - width / 2, top, width, bottom - top)
-    return [Actor(Sprite(colour, np.ones(colour.shape[:2])), Still(box))]
+    return [_standing(colour, Box(middle - width / 2, top, width, bottom - top))]
 
 
 def sign(
@@ -161,8 +164,7 @@ def sign(
     colour[3:-3, 3:6] = colour[3:-3, -6:-3] = 226
     for line in range(14, rows - 18, 22):
         _lettering(colour[line : line + 11, 14 : 14 + int(columns * rng.uniform(0.4, 0.8))], rng)
-    place = Still(Box(middle - width / 2, top, width, bottom - top))
-    return [*posts, Actor(Sprite(colour, np.ones((rows, columns))), place)]
+    return [*posts, _standing(colour, Box(middle - width / 2, top, width, bottom - top))]
 
 
 def house(box: Box, walls: Colour, rng: np.random.Generator) -> list[Actor]:
@@ -179,7 +181,7 @@ def house(box: Box, walls: Colour, rng: np.random.Generator) -> list[Actor]:
             colour[
                 top + round(rows * 0.17) : top + round(rows * 0.17) + 2, left - 1 : left + 14
             ] = 205
-    return [Actor(Sprite(colour.clip(0, 255), np.ones((rows, columns))), Still(box))]
+    return [_standing(colour, box)]
 
 
 def tree(

@@ -15,6 +15,7 @@
 """The client and its worker, on MIL, the baseline that every OpenCV has."""
 
 import ast
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -36,6 +37,7 @@ from vehicle_pf_tracker.evaluation.baselines import (
     BaselineAnswer,
     baseline_python,
     baseline_rows,
+    install_command,
 )
 
 PYTHON = Path(sys.executable)
@@ -141,18 +143,28 @@ def test_an_environment_without_opencv_is_named(tmp_path):
         Baseline("mil", bare)
 
 
-def test_the_interpreter_is_the_chosen_one_else_the_variables_else_the_default(
+def test_the_interpreter_is_the_chosen_one_else_the_variables_else_the_default_else_the_caches(
     tmp_path, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv(VARIABLE, raising=False)
-    with pytest.raises(InputError, match=rf"no interpreter {DEFAULT} .*make baselines.*{VARIABLE}"):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "my cache"))
+    environment = "my cache/vehicle_pf_tracker/baselines"
+    with pytest.raises(InputError, match=rf"no interpreter .*{VARIABLE}") as caught:
         baseline_python()
-    for name in (str(DEFAULT), "named", "chosen"):
+    assert f"`{install_command()}`" in str(caught.value)
+    assert shlex.split(install_command())[3] == str(tmp_path / environment)
+    assert Path(shlex.split(install_command())[-1]).is_file()
+    monkeypatch.setenv(VARIABLE, "missing")
+    with pytest.raises(InputError, match="no interpreter missing to run"):
+        baseline_python()
+    monkeypatch.delenv(VARIABLE)
+    for name in (f"{environment}/bin/python", str(DEFAULT), "named", "chosen"):
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.symlink_to(sys.executable)
-    assert baseline_python() == tmp_path / DEFAULT  # and not what it links to
+        if name not in ("named", "chosen"):
+            assert baseline_python() == path  # and not what it links to
     monkeypatch.setenv(VARIABLE, "named")
     assert baseline_python() == tmp_path / "named"
     assert baseline_python(Path("chosen")) == tmp_path / "chosen"

@@ -140,10 +140,9 @@ def test_where_images_are_instead_is_named(
 def test_overlays_of_tracker_nodes_are_not_proposed(bench, other_bench, monkeypatch):
     silent_node(bench, monkeypatch)
     other_bench.node.create_publisher(Image, "/left/pf_tracker/overlay", 1)
-    other_bench.node.create_publisher(DiagnosticArray, "/left/pf_tracker/mode", 1)
-    other_bench.node.create_publisher(Image, "/front/overlay", 1)  # of somebody else
-    words = warning(bench, "/front/overlay")
-    assert words.endswith("images are on /front/overlay: remap image to one of them")
+    other_bench.node.create_publisher(Image, "/front/camera", 1)
+    words = warning(bench, "/front/camera")
+    assert words.endswith("images are on /front/camera: remap image to one of them")
 
 
 def test_qos_that_does_not_fit_is_named(bench, monkeypatch):

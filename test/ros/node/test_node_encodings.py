@@ -27,9 +27,8 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from sensor_msgs.msg import Image
-from tracker_rig import Rig, header, on_target, values_of
+from tracker_rig import Rig, header
 
-from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.trackers.session import Session
 
 pytestmark = pytest.mark.ros
@@ -84,38 +83,3 @@ def test_the_tracker_is_shown_what_the_camera_saw(bench, shown, padding):
         answer = rig.show(message_of(encoding, rows, big, padding))
         assert answer.status[0].message == "WAITING", encoding
         assert (shown[-1] == expected).all(), (encoding, big)
-
-
-@pytest.mark.parametrize(("width", "height"), [(1, 1), (3, 1), (1, 7), (5, 3), (161, 119)])
-@pytest.mark.parametrize("encoding", ["rgb8", "mono8", "bayer_rggb8"])
-def test_odd_sizes_are_shown(bench, shown, width, height, encoding):
-    rig = Rig(bench)
-    channels = 3 if encoding == "rgb8" else 1
-    rows = np.random.default_rng(1).integers(0, 256, (height, width * channels), np.uint8)
-    message = Image(
-        header=header(0), height=height, width=width, encoding=encoding, step=width * channels,
-        data=array.array("B", rows.tobytes()),
-    )  # fmt: skip
-    answer = rig.show(message)
-    if encoding == "bayer_rggb8" and min(width, height) < 3:
-        assert answer.status[0].message in {"WAITING", "REJECTED"}
-        return
-    assert answer.status[0].message == "WAITING"
-    assert shown[0].shape == (height, width, 3)
-
-
-@pytest.mark.parametrize("value", [0, 255, 128], ids=["black", "white", "grey"])
-@pytest.mark.parametrize("variant", ["apf", "mfpf", "ms", "adaptive", "pfcl"])
-def test_frames_of_one_value_are_survived(bench, variant, value):
-    """Neither as a reference nor later do they make numbers that are none."""
-    rig = Rig(bench, on_target(), variant=variant)
-    empty = np.full((120, 160, 3), value, np.uint8)
-    for index in range(6):
-        answer = rig.show(image_message(header(index), empty))
-        told = values_of(answer)
-        assert answer.status[0].message in {"TRACKING", "OCCLUDED", "LOST"}
-        for name in ("x", "y", "width", "height", "confidence", "n_eff"):
-            assert np.isfinite(float(told[name])), name
-        assert 0 <= float(told["confidence"]) <= 1
-        assert 0 <= float(told["x"]) <= 160
-        assert 0 <= float(told["y"]) <= 120

@@ -26,12 +26,11 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import PointStamped
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
-from tracker_rig import Rig, diagnostics_of, header, on_target, overrides, road, values_of
+from tracker_rig import Rig, diagnostics_of, header, on_target, road
 
 from vehicle_pf_tracker.ros.messages import image_message
 
@@ -135,16 +134,6 @@ def test_a_killed_node_neither_harms_others_nor_its_successor(bench, start_node)
     bench.publish_until(lambda: len(modes["apf"]) > count, camera, image)
 
 
-def test_two_nodes_of_one_process_keep_to_themselves(bench):
-    first = Rig(bench, on_target(seed=1))
-    second = Rig(bench, overrides(seed=2), variant="pf")
-    # Each hears the one camera of the other too.
-    assert first.show_frame(road(1)[0], 0).status[0].message == "TRACKING"
-    bench.wait_for(lambda: second.modes)
-    assert second.modes[-1].status[0].message == "WAITING"
-    assert second.positions == []
-
-
 def test_simulated_time_is_that_of_the_reports(bench):
     rig = Rig(bench, [*on_target(), Parameter("use_sim_time", value=True)])
     clock = bench.publisher(Clock, "/clock")
@@ -157,26 +146,3 @@ def test_simulated_time_is_that_of_the_reports(bench):
     # Time that stands still stops neither the reports nor the answers.
     assert rig.play(road(3), first=6) == ["TRACKING"] * 3
     diagnostics_of(bench, "apf_tracker", lambda table: table["images"] == "4")
-
-
-def test_a_negative_clock_is_passed_over(bench):
-    rig = Rig(bench, [*on_target(), Parameter("use_sim_time", value=True)])
-    clock = bench.publisher(Clock, "/clock")
-    clock.publish(Clock(clock=Time(sec=3)))
-    bench.wait_for(lambda: rig.node.get_clock().now().nanoseconds == 3_000_000_000)
-    for seconds in (-1, -(2**31)):
-        clock.publish(Clock(clock=Time(sec=seconds, nanosec=5)))
-    clock.publish(Clock(clock=Time(sec=4)))
-    bench.wait_for(lambda: rig.node.get_clock().now().nanoseconds == 4_000_000_000)
-    assert rig.play(road(3)) == ["TRACKING"] * 3
-
-
-def test_a_target_half_outside_is_followed(bench):
-    rig = Rig(bench, overrides(target__x=-11.0, target__y=50.0, target__width=24.0,
-                               target__height=18.0))  # fmt: skip
-    for index, frame in enumerate(road(5)):
-        answer = rig.show_frame(frame, index)
-        assert answer.status[0].message in {"TRACKING", "OCCLUDED"}
-        assert 0 <= float(values_of(answer)["x"]) <= 160
-    position: PointStamped = rig.position_at(answer)
-    assert position.point.x >= 0

@@ -54,6 +54,11 @@ def test_a_detection_starts_a_node_and_comes_back(bench, messages, monkeypatch):
     (result,) = found[2].results
     assert result.hypothesis.class_id == "vehicle"
     assert result.hypothesis.score == float(values_of(answers[2])["confidence"])
+    target.publish(wanted)
+    bench.wait_for(lambda: rig.node.stream.asked is not None)
+    rig.show_frame(road(1)[0], 3)
+    bench.wait_for(lambda: len(found) == 4)
+    assert found[3].id == "2"
     wanted.bbox.center.theta = 1.0
     target.publish(wanted)
     bench.wait_for(lambda: rig.node.diagnostics.health.refused_targets == 1)

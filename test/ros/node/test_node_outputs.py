@@ -27,6 +27,7 @@ from sensor_msgs.msg import Image, PointCloud2
 from tracker_rig import HEIGHT, PERIOD_NS, SPEED, WIDTH, Rig, on_target, road, values_of
 
 from vehicle_pf_tracker.offline.drawing import Annotator
+from vehicle_pf_tracker.ros import messages
 from vehicle_pf_tracker.ros.node import outputs
 
 pytestmark = pytest.mark.ros
@@ -59,17 +60,6 @@ def test_velocity_is_in_px_per_second(bench, rig):
     vector = velocities[-1].vector
     assert vector.x == pytest.approx(SPEED * per_second, rel=0.2)
     assert vector.x == pytest.approx(float(values_of(answer)["velocity_x"]) * per_second)
-
-
-def test_publishing_can_be_switched_off_and_on(bench, rig):
-    boxes = bench.collect(PolygonStamped, "/apf_tracker/box")
-    frames = road(4)
-    rig.node.set_parameters_atomically(on_target(publish__box=False))
-    rig.play(frames[:2])
-    rig.node.set_parameters_atomically(on_target(publish__box=True))
-    rig.play(frames[2:], first=2)
-    bench.wait_for(lambda: len(boxes) == 2)
-    assert boxes[0].header == rig.modes[2].header
 
 
 def test_particles_come_while_subscribed(bench, rig, monkeypatch):
@@ -112,6 +102,12 @@ def test_the_overlay_is_drawn_while_subscribed(bench, rig, monkeypatch):
     bench.wait_for(lambda: rig.listeners("overlay") == 0)
     rig.play(frames[3:], first=3)
     assert len(drawn) == 1
+
+
+def test_without_vision_msgs_there_are_no_such_topics(bench, monkeypatch):
+    monkeypatch.setattr(messages, "Detection2D", None)
+    names = {name for name, _ in Rig(bench, on_target()).node.get_topic_names_and_types()}
+    assert not {name for name in names if "detection" in name}
 
 
 def test_the_overlay_shows_waiting_too(bench):

@@ -68,18 +68,6 @@ def test_a_hangup_that_nohup_ignores_does_not_end_the_node(start_process, bench)
     assert state.current_state.label == "active"
 
 
-def test_callbacks_that_always_fail_end_the_node(start_process):
-    code = (
-        "from vehicle_pf_tracker.ros.node import diagnostics\n"
-        "diagnostics.PERIOD = 0.01\n"
-        "diagnostics.Diagnostics.publish = lambda self: 1 / 0\n"
-        "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('apf'))"
-    )
-    node = start_process("-c", code)
-    assert node.wait() == 1
-    assert "20 callbacks failed within 10 s" in node.output
-
-
 def test_the_log_names_the_kernels_when_it_is_ready(start_node):
     node = start_node("pf", "-p", "kernels:=opencv")
     node.wait_for_output("opencv kernels")

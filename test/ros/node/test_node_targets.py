@@ -24,9 +24,9 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from geometry_msgs.msg import Point32, PointStamped, PolygonStamped
 from rcl_interfaces.srv import SetParametersAtomically
-from sensor_msgs.msg import RegionOfInterest
+from sensor_msgs.msg import Image, RegionOfInterest
 from std_srvs.srv import Trigger
-from tracker_rig import TARGET, Rig, on_target, overrides, road, values_of
+from tracker_rig import TARGET, Rig, header, on_target, overrides, road, values_of
 
 pytestmark = pytest.mark.ros
 
@@ -227,3 +227,53 @@ def test_reset_forgets_a_target_that_was_not_yet_used(waiting):
     targets.give(region(*TARGET))
     rig.bench.call(Trigger, f"{rig.name}/reset", Trigger.Request())
     assert rig.play(road(1)) == ["WAITING"]
+
+
+def test_a_target_is_neither_judged_by_a_stray_nor_lost_to_it(waiting):
+    rig, targets = waiting
+    frames = road(3)
+    rig.show_frame(frames[0], 0)
+    targets.give(polygon((100, 60), (120, 80)))
+    stray = Image(encoding="rgb8", width=4, height=4, step=12, data=bytes(48), header=header(1))
+    stray.header.frame_id = "elsewhere"
+    answer = rig.show(stray)
+    assert answer.status[0].message == "REJECTED"
+    assert "rejected unless the next image agrees with it" in values_of(answer)["reason"]
+    answer = rig.show_frame(frames[1], 1)
+    assert values_of(answer)["x"] == "110.0"
+    assert rig.show(stray).status[0].message == "REJECTED"
+    targets.give(polygon((20, 50), (44, 68), frame_id="camera"))  # that of the images
+    assert values_of(rig.show_frame(frames[2], 2))["x"] == "32.0"
+
+
+def test_a_doubtful_target_is_followed_with_a_warning(waiting):
+    rig, targets = waiting
+    frame = road(1)[0]
+    frame[80:115, 100:150] = 110  # nothing stands out there
+    targets.give(region(110, 85, 30, 20))
+    answer = rig.show_frame(frame, 0)
+    assert answer.status[0].message == "TRACKING"
+    assert "the target is doubtful: nothing in it stands out" in values_of(answer)["event"]
+
+
+@pytest.mark.parametrize("drives", [False, True])
+def test_a_target_that_stands_while_others_drive_is_warned_of(bench, drives):
+    x, y, width, height = TARGET if drives else (100, 15, 30, 20)
+    rig = Rig(bench, overrides(target__x=float(x), target__y=float(y), target__width=float(width),
+                               target__height=float(height)))  # fmt: skip
+    answers = []
+    for index, frame in enumerate(road(16)):
+        frame[15:35, 100:130] = (40, 160, 60)  # a sign
+        frame[20:25, 105:125] = (220, 220, 220)
+        answers.append(rig.show_frame(frame, 10 * index))  # 0.4 s later
+    assert {answer.status[0].message for answer in answers} == {"TRACKING"}
+    levels = [answer.status[0].level for answer in answers]
+    events = [values_of(answer).get("event", "") for answer in answers]
+    if drives:
+        assert set(levels) == {b"\x00"}
+        assert float(values_of(answers[-1])["moved"]) > 20
+    else:
+        assert levels == [b"\x00"] * 13 + [b"\x01"] * 3
+        assert "the target has not moved for 5 s while other things did" in events[13]
+        assert not events[14]
+        assert float(values_of(answers[-1])["moved"]) < 5

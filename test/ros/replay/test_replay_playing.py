@@ -139,12 +139,6 @@ def test_names_that_do_not_fit_are_told(ros_domain, tmp_path, options, words):
         replay(record(tmp_path / "bag"), ReplayOptions(**options))
 
 
-def test_only_the_topics_chosen_are_played(bench, tmp_path):
-    StubTracker(bench)
-    report = play(bench, record(tmp_path / "bag"), lockstep=True, topics=(IMAGE_TOPIC,))
-    assert (report.frames, report.messages) == (COUNT, COUNT)
-
-
 def test_other_topics_go_out_as_they_were_recorded(bench, tmp_path):
     StubTracker(bench)
     received = bench.collect(PointStamped, "/ground_truth/position", count=0)
@@ -190,19 +184,6 @@ def test_compressed_images_go_out_raw(bench, tmp_path):
     assert image.header.frame_id == "camera"
     pixels = np.frombuffer(image.data, np.uint8).reshape(24, 32, 3)
     assert (pixels == (30, 50, 200)).all()
-
-
-def test_progress_is_told_after_each_image(bench, tmp_path):
-    StubTracker(bench)
-    seen = []
-    with spinning(bench):
-        options = ReplayOptions(lockstep=True, nodes=("stub_tracker",))
-        replay(record(tmp_path / "bag"), options, seen.append)
-    assert [progress.frames for progress in seen] == list(range(1, COUNT + 1))
-    assert [progress.position for progress in seen] == pytest.approx(
-        [0.04 * index for index in range(COUNT)]
-    )
-    assert [progress.length for progress in seen] == [pytest.approx(SPAN)] * COUNT
 
 
 def test_without_nodes_it_plays_for_whoever_listens(ros_domain, tmp_path):

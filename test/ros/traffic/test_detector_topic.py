@@ -147,21 +147,6 @@ def test_vehicles_are_followed_as_offline_with_the_same_detections(rig):
     assert rig.said == []
 
 
-def test_an_image_waits_for_its_detections_and_no_other(rig):
-    rig.camera.publish(image_message(header(0), rig.frames[0]))
-    rig.camera.publish(image_message(header(1), rig.frames[1]))
-    rig.bench.wait_for(lambda: len(rig.waiting) == 2)
-    rig.detector.publish(rig.message(rig.truth(5), 5))
-    rig.bench.wait_for(lambda: rig.waiting.remembered)
-    assert rig.modes == []
-    rig.detector.publish(rig.message(rig.truth(0), 0))
-    rig.bench.wait_for(lambda: rig.modes)
-    assert [one.header for one in rig.modes] == [header(0)]
-    rig.detector.publish(rig.message([], 1))
-    rig.bench.wait_for(lambda: len(rig.modes) == 2)
-    assert rig.waiting.matched == 2
-
-
 def test_a_detector_that_stops_is_told_once_and_vehicles_stay(bench, vision, monkeypatch):
     rig = DetectorRig(bench, vision, monkeypatch, detector__max_wait=0.05)
     before = rig.follow()
@@ -174,67 +159,6 @@ def test_a_detector_that_stops_is_told_once_and_vehicles_stay(bench, vision, mon
     assert rig.waiting.missed == 4
     assert len(rig.said) == 1
     assert "1 images waited in vain for detections" in rig.said[0]
-
-
-def test_detections_whose_stamps_never_match_are_told_once(rig):
-    before = rig.follow()
-    waiting = rig.waiting
-    for count in range(1, 111):
-        rig.detector.publish(rig.message([], 1000 + count))
-        rig.bench.wait_for(lambda: waiting.remembered + waiting.unmatched == count)  # noqa: B023
-    assert waiting.unmatched == 10
-    rig.answered(rig.next)
-    assert waiting.remembered <= 100
-    assert [one for one in rig.said if "the stamp of no image" in one] == rig.said
-    assert len(rig.said) == 1
-    assert {one.identity for one in rig.vehicles.estimates} == before
-
-
-@pytest.mark.parametrize(
-    "bad",
-    [
-        (math.nan, 10, 20, 10, 0.9),
-        (10, 10, math.inf, 10, 0.9),
-        (10, 10, 20, 10, math.nan),
-        (40, 40, -20, -10, 0.9),
-        (10, 10, 0, 0, 0.9),
-        (5000, 10, 20, 10, 0.9),
-        (-1e300, 10, 1e300, 10, 0.9),
-    ],
-    ids=["nan", "infinite", "nan score", "negative", "empty", "outside", "huge"],
-)
-def test_a_detection_that_cannot_be_used_is_told_once_and_left_out(rig, bad):
-    before = rig.follow()
-    for index in range(rig.next, rig.next + 4):
-        values = rig.answered(index, [*rig.truth(index), bad])
-        assert values["vehicles TRACKING"] == "2"
-    assert {one.identity for one in rig.vehicles.estimates} == before
-    assert len(rig.said) == 1
-    assert rig.said[0].startswith("1 of 3 detections of an image cannot be used: not finite")
-
-
-def test_duplicates_make_no_second_vehicle(rig):
-    before = rig.follow()
-    for index in range(rig.next, rig.next + 4):
-        rig.answered(index, rig.truth(index) * 5)
-    assert {one.identity for one in rig.vehicles.estimates} == before
-    assert len(rig.said) == 1
-    assert rig.said[0].startswith("8 of 10 detections of an image cannot be used")
-
-
-@pytest.mark.parametrize(
-    ("count", "words"),
-    [(1500, "1502 detections, of which the 1000 of the highest"), (10_000, "MB that are read")],
-)
-def test_a_flood_of_detections_is_told_once_and_the_node_lives(rig, count, words):
-    before = rig.follow()
-    flood = [(x % 150, x // 150, 3, 3, 0.01) for x in range(count)]
-    for index in range(rig.next, rig.next + 3):
-        rig.answered(index, [*rig.truth(index), *flood])
-    assert len([one for one in rig.said if words in one]) == 1
-    assert before <= {one.identity for one in rig.vehicles.estimates}
-    rig.answered(rig.next + 3)
-    assert before <= {one.identity for one in rig.vehicles.estimates}
 
 
 def test_a_detector_may_answer_every_third_image(bench, vision, monkeypatch):

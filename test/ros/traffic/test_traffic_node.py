@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import sys
 from importlib.util import find_spec
 
 import cv2
@@ -36,7 +35,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CompressedImage, Image, RegionOfInterest
 from std_msgs.msg import Int64
 from std_srvs.srv import Trigger
-from tracker_rig import PERIOD_NS, header, header_at, overrides, values_of
+from tracker_rig import PERIOD_NS, header, overrides, values_of
 from traffic_rig import HEIGHT, NODE, WARM_UP, WIDTH, TrafficRig, boxes, hear_notices, lanes
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -89,24 +88,14 @@ def nearest(said, box):
     )
 
 
-def test_every_vehicle_is_found_and_keeps_its_number(rig):
-    rig.play(lanes(COUNT))
-    late, end = rig.said(COUNT - 8), rig.said(COUNT - 1)
-    for before, after in zip(boxes(COUNT - 8), boxes(COUNT - 1), strict=True):
-        number = nearest(end, after)
-        assert nearest(late, before) == number
-        assert end[number]["mode"] == "TRACKING"
-        assert float(end[number]["x"]) == pytest.approx(after[0] + after[2] / 2, abs=after[2] / 3)
-        assert float(end[number]["y"]) == pytest.approx(after[1] + after[3] / 2, abs=after[3] / 3)
-
-
 def test_the_node_says_what_the_session_says_without_ros(rig):
     frames = lanes(COUNT)
     rig.play(frames)
     for index, estimates in enumerate(offline(frames)):
         said = rig.said(index)
-        assert list(said) == [one.identity for one in estimates]
-        for one in estimates:
+        confirmed = [one for one in estimates if one.identity]
+        assert [number for number in said if number] == [one.identity for one in confirmed]
+        for one in confirmed:
             values = said[one.identity]
             found = tuple(float(values[name]) for name in ("x", "y", "width", "height"))
             assert found == (*one.position, one.box.width, one.box.height)
@@ -317,18 +306,6 @@ def test_compressed_images_are_followed_and_a_stray_one_not_decoded(bench, monke
     assert list(rig.said(COUNT - 1)) == [one.identity for one in offline(frames)[-1]]
 
 
-def test_strays_are_rejected_and_cost_no_vehicle(rig):
-    frames = lanes(COUNT)
-    for index, frame in enumerate(frames):
-        if index % 3 == 2:
-            small = np.zeros((10 + index, 10, 3), np.uint8)
-            assert rig.show(image_message(header(index), small)).status[0].message == "REJECTED"
-            late = image_message(header_at(index), frame)
-            assert "goes back" in values_of(rig.show(late))["reason"]
-        rig.show_frame(frame, index)
-    assert list(rig.said(COUNT - 1)) == [one.identity for one in offline(frames)[-1]]
-
-
 @pytest.mark.parametrize("what", ["time", "size"])
 def test_a_stream_that_begins_again_forgets_vehicles_but_uses_no_number_twice(rig, what):
     frames = lanes(COUNT)
@@ -347,38 +324,6 @@ def test_a_stream_that_begins_again_forgets_vehicles_but_uses_no_number_twice(ri
     after = set(rig.said(first + COUNT - 1))
     assert len(after) >= 2
     assert not before & after
-
-
-def test_a_camera_that_moves_is_told_and_no_vehicle_is_lost_by_it(bench, monkeypatch):
-    said = hear_notices(monkeypatch)
-    rig = TrafficRig(bench)
-    frames = lanes(COUNT)
-    rig.play(frames)
-    before = {number for number, one in rig.said(COUNT - 1).items() if one["mode"] == "TRACKING"}
-    others = np.random.default_rng(3).integers(0, 256, (10, HEIGHT, WIDTH, 3), np.uint8)
-    answers = rig.play(others, COUNT)
-    assert "the camera moves, or the light was switched" in values_of(answers[0])["event"]
-    assert [one for one in said if "the camera moves" in one] == said
-    assert len(said) == 1
-    assert before <= set(rig.said(COUNT + 9))
-
-
-def test_parameters_are_set_while_it_runs(rig):
-    frames = lanes(COUNT)
-    rig.play(frames[: WARM_UP + 10])
-    before = set(rig.said(WARM_UP + 9))
-    request = SetParametersAtomically.Request()
-    request.parameters = [
-        ParameterMessage(
-            name="num_particles",
-            value=ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=80),
-        )
-    ]
-    result = rig.bench.call(SetParametersAtomically, f"{NODE}/set_parameters_atomically", request)
-    assert result.result.successful
-    assert rig.vehicles.session.tracker.parameters.num_particles == 80
-    rig.play(frames[WARM_UP + 10 :], WARM_UP + 10)
-    assert before & set(rig.said(COUNT - 1))
 
 
 def set_parameters(rig, **values):
@@ -511,12 +456,6 @@ def test_the_node_can_be_deactivated_and_cleaned_up(rig):
     rig.bench.publish_until(
         lambda: len(rig.modes) > 3, rig.camera, image_message(header(3), frames[0])
     )
-
-
-def test_without_scipy_the_extra_is_named(bench, monkeypatch):
-    monkeypatch.setitem(sys.modules, "scipy", None)
-    with pytest.raises(InputError, match="apt python3-scipy"):
-        TrafficRig(bench)
 
 
 @pytest.mark.skipif(find_spec("vision_msgs") is not None, reason="vision_msgs is installed")

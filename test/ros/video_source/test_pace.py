@@ -21,7 +21,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.ros.video_source.outputs import BackOff, Pace
+from vehicle_pf_tracker.ros.video_source.outputs import Pace
 
 MS = 1_000_000
 
@@ -61,23 +61,9 @@ def test_live_images_have_the_clock_but_each_a_time_of_its_own():
 def test_the_end_of_the_process_ends_waits():
     stop = threading.Event()
     stop.set()
-    pace, back_off = Pace(Clock(0), stop), BackOff(stop, 60.0)
+    pace = Pace(Clock(0), stop)
     pace.begin(is_live=False)
     began = time.monotonic()
     pace.stamp(0)
     pace.stamp(3600 * 1000 * MS)
-    back_off.wait()
     assert time.monotonic() - began < 5
-
-
-def test_waits_double_up_to_the_longest_and_begin_again_after_an_image():
-    stop = threading.Event()
-    stop.set()
-    back_off = BackOff(stop, 1.0, 5.0)
-    waits = []
-    for _ in range(4):
-        waits.append(back_off.seconds)
-        back_off.wait()
-    assert waits == [1.0, 2.0, 4.0, 5.0]
-    back_off.reset()
-    assert back_off.seconds == 1.0

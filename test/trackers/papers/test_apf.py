@@ -192,3 +192,34 @@ def test_the_drift_leaves_out_the_newest_displacements():
 @pytest.mark.parametrize(("rule", "delay"), [("relative", 12), ("fixed", 0)])
 def test_only_the_relative_rule_notices_late_and_delays_the_drift(rule, delay):
     assert from_mapping(ApfParameters, {"occlusion.rule": rule}).drift_delay == delay
+
+
+def spread_after(elapsed, hidden):
+    street = Street(speed=3.0, hidden=(10, 99) if hidden else (99, 99))
+    tracker = make(num_particles=4000)
+    parents = follow(tracker, street, range(12))[-1].particles
+    particles = tracker.step(street.frame(12), elapsed).particles
+    return particles, parents
+
+
+def test_the_drift_scales_with_the_elapsed_time():
+    def drift(elapsed):
+        particles, parents = spread_after(elapsed, hidden=True)
+        return (particles - parents)[:, 0].mean()
+
+    assert drift(4.0) == pytest.approx(4 * drift(1.0), rel=0.1)
+    assert drift(1.0) == pytest.approx(3.0, rel=0.3)
+
+
+def test_one_low_similarity_is_enough_for_the_occlusion_regime():
+    """The reference learns a repainted vehicle fast, and then its first colours return."""
+    values = {"reference.alpha": 0.5, "reference.frozen_while_occluded": False}
+    tracker, there, back = make(**PRINTED_RULE, **values), Repainted(speed=0.0), Street(speed=0.0)
+    estimates = follow(tracker, there, range(5))
+    estimates += [tracker.step(back.frame(time)) for time in range(5, 11)]
+    tau, single = ApfParameters().occlusion.tau, set()
+    for before, now in itertools.pairwise(estimates[1:]):
+        low = {name for name in ("pi", "pi_up") if before.similarities[name] < tau}
+        assert now.regime == ("occlusion" if low else "regular")
+        single |= low if len(low) == 1 else set()
+    assert single == {"pi", "pi_up"}

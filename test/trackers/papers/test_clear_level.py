@@ -70,3 +70,10 @@ def test_a_fall_to_a_small_share_is_one_whatever_the_deviation():
     for similarity, clear in ((0.53, True), (0.51, False), (0.53, True)):
         level.judge(similarity, wide)
         assert level.clear is clear
+
+
+def test_judging_does_not_count():
+    level = level_of(0.8, 0.7)
+    before = level.value, level.deviation
+    level.judge(0.1, SETTINGS)
+    assert (level.value, level.deviation) == before

@@ -73,3 +73,12 @@ def test_printed_resampling_keeps_what_survives_everywhere_and_repeats_it():
 def test_printed_resampling_without_a_common_survivor():
     sets = [np.array([0, 0]), np.array([1, 1])]
     assert common_survivors(sets, 2, np.array([7, 8])).tolist() == [7, 8]
+
+
+def test_a_feature_that_was_never_there_is_never_used():
+    weighting = weigh_features(np.array([0.0, 0.9, 0.4]), np.array([0.0, 0.0, 0.4]), 0.0)
+    assert weighting.factors.tolist() == [0, 0, 1]
+
+
+def test_the_best_share_is_rounded_up_to_a_particle():
+    assert average_similarities(np.array([[0.1, 0.3, 0.9]]), 0.5) == pytest.approx([0.8])

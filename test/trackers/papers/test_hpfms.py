@@ -63,3 +63,14 @@ def test_the_spread_grows_with_doubt_up_to_its_bound():
     assert tracker.spread() == pytest.approx(5.0, rel=0.1)
     tracker.step(street.frame(15))
     assert tracker.spread() == pytest.approx(10.0)
+
+
+def test_without_mean_shift_the_moves_have_the_spread():
+    values = {"sigma": 4.0, "transition.speed_share": 0.0, "transition.widest": 1.0}
+    tracker = make(num_particles=20_000, iterations=0, **values, **{"likelihood.sigma_v": 100.0})
+    street = Street(speed=0.0)
+    started = tracker.start(street.frame(0), street.box(0))
+    stepped = tracker.step(street.frame(1))
+    # Flat weights: 16 px² are added to the 16 that were there.
+    assert started.particles[:, 1].var() == pytest.approx(16.0, rel=0.05)
+    assert stepped.particles[:, 1].var() == pytest.approx(32.0, rel=0.05)

@@ -83,3 +83,10 @@ def test_weights_are_the_product_of_both_likelihoods():
     lines = tracker.line_similarity(frame, estimate.particles)
     expected = np.exp(-(1 - colour) / (2 * 0.158**2) - (1 - lines) / (2 * 0.35**2))
     assert estimate.weights == pytest.approx(expected / expected.sum())
+
+
+def test_a_window_without_lines_is_unlike_a_target_with_lines():
+    first = two_boxes(striped(across=True), np.full((24, 24, 3), 128, np.uint8))
+    tracker = make(num_particles=2)
+    tracker.start(first, Box(30, 30, 24, 24))
+    assert tracker.line_similarity(first, np.array([[112.0, 42.0]])) == pytest.approx([0.0])

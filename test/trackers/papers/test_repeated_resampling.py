@@ -149,3 +149,23 @@ def test_the_plain_mean_as_printed():
     )
     weighted = follow(adaptive(), Street(), range(5))[-1]
     assert weighted.position == pytest.approx(tuple(weighted.weights @ weighted.particles))
+
+
+def test_the_limit_of_low_weights_is_a_multiple_of_the_mean_weight():
+    # Weights exp(-(1 - rho) / 0.08) of 0.88, 0.69 and about 0: 1.7, 1.3 and 0 of the mean weight.
+    coefficients = [0.99, 0.97, 0.2, 0.97, 0.99, 0.2]
+    assert [one_pass(coefficients, low_weight=limit)[2] for limit in (1.0, 1.5)] == [2, 4]
+
+
+def test_copies_are_made_of_kept_particles_only():
+    before, after, replaced, _ = one_pass(
+        [0.99, 0.97, 0.97, 0.97, 0.97, 0.97], low_weight=1.2, jitter=0.0
+    )
+    assert replaced == 5
+    assert np.array_equal(after.cloud.positions, np.tile(before.cloud.positions[0], (6, 1)))
+
+
+def test_particles_of_equal_weight_are_all_good():
+    before, after, replaced, _ = one_pass([0.9] * 5)
+    assert replaced == 0
+    assert after is before

@@ -21,7 +21,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
-from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
+from vehicle_pf_tracker.evaluation.report.scored_runs import (
+    ScoredEvaluation,
+    ScoredRun,
+    version_notes,
+)
 from vehicle_pf_tracker.evaluation.statistics import (
     FEWEST_RECORDINGS,
     Ranking,
@@ -283,26 +287,6 @@ def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
     if failed:
         result = f"{failed} of {cells} have no result; see Failed cells."
     return [*_leader(aggregates), *filter(None, best), result, *version_notes(evaluation)]
-
-
-_PROGRAMS = {"vehicle_pf_tracker": "vehicle_pf_tracker", "numpy": "NumPy", "opencv": "OpenCV"}
-"""Programs whose version moves estimates, with their names for readers."""
-
-
-def version_notes(evaluation: ScoredEvaluation) -> list[str]:
-    """State that runs were made with different versions, if they were."""
-    runs = (*evaluation.runs, *evaluation.shifted)
-    found = {
-        name: sorted({str(run.versions[key]) for run in runs if key in run.versions})
-        for key, name in _PROGRAMS.items()
-    }
-    differing = [f"{name} {listing(some)}" for name, some in found.items() if len(some) > 1]
-    if not differing:
-        return []
-    return [
-        f"Results of different versions are compared ({'; '.join(differing)}); "
-        "docs/scoring.md says what to expect."
-    ]
 
 
 def _leader(aggregates: Aggregates) -> list[str]:

@@ -69,8 +69,8 @@ class ScoredRun:
         Estimates by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
-    versions : mapping of str to str
-        Versions of the program and its libraries that ran a variant; empty for baselines.
+    versions : mapping of str to str or None
+        What it was made with, as `run.json` has it.
     """
 
     recording: str
@@ -199,13 +199,37 @@ def _result(
         boxes=[_box(frame) for frame in frames],
         rows=cell.rows,
         curves={name: curve for name, curve in curves.items() if curve is not None},
-        versions=cell.run.get("versions", {}) if "variant" in cell.run else {},
+        versions=cell.run.get("versions", {}),
     )
 
 
 def _box(frame: FrameScore) -> Box | None:
     row = frame.scored_row
     return None if row is None or frame.waiting else row.box
+
+
+_PROGRAMS = {
+    "vehicle_pf_tracker": "vehicle_pf_tracker", "numpy": "NumPy", "opencv": "OpenCV",
+    "numba": "numba",
+}  # fmt: skip
+"""Programs whose version moves estimates, with their names for readers."""
+
+
+def version_notes(evaluation: ScoredEvaluation) -> list[str]:
+    """State that runs of variants were made with different versions, if they were."""
+    ours = {entry.label for entry in evaluation.systems if not entry.kind.startswith("baseline:")}
+    runs = [run for run in (*evaluation.runs, *evaluation.shifted) if run.system in ours]
+    found = {
+        name: sorted({str(run.versions.get(key) or "none") for run in runs})
+        for key, name in _PROGRAMS.items()
+    }
+    differing = [f"{name} {' and '.join(some)}" for name, some in found.items() if len(some) > 1]
+    if not differing:
+        return []
+    return [
+        f"Results of different versions are compared ({'; '.join(differing)}); "
+        "docs/scoring.md says what to expect."
+    ]
 
 
 ESTIMATE_RECORDINGS = "estimates"

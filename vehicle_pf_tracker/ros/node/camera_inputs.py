@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
 from typing import Any
 
 from geometry_msgs.msg import TransformStamped
@@ -62,22 +61,19 @@ class CameraInputs:
     ----------
     node : Node
         Node to subscribe with.
-    take_lens : callable
-        Called with the lens of each CameraInfo that differs from the one before.
-    take_poses : callable
-        Called with all poses whenever some have come.
+
+    Attributes
+    ----------
+    lens : ImageLens or None
+        Lens of the last CameraInfo; None before the first.
+    poses : PoseTree
+        All poses that have come.
     """
 
-    def __init__(
-        self,
-        node: Node,
-        take_lens: Callable[[ImageLens], None],
-        take_poses: Callable[[PoseTree], None],
-    ) -> None:
+    def __init__(self, node: Node) -> None:
         self._node = node
-        self._take_lens = take_lens
-        self._take_poses = take_poses
-        self._tree = PoseTree()
+        self.lens: ImageLens | None = None
+        self.poses = PoseTree()
         self._info: CameraInfo | None = None
         self._asked: tuple[bool, bool, bool] | None = None
         self._subscriptions: list[Subscription] = []
@@ -105,7 +101,7 @@ class CameraInputs:
         """Destroy the subscriptions."""
         while self._subscriptions:
             self._node.destroy_subscription(self._subscriptions.pop())
-        self._asked = self._info = None
+        self._asked = self._info = self.lens = None
 
     def _on_info(self, message: CameraInfo) -> None:
         message.header.stamp.sec = message.header.stamp.nanosec = 0
@@ -113,14 +109,13 @@ class CameraInputs:
             return
         self._info = message
         try:
-            self._take_lens(lens_of_info(message, rectified=self._rectified))
+            self.lens = lens_of_info(message, rectified=self._rectified)
         except InputError as error:
             self._warn(str(error))
 
     def _on_transforms(self, message: Any) -> None:
         for one in message.transforms:
             self._put(one)
-        self._take_poses(self._tree)
 
     def _put(self, one: TransformStamped) -> None:
         try:
@@ -128,7 +123,7 @@ class CameraInputs:
         except InputError as error:
             self._warn(f"a transform of {one.child_frame_id} is ignored: {error}")
         else:
-            self._tree.put(one.header.frame_id, one.child_frame_id, pose)
+            self.poses.put(one.header.frame_id, one.child_frame_id, pose)
 
     def _warn(self, words: str) -> None:
         self._node.get_logger().warning(words, throttle_duration_sec=_THROTTLE)
@@ -143,35 +138,31 @@ class StreamLocalisation(Localisation):
         Name of the variant.
     parameters : RoadParameters
         Mapping to the road.
+    cameras : CameraInputs
+        Where lens and pose come from.
     """
 
-    def __init__(self, variant: str, parameters: RoadParameters) -> None:
+    def __init__(self, variant: str, parameters: RoadParameters, cameras: CameraInputs) -> None:
         super().__init__(variant, parameters)
-        self._tree: PoseTree | None = None
-        self._size: tuple[int, int] | None = None
-
-    def take_lens(self, found: ImageLens) -> None:
-        """Take the lens of a CameraInfo."""
-        self._size = found.size
-        self.set_lens(found.lens)
-
-    def take_poses(self, tree: PoseTree) -> None:
-        """Take new poses; the camera's is looked up with the next image, which names its frame."""
-        self._tree = tree
+        self._cameras = cameras
+        self._taken: ImageLens | None = None
 
     def locate(self, estimate: Estimate, header: Header, frame: Frame, period: float) -> None:
         """Take the estimate of the image `frame`, with the nominal frame period in s."""
-        parameters = self.parameters
-        if parameters.from_tf and self._tree is not None:
+        parameters, lens = self.parameters, self._cameras.lens
+        if lens is not None and lens is not self._taken:
+            self._taken = lens
+            self.set_lens(lens.lens)
+        if parameters.from_tf:
             with contextlib.suppress(InputError):  # TF does not have it yet
-                self.set_pose(self._tree.find(header.frame_id, parameters.frame_id))
+                self.set_pose(self._cameras.poses.find(header.frame_id, parameters.frame_id))
         self.follow(estimate, stamp_ns(header), period)
-        (width, height), expected = frame_size(frame), self._size
-        is_other = expected is not None and expected != (width, height)
-        if expected and is_other and self.has_road and parameters.from_camera_info:
+        size = frame_size(frame)
+        if lens and lens.size != size and self.has_road and parameters.from_camera_info:
             self.road = None
             self.objection = (
-                f"camera_info is for {expected[0]}x{expected[1]} px, the image has {width}x{height}"
+                f"camera_info is for {lens.size[0]}x{lens.size[1]} px, "
+                f"the image has {size[0]}x{size[1]}"
             )
 
     @property

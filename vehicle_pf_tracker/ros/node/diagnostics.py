@@ -150,6 +150,8 @@ class Diagnostics:
     ----------
     node : Node
         Node to report on.
+    facts : callable
+        Returns other values to publish, by name.
 
     Attributes
     ----------
@@ -157,15 +159,12 @@ class Diagnostics:
         Counters since the node was configured.
     source : ImageInput or None
         The open subscription; None while the node is not active.
-    facts : dict
-        Other values to publish, by name.
     """
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
+    def __init__(self, node: Node, facts: Callable[[], Mapping[str, object]]) -> None:
+        self._node, self._facts = node, facts
         self.health = Health()
         self.source: ImageInput | None = None
-        self.facts: dict[str, object] = {}
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         # Steady, because simulated time may stand still and that is worth a report too.
         clock = Clock(clock_type=ClockType.STEADY_TIME)
@@ -196,7 +195,7 @@ class Diagnostics:
         """Publish one report."""
         level, words = self._judge()
         publishers = self.source.publisher_count if self.source else 0
-        values = {**self.health.report(), "matched publishers": publishers, **self.facts}
+        values = {**self.health.report(), "matched publishers": publishers, **self._facts()}
         name, topic = self._node.get_name(), self.source.topic if self.source else ""
         message = DiagnosticArray(status=[status(level, f"{name}: tracker", words, topic, values)])
         message.header.stamp = self._node.get_clock().now().to_msg()

@@ -12,55 +12,26 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Subscription to images, the publishers on its topic, and images as frames.
-
-Serialized `sensor_msgs/Image` messages are used where they lie: rclpy would copy the pixels of
-every image again on their way into a message of Python.
-"""
+"""Subscription to images, the publishers on its topic, and images as frames."""
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Callable, Container, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
-from rclpy.qos import (
-    QoSCompatibility,
-    QoSProfile,
-    ReliabilityPolicy,
-    qos_check_compatible,
-)
+from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
 from rclpy.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from sensor_msgs.msg import CompressedImage, Image
-from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage, read_compressed
 from vehicle_pf_tracker.image.encodings import to_rgb
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError
-
-_BODY = 4
-"""Bytes before the message, the second of which tells the byte order."""
-
-
-class _Layout(NamedTuple):
-    """Numbers before the frame_id, before the encoding, and before the pixels."""
-
-    stamp: struct.Struct
-    size: struct.Struct
-    step: struct.Struct
-
-
-_LAYOUTS = [
-    _Layout(*(struct.Struct(order + kinds) for kinds in ("iII", "III", "II"))) for order in "><"
-]
-"""For a big-endian and for a little-endian message."""
-
 
 ImageCallback = Callable[[Any, Mapping[str, Any]], None]
 
@@ -80,7 +51,7 @@ def subscribe(
     callback: Callable[..., object],
     qos: QoSProfile,
     *,
-    raw: bool,
+    raw: bool = False,
 ) -> Subscription:
     """Subscribe with a QoS that parameters ``qos_overrides.<topic>.subscription.*`` may change.
 
@@ -117,7 +88,7 @@ class ImageInput:
     depth : int
         Images that may wait.
     callback : callable
-        Takes the message, serialized in place of an `Image`, and its info.
+        Takes the message and its info.
 
     Raises
     ------
@@ -136,7 +107,6 @@ class ImageInput:
             self.topic,
             callback,
             QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT),
-            raw=self._kind is Image,
         )
 
     @property
@@ -175,75 +145,21 @@ class ImageInput:
 
     def _elsewhere(self) -> str:
         """Name topics that images are on, with the setting that would take them."""
-        topics = {name: set(types) for name, types in self._node.get_topic_names_and_types()}
-        other = image_topic(self._node, "compressed" if self._transport == "raw" else "raw")
-        if self._published(other):
-            transport = "compressed" if self._transport == "raw" else "raw"
+        transport = "compressed" if self._transport == "raw" else "raw"
+        other = image_topic(self._node, transport)
+        if self._node.count_publishers(other):
             return f", but {other} has images: set image_transport to {transport}"
         found = [
             name
-            for name, types in topics.items()
+            for name, types in self._node.get_topic_names_and_types()
             if _TYPE_NAMES[self._kind] in types
-            and self._is_foreign(name)
-            and not _is_overlay(name, topics)
+            and self._node.count_publishers(name)
+            and not name.endswith("/overlay")  # of this node, or of another tracker
         ]
         return f"; images are on {', '.join(found)}: remap image to one of them" if found else ""
 
-    def _published(self, topic: str) -> bool:
-        return bool(self._node.count_publishers(topic))
 
-    def _is_foreign(self, topic: str) -> bool:
-        """Return whether another node publishes on `topic`: not our own overlay."""
-        own = self._node.get_name(), self._node.get_namespace()
-        publishers = self._node.get_publishers_info_by_topic(topic)
-        return any((one.node_name, one.node_namespace) != own for one in publishers)
-
-
-def _is_overlay(topic: str, topics: Container[str]) -> bool:
-    """Return whether it is the overlay of a tracker node, whatever that is called."""
-    node, _, name = topic.rpartition("/")
-    return name == "overlay" and f"{node}/mode" in topics
-
-
-class SerializedImage(NamedTuple):
-    """The fields of a `sensor_msgs/Image`; `data` is a view of the serialized message."""
-
-    header: Header
-    height: int
-    width: int
-    encoding: str
-    is_bigendian: int
-    step: int
-    data: memoryview
-
-
-def read_serialized(message: bytes) -> SerializedImage:
-    """Read a `sensor_msgs/Image` in CDR, its encapsulation header included.
-
-    Raises
-    ------
-    InputError
-        If it is cut off.
-    """
-    try:
-        layout = _LAYOUTS[message[1] & 1]
-        seconds, nanoseconds, length = layout.stamp.unpack_from(message, _BODY)
-        frame_id, at = _text(message, _BODY + 12, length)
-        at = _aligned(at)
-        height, width, length = layout.size.unpack_from(message, at)
-        encoding, at = _text(message, at + 12, length)
-        is_bigendian = message[at]
-        at = _aligned(at + 1)
-        step, size = layout.step.unpack_from(message, at)
-    except (struct.error, IndexError):
-        raise InputError("a serialized image is cut off before its pixels") from None
-    data = memoryview(message)[at + 8 : at + 8 + size]
-    header = Header()
-    header.stamp.sec, header.stamp.nanosec, header.frame_id = seconds, nanoseconds, frame_id
-    return SerializedImage(header, height, width, encoding, is_bigendian, step, data)
-
-
-def read_image(message: Image | SerializedImage | CompressedImage) -> Frame | CodedImage:
+def read_image(message: Image | CompressedImage) -> Frame | CodedImage:
     """Return the RGB frame of `message`; for rgb8 a view of its data.
 
     A compressed image is not decoded: it may be a stray, of any size.
@@ -263,14 +179,3 @@ def read_image(message: Image | SerializedImage | CompressedImage) -> Frame | Co
         bool(message.is_bigendian),
         message.data,
     )
-
-
-def _text(message: bytes, at: int, length: int) -> tuple[str, int]:
-    """Return the text of `length` bytes without its final zero, and the next field's offset."""
-    text = message[at : at + max(length - 1, 0)]
-    return text.decode("utf-8", "replace"), at + length
-
-
-def _aligned(at: int) -> int:
-    """Return the offset of the next four-byte number at or after `at`."""
-    return at + -at % 4

@@ -28,24 +28,22 @@ from functools import partial
 from typing import Any
 
 from lifecycle_msgs.srv import ChangeState
-from rclpy.clock import Clock as RosClock
-from rclpy.clock import ClockType
+from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
-from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import CompressedImage
+from sensor_msgs.msg import CompressedImage, Image
 from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
-from vehicle_pf_tracker.ros.node.image_input import ImageInput, read_serialized
+from vehicle_pf_tracker.ros.node.image_input import ImageInput
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import Outputs
-from vehicle_pf_tracker.ros.node.parameters import ParameterTable, unknown_overrides
+from vehicle_pf_tracker.ros.node.parameters import ParameterTable, take_overrides, unknown_overrides
 from vehicle_pf_tracker.ros.rclpy_internals import (
     RCLError,
     change_state_service,
@@ -55,55 +53,170 @@ from vehicle_pf_tracker.ros.rclpy_internals import (
 )
 
 
-class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
-    """Calls `configure`, `activate`, `deactivate` and `cleanup`, which raise where they fail.
+class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
+    """Managed node that takes images; active at once unless `autostart` is false.
 
-    An `InputError` leaves the node in the state that it was in; any other exception takes it back
-    to unconfigured. Each of the two that undo may be called in any state.
+    A subclass sets what its methods refer to, and then calls `begin`. Of `configure`, `activate`,
+    `deactivate` and `cleanup`, an `InputError` leaves the node in the state that it was in; any
+    other exception takes it back to unconfigured. The two that undo may be called in any state.
 
     Attributes
     ----------
     failure : str
         Reason of the last transition that failed; empty before one did.
+    stream : NodeStream or None
+        Where images go; None while the node is not configured.
+    table : ParameterTable
+        The parameters.
+    diagnostics : Diagnostics
+        Reports on /diagnostics.
+    overrides : dict
+        Values given by files and the command line, by parameter name.
+    inputs : list of Subscription
+        Subscriptions that a deactivation ends, beside that to images.
     """
 
+    stream: NodeStream | None
+
     def __init__(self, name: str, **options: Any) -> None:
-        super().__init__(name, **options)
+        super().__init__(name, automatically_declare_parameters_from_overrides=True, **options)
+        self.overrides = take_overrides(self)
         self.failure = ""
+        self.stream = None
+        self._outputs: Outputs | None = None
+        self.inputs: list[Subscription] = []
+        self._requests: list[Service] = []
+        self._polls: list[Timer] = []
         service = change_state_service(self)
         if service is not None:
             service.callback = partial(self._answer_change_state, service.callback)
 
-    def create_subscription(
-        self, kind: Any, topic: str, callback: Callable[..., Any], *args: Any, **options: Any
-    ) -> Any:
-        """Subscribe; that of rclpy to ``/clock`` passes over times that its clock cannot take."""
-        if kind is Clock:
-            callback = partial(self._take_clock, callback)
-        return super().create_subscription(kind, topic, callback, *args, **options)
+    def begin(self, defaults: Configuration) -> None:
+        """Declare the parameters, warn of what is not understood, and start.
 
-    def _take_clock(self, take: Callable[[Clock], object], message: Clock) -> None:
-        if message.clock.sec < 0:
-            words = f"/clock says {message.clock.sec} s, before time begins: passed over"
-            self.get_logger().error(words, throttle_duration_sec=5.0)
-        else:
-            take(message)
+        Raises
+        ------
+        InputError
+            If a parameter or a QoS override does not fit; the node is destroyed.
+        """
+        try:
+            given = self.overrides
+            self.table = ParameterTable(self, defaults, given, self._check, self._reconfigure)
+            self.diagnostics = Diagnostics(self, self._facts)
+            for loss in missing(self):
+                words = f"this release of rclpy is not one of those tried: {loss}"
+                self.get_logger().warning(words)
+            self.warn_of(unknown_overrides(self, self.overrides, qos=False))
+            if self.table.configuration.node.autostart:
+                self.start()
+        except InputError:
+            self.destroy_node()
+            raise
 
-    @abstractmethod
-    def configure(self) -> None:
-        """Make what an inactive node has."""
+    def _check(self, configuration: Configuration) -> None:
+        """Refuse parameters that do not fit what the node is doing."""
+        if self.stream is not None:
+            self.stream.check(configuration)
+
+    def _reconfigure(self, configuration: Configuration) -> None:
+        """Take parameters that were changed."""
+        if self.stream is not None:
+            self.stream.reconfigure(configuration)
+
+    def _facts(self) -> Mapping[str, object]:
+        return self.stream.facts if self.stream is not None else {}
+
+    def _reset(self) -> str:
+        assert self.stream is not None
+        return self.stream.reset()
+
+    def open_images(self) -> ImageInput:
+        """Listen to images."""
+        own = self.table.configuration.node
+        source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
+        self.diagnostics.listen_to(source)
+        return source
+
+    def listen(self, kind: Any, topic: str, callback: Callable[[Any], None]) -> None:
+        """Subscribe until the node is deactivated."""
+        self.inputs.append(self.create_subscription(kind, topic, callback, 10))
+
+    def serve(self, name: str, act: Callable[[], str]) -> None:
+        """Offer a service until clean-up; `act` returns words for people, or raises InputError."""
+
+        def respond(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+            try:
+                response.success, response.message = True, act()
+            except InputError as error:
+                response.success, response.message = False, str(error)
+            return response
+
+        self._requests.append(self.create_service(Trigger, name, respond))
+
+    def ask(self, what: str, change: Callable[[Any], object]) -> None:
+        """Ask the stream for a change; where it raises InputError, the reason is reported."""
+        if self.stream is None:
+            return
+        try:
+            change(self.stream)
+        except InputError as error:
+            self.stream.refuse(what, str(error))
+
+    def poll(self, interval: float, callback: Callable[[], None]) -> Timer:
+        """Call back every `interval` s until clean-up; of real time: simulated may stand still."""
+        clock = Clock(clock_type=ClockType.STEADY_TIME)
+        self._polls.append(self.create_timer(interval, callback, clock=clock))
+        return self._polls[-1]
 
     @abstractmethod
     def activate(self) -> None:
         """Begin to listen."""
 
     @abstractmethod
-    def deactivate(self) -> None:
-        """Cease to listen."""
+    def prepare(self) -> None:
+        """Make stream, outputs and services; `cleanup` releases them, also where this fails."""
 
-    @abstractmethod
+    def configure(self) -> None:
+        """Prepare for images."""
+        try:
+            self.prepare()
+            self.serve("~/reset", self._reset)
+        except Exception:  # of whatever a network or numba raises
+            self.cleanup()
+            raise
+
+    def deactivate(self) -> None:
+        """Close the inputs: an inactive node pays nothing for images."""
+        self.diagnostics.cease()
+        while self.inputs:
+            self.destroy_subscription(self.inputs.pop())
+
     def cleanup(self) -> None:
-        """Let go of what `configure` made."""
+        """Release session, outputs and services."""
+        if self._outputs is not None:
+            self._outputs.close()
+        while self._requests:
+            self.destroy_service(self._requests.pop())
+        while self._polls:
+            self.destroy_timer(self._polls.pop())
+        self._outputs = self.stream = None
+
+    def _on_image(self, image: Image | CompressedImage, info: Mapping[str, Any]) -> None:
+        """Note an image, and pass it to the stream; not one that a deactivation has overtaken."""
+        if self.diagnostics.source is None or self.stream is None:
+            return
+        age = self.get_clock().now().nanoseconds - stamp_ns(image.header)
+        self.diagnostics.arrived(info, age * 1e-9)
+        self.stream.take(image)
+
+    def warn_of_overrides(self) -> None:
+        """Warn of QoS overrides of topics that the node has not, once all are open."""
+        self.warn_of(unknown_overrides(self, self.overrides, qos=True))
+
+    def warn_of(self, sentences: list[str]) -> None:
+        """Log what is ignored, a line each."""
+        for sentence in sentences:
+            self.get_logger().warning(f"ignored: {sentence}")
 
     def start(self) -> None:
         """Configure and activate.
@@ -176,134 +289,3 @@ class ManagedNode(LifecycleNode, ABC):  # type: ignore[misc]
         if not response.success:
             self.get_logger().error(f"transition {wanted} from {label} failed: {self.failure}")
         return response
-
-
-class ImageNode(ManagedNode):
-    """Managed node that takes images; active at once unless `autostart` is false.
-
-    A subclass sets what its methods refer to, and then calls `begin`.
-
-    Attributes
-    ----------
-    table : ParameterTable
-        The parameters.
-    diagnostics : Diagnostics
-        Reports on /diagnostics.
-    inputs : list of Subscription
-        Subscriptions that a deactivation ends, beside that to images.
-    """
-
-    stream: NodeStream | None
-    """Where images go; None while the node is not configured."""
-
-    def __init__(self, name: str, **options: Any) -> None:
-        super().__init__(name, **options)
-        self.stream = None
-        self._outputs: Outputs | None = None
-        self.inputs: list[Subscription] = []
-        self._requests: list[Service] = []
-        self._polls: list[Timer] = []
-
-    def begin(self, defaults: Configuration) -> None:
-        """Declare the parameters, warn of what is not understood, and start.
-
-        Raises
-        ------
-        InputError
-            If a parameter or a QoS override does not fit; the node is destroyed.
-        """
-        try:
-            self.table = ParameterTable(self, defaults, self._check, self._reconfigure)
-            self.diagnostics = Diagnostics(self)
-            for loss in missing(self):
-                words = f"this release of rclpy is not one of those tried: {loss}"
-                self.get_logger().warning(words)
-            self.warn_of(unknown_overrides(self, qos=False))
-            if self.table.configuration.node.autostart:
-                self.start()
-        except InputError:
-            self.destroy_node()
-            raise
-
-    @abstractmethod
-    def _check(self, configuration: Configuration) -> None:
-        """Refuse parameters that do not fit what the node is doing."""
-
-    @abstractmethod
-    def _reconfigure(self, configuration: Configuration) -> None:
-        """Take parameters that were changed."""
-
-    def open_images(self) -> ImageInput:
-        """Listen to images."""
-        own = self.table.configuration.node
-        source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
-        self.diagnostics.listen_to(source)
-        return source
-
-    def listen(self, kind: Any, topic: str, callback: Callable[[Any], None]) -> None:
-        """Subscribe until the node is deactivated."""
-        self.inputs.append(self.create_subscription(kind, topic, callback, 10))
-
-    def serve(self, name: str, act: Callable[[], str]) -> None:
-        """Offer a service until clean-up; `act` returns words for people, or raises InputError."""
-
-        def respond(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-            try:
-                response.success, response.message = True, act()
-            except InputError as error:
-                response.success, response.message = False, str(error)
-            return response
-
-        self._requests.append(self.create_service(Trigger, name, respond))
-
-    def poll(self, interval: float, callback: Callable[[], None]) -> Timer:
-        """Call back every `interval` s until clean-up; of real time: simulated may stand still."""
-        clock = RosClock(clock_type=ClockType.STEADY_TIME)
-        self._polls.append(self.create_timer(interval, callback, clock=clock))
-        return self._polls[-1]
-
-    @abstractmethod
-    def prepare(self) -> None:
-        """Make stream, outputs and services; `cleanup` releases them, also where this fails."""
-
-    def configure(self) -> None:
-        """Prepare for images."""
-        try:
-            self.prepare()
-        except Exception:  # of whatever a network or numba raises
-            self.cleanup()
-            raise
-
-    def deactivate(self) -> None:
-        """Close the inputs: an inactive node pays nothing for images."""
-        self.diagnostics.cease()
-        while self.inputs:
-            self.destroy_subscription(self.inputs.pop())
-
-    def cleanup(self) -> None:
-        """Release session, outputs and services."""
-        if self._outputs is not None:
-            self._outputs.close()
-        while self._requests:
-            self.destroy_service(self._requests.pop())
-        while self._polls:
-            self.destroy_timer(self._polls.pop())
-        self._outputs = self.stream = None
-
-    def _on_image(self, message: bytes | CompressedImage, info: Mapping[str, Any]) -> None:
-        """Note an image, and pass it to the stream; not one that a deactivation has overtaken."""
-        if self.diagnostics.source is None or self.stream is None:
-            return
-        image = read_serialized(message) if isinstance(message, bytes) else message
-        age = self.get_clock().now().nanoseconds - stamp_ns(image.header)
-        self.diagnostics.arrived(info, age * 1e-9)
-        self.stream.take(image)
-
-    def warn_of_overrides(self) -> None:
-        """Warn of QoS overrides of topics that the node has not, once all are open."""
-        self.warn_of(unknown_overrides(self, qos=True))
-
-    def warn_of(self, sentences: list[str]) -> None:
-        """Log what is ignored, a line each."""
-        for sentence in sentences:
-            self.get_logger().warning(f"ignored: {sentence}")

@@ -23,16 +23,19 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rclpy.node import Node
-from sensor_msgs.msg import CompressedImage
+from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
+from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
-from vehicle_pf_tracker.ros.node.image_input import SerializedImage, read_image
+from vehicle_pf_tracker.ros.node.image_input import read_image
+from vehicle_pf_tracker.ros.node.input_messages import check_frame_id
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
 
@@ -114,8 +117,50 @@ class NodeStream(ABC):
         """Values for the node's report, by name: choices that the parameters leave open."""
 
     @abstractmethod
-    def take(self, message: SerializedImage | CompressedImage) -> None:
+    def take(self, message: Image | CompressedImage) -> None:
         """Take an image, which is answered with exactly one `~/mode`."""
+
+    @property
+    @abstractmethod
+    def size(self) -> tuple[int, int] | None:
+        """Width and height of the stream's images, px; None before the first."""
+
+    @abstractmethod
+    def reset(self) -> str:
+        """Go back to the configured target; return words about that for people.
+
+        Raises
+        ------
+        InputError
+            With the reason, where it is not possible.
+        """
+
+    @abstractmethod
+    def reconfigure(self, configuration: Configuration) -> None:
+        """Take new parameters between two images."""
+
+    def check(self, configuration: Configuration) -> None:
+        """Refuse a configuration with a new target that is outside the stream's images.
+
+        Raises
+        ------
+        InputError
+            With the reason.
+        """
+        box = configuration.session.target.box
+        if box is not None and box != self._configuration.session.target.box and self.size:
+            check_target(box, *self.size)
+
+    def check_frame_id(self, topic: str, header: Header) -> None:
+        """Refuse a position in another frame than that of the images, or of the node's own outputs.
+
+        Raises
+        ------
+        InputError
+            If it is.
+        """
+        suffix = self._configuration.node.output_frame_suffix
+        check_frame_id(topic, header, self.frame_id, suffix)
 
     @abstractmethod
     def feed(self, image: Frame | CodedImage, stamp_ns: int, extra: Any) -> None:
@@ -131,7 +176,7 @@ class NodeStream(ABC):
     def answer(self, header: Header, frame: Frame) -> None:
         """Publish all that the session says of the image that it was fed last."""
 
-    def process(self, message: SerializedImage | CompressedImage, extra: Any = None) -> None:
+    def process(self, message: Image | CompressedImage, extra: Any = None) -> None:
         """Read an image, feed it and publish the answer; `extra` is passed on to `feed`."""
         header = message.header
         try:
@@ -150,6 +195,11 @@ class NodeStream(ABC):
         """Report that a target or a selection cannot be used; all vehicles are kept."""
         self.health.refuse_target(reason)
         self.errors.say(what, f"{what} refused: {reason}")
+
+    @staticmethod
+    def doubts(frame: Frame, box: Box) -> list[str]:
+        """Return what speaks against a target that was given, a sentence each."""
+        return [f"the target is doubtful: {why}" for why in doubts(frame, box)]
 
     def decline(self, header: Header, error: InputError) -> None:
         """Answer an image that cannot be used."""

@@ -19,7 +19,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
@@ -38,21 +38,21 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.offline.drawing import COLOURS, NEUTRAL, Annotator, line_width, write_words
 from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros.messages import (
-    Located,
     box_message,
     detection_message,
     detection_type,
     image_message,
     mode_message,
     particles_message,
-    place_message,
+    point_message,
     pose_message,
-    position_message,
-    road_velocity_message,
     velocity_message,
 )
 from vehicle_pf_tracker.trackers.estimate import START, Estimate
 from vehicle_pf_tracker.trackers.localisation import Localisation
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 
 RELIABLE = QoSProfile(depth=10)
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -93,7 +93,6 @@ class Outputs:
     def __init__(self, node: LifecycleNode, hardware_id: str, more: Topics) -> None:
         self._node = node
         self.node_name, self.hardware_id = str(node.get_name()), hardware_id
-        self._kept_position = PointStamped()
         self._publishers = {
             name: node.create_lifecycle_publisher(kind, f"~/{name}", qos)
             for name, (kind, qos) in {**more, **_COMMON}.items()
@@ -115,19 +114,25 @@ class Outputs:
             self._publishers[name].publish(make(*arguments))
 
     def publish_vehicle(
-        self, header: Header, estimate: Located, own: NodeParameters, frame_period: float
+        self,
+        header: Header,
+        estimate: Estimate | TrackEstimate,
+        own: NodeParameters,
+        frame_period: float,
     ) -> None:
         """Publish where a vehicle is; `frame_period` in s makes px/frame to px/s."""
-        self.send("position", position_message, header, estimate, self._kept_position)
+        self.send("position", point_message, header, estimate.position)
         if own.publish.box:
-            self.send("box", box_message, header, estimate)
+            self.send("box", box_message, header, estimate.box)
         if own.publish.velocity:
-            self.send("velocity", velocity_message, header, estimate, frame_period)
+            self.send("velocity", velocity_message, header, estimate.velocity, frame_period)
 
-    def publish_mode(self, header: Header, mode: str, values: Mapping[str, object]) -> None:
-        """Publish the one `~/mode` of an image."""
+    def publish_mode(
+        self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None = None
+    ) -> None:
+        """Publish the one `~/mode` of an image; `level` is that of the mode unless it is higher."""
         name = f"{self.node_name}: target"
-        self.send("mode", mode_message, header, name, self.hardware_id, mode, values)
+        self.send("mode", mode_message, header, name, self.hardware_id, mode, values, level)
 
 
 def in_frame(header: Header, frame_id: str) -> Header:
@@ -188,8 +193,8 @@ class TrackerOutputs(Outputs):
         if road is not None:
             there = in_frame(header, localisation.parameters.frame_id)
             self.send("pose_with_covariance", pose_message, there, road.position, road.covariance)
-            self.send("road_position", place_message, there, road.position)
-            self.send("road_velocity", road_velocity_message, there, road.velocity)
+            self.send("road_position", point_message, there, road.position)
+            self.send("road_velocity", velocity_message, there, road.velocity)
         elif not localisation.has_road and self.is_heard("pose_with_covariance"):
             position, covariance = np.asarray(estimate.position), localisation.covariance
             self.send("pose_with_covariance", pose_message, header, position, covariance)

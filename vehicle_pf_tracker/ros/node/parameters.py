@@ -21,7 +21,8 @@ between two frames).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
 
 from rcl_interfaces.msg import (
     FloatingPointRange,
@@ -35,9 +36,10 @@ from rclpy.parameter import Parameter
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec, unknown_name
-from vehicle_pf_tracker.ros.rclpy_internals import parameter_overrides
 
 QOS_PREFIX = "qos_overrides."
+_OF_RCLPY = {"use_sim_time", "start_type_description_service"}
+"""Parameters that rclpy itself declares."""
 
 
 def describe(spec: ParameterSpec) -> ParameterDescriptor:
@@ -66,9 +68,11 @@ class ParameterTable:
     Parameters
     ----------
     node : Node
-        Its overrides (files, command line) are taken over the defaults.
+        Node to declare them on.
     defaults : Configuration
         Defaults of the node's variant.
+    overrides : mapping
+        Values taken over the defaults, by name; those of unknown names are passed over.
     check : callable
         Called with each new configuration before it is taken; raises InputError to refuse it.
     changed : callable
@@ -84,13 +88,13 @@ class ParameterTable:
         self,
         node: Node,
         defaults: Configuration,
+        overrides: Mapping[str, Any],
         check: Callable[[Configuration], None],
         changed: Callable[[Configuration], None],
     ) -> None:
         self._specs = defaults.specs()
         self._check = check
         self._changed = changed
-        overrides = parameter_overrides(node, tuple(self._specs))
         self.configuration = defaults.updated(overrides)
         for name, value in self.configuration.to_mapping().items():
             # The override is in the value already, converted; rclpy refuses 6 where 6.0 is meant.
@@ -125,13 +129,27 @@ class ParameterTable:
         return self.configuration.updated({one.name: one.value for one in parameters})
 
 
-def unknown_overrides(node: Node, *, qos: bool) -> list[str]:
+def take_overrides(node: Node) -> dict[str, Any]:
+    """Return the values given to `node` by files and the command line, by parameter name.
+
+    The node was made with `automatically_declare_parameters_from_overrides`, the public way to ask
+    for them, and is left as if it had not been.
+    """
+    given = {name: one.value for name, one in node.get_parameters_by_prefix("").items()}
+    for name in given.keys() - _OF_RCLPY:
+        node.undeclare_parameter(name)
+    return {name: value for name, value in given.items() if name not in _OF_RCLPY}
+
+
+def unknown_overrides(node: Node, overrides: Iterable[str], *, qos: bool) -> list[str]:
     """Say which overrides name no declared parameter, and which one may be meant.
 
     Parameters
     ----------
     node : Node
         rclpy keeps such overrides silently.
+    overrides : iterable of str
+        Names of the parameters that were given.
     qos : bool
         True to look at the names of QoS overrides, which are declared with their subscription,
         or at all others.
@@ -139,6 +157,6 @@ def unknown_overrides(node: Node, *, qos: bool) -> list[str]:
     known = list(node.get_parameters_by_prefix(""))
     return [
         unknown_name(name, known)
-        for name in parameter_overrides(node, ())
+        for name in overrides
         if name not in known and name.startswith(QOS_PREFIX) is qos
     ]

@@ -23,8 +23,9 @@ import threading
 from collections.abc import Mapping
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
-from sensor_msgs.msg import CompressedImage
+from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
@@ -33,17 +34,21 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
+from vehicle_pf_tracker.image.stillness import PATIENCE, Stillness
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import NOT_READY, WAITING
-from vehicle_pf_tracker.ros.node.camera_inputs import StreamLocalisation
+from vehicle_pf_tracker.ros.messages import NOT_READY, WAITING, stamp_ns
+from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
 from vehicle_pf_tracker.ros.node.diagnostics import Health
-from vehicle_pf_tracker.ros.node.image_input import SerializedImage
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
-from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.estimate import START, Estimate
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TargetError
 
+_STILL = (
+    f"the target has not moved for {PATIENCE:g} s while other things did: it stands, or it is "
+    "no vehicle"
+)
 _THREAD = "loading kernels"
 _REASON = f"{NOT_READY}; the first start compiles them, for up to a minute"
 
@@ -118,6 +123,8 @@ class Stream(NodeStream):
         Publishers of the estimates.
     health : Health
         Counts what happens.
+    cameras : CameraInputs
+        Where lens and pose of the camera come from.
 
     Attributes
     ----------
@@ -136,6 +143,7 @@ class Stream(NodeStream):
         configuration: Configuration,
         outputs: TrackerOutputs,
         health: Health,
+        cameras: CameraInputs,
     ) -> None:
         super().__init__(node, configuration, outputs, health)
         self._outputs = outputs
@@ -145,7 +153,8 @@ class Stream(NodeStream):
         self._loading = KernelLoading(configuration.tracker.kernels)
         self.asked: Box | None = None
         self._target_problem = ""
-        self.localisation = StreamLocalisation(variant.name, configuration.session.road)
+        self._stillness = Stillness()
+        self.localisation = StreamLocalisation(variant.name, configuration.session.road, cameras)
         self.estimate: Estimate | None = None
         if not self.get_ready():
             self.log.info(self._loading.reason)
@@ -167,11 +176,12 @@ class Stream(NodeStream):
 
     @property
     def facts(self) -> Mapping[str, object]:
-        """Choices that the parameters leave open: the seed and the kernels in use."""
-        if self._session is None:
-            return {"seed": self._configuration.tracker.seed, "kernels": self._loading.reason}
-        tracker = self._session.tracker
-        return {"seed": tracker.seed, "kernels": tracker.kernels.name}
+        """The variant, and choices that the parameters leave open: the seed and the kernels."""
+        seed, kernels = self._configuration.tracker.seed, self._loading.reason
+        if self._session is not None:
+            tracker = self._session.tracker
+            seed, kernels = tracker.seed, tracker.kernels.name
+        return {"variant": self._variant.name, "seed": seed, "kernels": kernels}
 
     @property
     def target_words(self) -> str:
@@ -184,7 +194,7 @@ class Stream(NodeStream):
         """The present box: that of the estimate, else the configured one."""
         return self.estimate.box if self.estimate else self._configuration.session.target.box
 
-    def take(self, message: SerializedImage | CompressedImage) -> None:
+    def take(self, message: Image | CompressedImage) -> None:
         """Answer an image with exactly one `~/mode`, and with an estimate where there is one."""
         if self.get_ready():
             self.process(message)
@@ -216,7 +226,12 @@ class Stream(NodeStream):
         """
         self.asked = check_target(box, MAX_SIDE, MAX_SIDE)
 
-    def reset(self) -> None:
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Width and height of the stream's images, px; None before the first."""
+        return self._session.size if self._session else None
+
+    def reset(self) -> str:
         """Go back to the configured target, or to waiting for one.
 
         Raises
@@ -227,12 +242,17 @@ class Stream(NodeStream):
         """
         if not self.get_ready() or self._session is None:
             raise InputError(self._loading.reason)
-        size = self._session.size
+        box, size = self._configuration.session.target.box, self.size
         self.asked = self.estimate = None
         self._session.reset()
-        self._target_problem = self._misfit(self._configuration, size)
-        if self._target_problem:
-            raise InputError(f"{self._target_problem}; waiting for a target")
+        self._target_problem = ""
+        if box is not None and size is not None:
+            try:
+                check_target(box, *size)
+            except InputError as error:
+                self._target_problem = str(error)
+                raise InputError(f"{error}; waiting for a target") from None
+        return self.target_words
 
     def reconfigure(self, configuration: Configuration) -> None:
         """Take new parameters between two images, or when their kernels are loaded."""
@@ -261,31 +281,6 @@ class Stream(NodeStream):
         if session.tracker.seed != before:
             self.tell_drawn_seed(session.tracker.seed)
 
-    def check(self, configuration: Configuration) -> None:
-        """Refuse a configuration with a new target that is outside the stream's images.
-
-        Raises
-        ------
-        InputError
-            With the reason.
-        """
-        is_new = configuration.session.target != self._configuration.session.target
-        problem = self._misfit(configuration, self._session.size if self._session else None)
-        if is_new and problem:
-            raise InputError(problem)
-
-    @staticmethod
-    def _misfit(configuration: Configuration, size: tuple[int, int] | None) -> str:
-        """Return why the configured target does not fit images of this size; empty if it does."""
-        box = configuration.session.target.box
-        if box is None or size is None:
-            return ""
-        try:
-            check_target(box, *size)
-        except InputError as error:
-            return str(error)
-        return ""
-
     def _wait(self, header: Header, reason: str) -> None:
         """Answer an image in which nothing can be tracked, for this reason."""
         if reason not in (self._loading.reason, self._target_problem):
@@ -299,7 +294,7 @@ class Stream(NodeStream):
         assert session is not None
         if session.refusal:
             self.health.refuse_target(session.refusal)
-        events = self._events(session)
+        events, level = self._events(session), None
         if estimate is None and self._target_problem:
             events["reason"] = self._target_problem
         mode = estimate.mode.value if estimate is not None else WAITING
@@ -312,11 +307,31 @@ class Stream(NodeStream):
             words = self.localisation.words
             self.health.road = self.localisation.values
             events |= self.health.road
+            level = self._doubt(header, frame, estimate, events)
         if own.publish.overlay:
             self._outputs.publish_overlay(header, frame, mode, estimate, words)
         self.health.answered(mode, estimate.duration * 1e3 if estimate else None)
         scalars = estimate.scalars() if estimate else {}
-        self.publish_mode(header, mode, {**scalars, **events})
+        self.publish_mode(header, mode, {**scalars, **events}, level)
+
+    def _doubt(
+        self, header: Header, frame: Frame, estimate: Estimate, events: dict[str, object]
+    ) -> bytes | None:
+        """Ask what speaks against the target; return the level where that is a warning."""
+        still, words = self._stillness, []
+        if estimate.regime == START:
+            still.begin(estimate.box, stamp_ns(header))
+            words = self.doubts(frame, estimate.box)
+        was_suspect = still.is_suspect
+        still.look(frame, estimate.box, stamp_ns(header))
+        events["moved"] = still.moved
+        if still.is_suspect and not was_suspect:
+            words.append(_STILL)
+        for sentence in words:
+            self.log.warning(sentence)
+        if words:
+            events["event"] = "; ".join([*map(str, filter(None, [events.get("event")])), *words])
+        return DiagnosticStatus.WARN if still.is_suspect else None
 
     def _events(self, session: Session) -> dict[str, object]:
         words = "; ".join(session.events)

@@ -23,20 +23,16 @@ from geometry_msgs.msg import PointStamped, PolygonStamped
 from sensor_msgs.msg import RegionOfInterest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.road.camera import PoseTree
 from vehicle_pf_tracker.ros.messages import detection_type
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
 from vehicle_pf_tracker.ros.node.image_input import image_topic
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.input_messages import (
-    ImageLens,
     box_of_detection,
     box_of_point,
     box_of_polygon,
     box_of_region,
-    check_frame_id,
 )
 from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
 from vehicle_pf_tracker.ros.node.stream import Stream
@@ -72,7 +68,7 @@ class TrackerNode(ImageNode):
     def __init__(self, variant: Variant, **options: Any) -> None:
         super().__init__(f"{variant.name}_tracker", **options)
         self._variant = variant
-        self._cameras = CameraInputs(self, self._take_lens, self._take_poses)
+        self._cameras = CameraInputs(self)
         self.begin(Configuration.of(variant))
 
     def prepare(self) -> None:
@@ -80,11 +76,10 @@ class TrackerNode(ImageNode):
         configuration = self.table.configuration
         outputs = TrackerOutputs(self, image_topic(self, configuration.node.image_transport))
         self._outputs = outputs
-        self.stream = Stream(self, self._variant, configuration, outputs, self.diagnostics.begin())
-        self.diagnostics.facts = {"variant": self._variant.name, **self.stream.facts}
+        health = self.diagnostics.begin()
+        self.stream = Stream(self, self._variant, configuration, outputs, health, self._cameras)
         self._has_logged_ready = False
         self._ready_timer = self.poll(_POLL, self._await_kernels)
-        self.serve("~/reset", self._reset)
 
     def activate(self) -> None:
         """Open the inputs."""
@@ -122,28 +117,13 @@ class TrackerNode(ImageNode):
         self, read: Callable[[Stream], Box], topic: str = "", message: Any = None
     ) -> None:
         """Start on the box that is read; a message with a header is to be in the images' frame."""
-        if self.stream is None:
-            return
-        try:
+
+        def start(stream: Stream) -> None:
             if message is not None:
-                suffix = self.table.configuration.node.output_frame_suffix
-                check_frame_id(topic, message.header, self.stream.frame_id, suffix)
-            self.stream.set_target(read(self.stream))
-        except InputError as error:
-            self.stream.refuse("target", str(error))
+                stream.check_frame_id(topic, message.header)
+            stream.set_target(read(stream))
 
-    def _take_lens(self, found: ImageLens) -> None:
-        if self.stream is not None:
-            self.stream.localisation.take_lens(found)
-
-    def _take_poses(self, tree: PoseTree) -> None:
-        if self.stream is not None:
-            self.stream.localisation.take_poses(tree)
-
-    def _reset(self) -> str:
-        assert self.stream is not None
-        self.stream.reset()
-        return self.stream.target_words
+        self.ask("target", start)
 
     def _await_kernels(self) -> None:
         """Log once that the node is ready: active, and with kernels."""
@@ -151,21 +131,15 @@ class TrackerNode(ImageNode):
         if self.stream is None or not self.stream.get_ready():
             return
         self._ready_timer.cancel()
-        self.diagnostics.facts.update(self.stream.facts)
         if source is not None and not self._has_logged_ready:
             self._has_logged_ready = True
             kernels = self.stream.facts["kernels"]
             words = f"ready: images on {source}, {self.stream.target_words}, {kernels} kernels"
             self.get_logger().info(words)
 
-    def _check(self, configuration: Configuration) -> None:
-        if self.stream is not None:
-            self.stream.check(configuration)
-
     def _reconfigure(self, configuration: Configuration) -> None:
+        super()._reconfigure(configuration)
         if self.stream is not None:
-            self.stream.reconfigure(configuration)
-            self.diagnostics.facts.update(self.stream.facts)
             self._ready_timer.reset()
         if self.diagnostics.source is not None:
             self._cameras.open(configuration.session.road)

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from rclpy.node import Node
@@ -25,12 +25,16 @@ from rclpy.node import Node
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.controls import Controls, Pace, PlaybackClock
-from vehicle_pf_tracker.ros.replay.discovery import Spinner
-from vehicle_pf_tracker.ros.replay.publishing import TopicPublisher
-from vehicle_pf_tracker.ros.replay.replay_options import Progress, ReplayOptions
-from vehicle_pf_tracker.ros.replay.tracker_link import Targets, TrackerLink
+from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
+from vehicle_pf_tracker.ros.replay.publishing import TopicPublisher, make_publishers
+from vehicle_pf_tracker.ros.replay.replay_options import Progress, ReplayOptions, ReplayReport
+from vehicle_pf_tracker.ros.replay.tracker_link import Targets, TrackerLink, starting_target
 
 _ACKNOWLEDGEMENT_SLICE = 0.05
+
+
+class NoTargetError(InputError):
+    """Tracker nodes are there, but no target for them."""
 
 
 class Player:
@@ -46,15 +50,10 @@ class Player:
         Recording to play.
     options : ReplayOptions
         Options of the replay.
-    publishers : mapping of str to TopicPublisher
-        By recorded topic.
-    links : sequence of TrackerLink
-        The nodes that take part.
-
-    Attributes
-    ----------
-    frames, messages : int
-        Images and messages published so far, in all passes.
+    on_progress : callable
+        Called after each image.
+    tell : callable
+        Called with sentences for the user while it is getting ready.
     """
 
     def __init__(
@@ -63,15 +62,17 @@ class Player:
         spinner: Spinner,
         recording: Recording,
         options: ReplayOptions,
-        publishers: Mapping[str, TopicPublisher],
-        links: Sequence[TrackerLink],
+        on_progress: Callable[[Progress], None],
+        tell: Callable[[str], None],
     ) -> None:
-        self.frames = self.messages = 0
-        self._spinner = spinner
-        self._recording = recording
-        self._options = options
-        self._publishers = publishers
-        self._links = links
+        self._frames = self._messages = 0
+        self._node, self._spinner = node, spinner
+        self._recording, self._options = recording, options
+        self._on_progress, self._tell = on_progress, tell
+        self._publishers, notices = make_publishers(node, recording, options)
+        for notice in notices:
+            tell(notice)
+        self._links: list[TrackerLink] = []
         self._frame = 0
         self._skipped: list[str] = []
         rate = options.rate or (None if options.lockstep else 1.0)
@@ -80,44 +81,97 @@ class Player:
         self._controls = Controls(node, rate or 0.0, length, is_paused=options.start_paused)
         self._clock = PlaybackClock(node, self._pace, options.clock) if options.clock else None
 
-    @property
-    def notices(self) -> tuple[str, ...]:
-        """Irregularities of the recording, a sentence each."""
-        if not self._skipped:
-            return ()
-        return (f"skipped {len(self._skipped)} messages; the first, {self._skipped[0]}",)
-
-    def play(self, targets: Targets, on_progress: Callable[[Progress], None]) -> None:
-        """Play until the end, or until interrupted when looping.
+    def run(self) -> ReplayReport:
+        """Prepare, play and report; an interruption ends the replay early, with its report.
 
         Raises
         ------
+        NoTargetError
+            If there are tracker nodes, but neither a target nor truth.
         InputError
-            If a node does not answer in time in lock-step.
-        Interrupted
-            If the user asks to end.
+            If a node is missing, refuses the target or does not answer in time.
         """
+        began, is_interrupted = time.monotonic(), False
+        try:
+            targets = self._get_ready()
+            began = time.monotonic()
+            self._play(targets)
+        except Interrupted:
+            is_interrupted = True
+        skipped = self._skipped
+        notices = (f"skipped {len(skipped)} messages; the first, {skipped[0]}",) if skipped else ()
+        return ReplayReport(
+            frames=self._frames,
+            messages=self._messages,
+            seconds=time.monotonic() - began,
+            nodes=tuple(link.report() for link in self._links),
+            notices=notices,
+            interrupted=is_interrupted,
+        )
+
+    def _get_ready(self) -> Targets:
+        options, images = self._options, self._publishers.get(self._recording.image_topic)
+        if images is not None:
+            self._await_subscriber(images)
+            self._connect(images)
+        elif options.lockstep or options.nodes or options.wait_for_subscribers:
+            raise InputError(
+                f"the image topic {self._recording.image_topic} is not played; "
+                "add it to --topics, or leave out what waits for it"
+            )
+        target = None
+        if self._links and options.set_target:
+            target = starting_target(self._recording, options)
+            if target is None:
+                raise NoTargetError(
+                    f"the recording {self._recording.path} has no true box to start on; "
+                    "give --target x,y,w,h, or --no-target to leave the nodes' targets alone"
+                )
+        self._spinner.until_time(time.monotonic() + options.delay)
+        return Targets(self._links, target)
+
+    def _await_subscriber(self, images: TopicPublisher) -> None:
+        if self._options.wait_for_subscribers and not images.subscription_count():
+            self._tell(f"waiting for a subscriber of {images.name}")
+            self._spinner.until(lambda: images.subscription_count() > 0)
+
+    def _connect(self, images: TopicPublisher) -> None:
+        """Link the nodes, and wait until images and answers will reach each other."""
+        options = self._options
+        lookout = Lookout(self._node, self._spinner, images.name)
+        if options.nodes:
+            names = lookout.await_named(options.nodes, options.timeout)
+        else:
+            names = lookout.find(options.timeout if options.lockstep else 0.0)
+        if not names:
+            if options.lockstep:
+                raise InputError(lookout.nobody())
+            self._tell(lookout.nobody())
+        self._links += [
+            TrackerLink(self._node, self._spinner, name, options.timeout) for name in names
+        ]
+        for link in self._links:
+            link.greet()
+        self._spinner.until(lambda: images.subscription_count() >= len(names), options.timeout)
+
+    def _play(self, targets: Targets) -> None:
+        """Play until the end, or until interrupted when looping."""
         while True:
             self._spinner.check()
-            self._play_pass(targets, on_progress)
+            self._pace.restart()
+            self._frame = 0
+            for link in self._links:
+                link.answers.begin_pass()
+            targets.begin_pass()
+            position: float | None = 0.0
+            while position is not None:
+                position = self._play_from(position, targets)
             self._await_acknowledgement()
             self._await_last_answers()
             if not self._options.loop:
                 return
 
-    def _play_pass(self, targets: Targets, on_progress: Callable[[Progress], None]) -> None:
-        self._pace.restart()
-        self._frame = 0
-        for link in self._links:
-            link.answers.begin_pass()
-        targets.begin_pass()
-        position: float | None = 0.0
-        while position is not None:
-            position = self._play_from(position, targets, on_progress)
-
-    def _play_from(
-        self, position: float, targets: Targets, on_progress: Callable[[Progress], None]
-    ) -> float | None:
+    def _play_from(self, position: float, targets: Targets) -> float | None:
         """Play from `position` s to the end; return another position if the user asks for it."""
         begin_ns, length_ns = self._span()
         self._pace.restart()
@@ -132,7 +186,7 @@ class Player:
             now = (message.log_time_ns - begin_ns) * 1e-9
             self._controls.reach(now)
             if self._is_image(message):
-                on_progress(Progress(self.frames, now, length_ns * 1e-9))
+                self._on_progress(Progress(self._frames, now, length_ns * 1e-9))
         return None
 
     def _await_turn(self, message: RecordedMessage) -> None:
@@ -181,13 +235,13 @@ class Player:
         except InputError as error:
             self._skipped.append(f"of {message.topic} at {message.log_time_ns} ns: {error}")
             return False
-        self.messages += 1
+        self._messages += 1
         return True
 
     def _follow(self, message: RecordedMessage) -> None:
         """Count an image that was published, and in lock-step wait for its answers."""
         assert message.stamp_ns is not None
-        self.frames += 1
+        self._frames += 1
         self._frame += 1
         for link in self._links:
             link.answers.expect(self._frame, message.stamp_ns)

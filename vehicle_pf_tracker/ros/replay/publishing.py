@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any, NamedTuple
@@ -181,7 +180,7 @@ def _make_publisher(
     name = _final_name(topic, options)
     is_image = kind is Image or _is_decompressed(topic, options)
     depth = _IMAGE_DEPTH if is_image else _DEPTH
-    qos = options.qos.get(topic.name) or recorded_qos(topic.offered_qos, depth)
+    qos = recorded_qos(topic.offered_qos, depth)
     if _is_decompressed(topic, options):
         return TopicPublisher(node, name, Image, qos, decompressed)
     return TopicPublisher(node, name, kind, qos)
@@ -190,7 +189,7 @@ def _make_publisher(
 def _check_names(recording: Recording, options: ReplayOptions) -> None:
     known = {topic.name for topic in recording.topics}
     played = {_played_name(topic, options) for topic in recording.topics}
-    chosen = {*options.topics, *options.exclude, *options.qos}
+    chosen = {*options.topics, *options.exclude}
     unknown = chosen - known | {*options.remap} - known - played
     if unknown:
         raise InputError(
@@ -208,13 +207,8 @@ def _check_names(recording: Recording, options: ReplayOptions) -> None:
 
 
 def _is_chosen(topic: TopicInfo, options: ReplayOptions) -> bool:
-    name = topic.name
-    if options.topics and name not in options.topics:
-        return False
-    if options.regex and not re.fullmatch(options.regex, name):
-        return False
-    is_matched = options.exclude_regex and re.fullmatch(options.exclude_regex, name)
-    return name not in options.exclude and not is_matched
+    is_named = not options.topics or topic.name in options.topics
+    return is_named and topic.name not in options.exclude
 
 
 def _is_decompressed(topic: TopicInfo, options: ReplayOptions) -> bool:

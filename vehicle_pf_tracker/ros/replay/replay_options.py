@@ -18,23 +18,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import yaml
-from rclpy.duration import Duration
-from rclpy.qos import (
-    DurabilityPolicy,
-    HistoryPolicy,
-    LivelinessPolicy,
-    QoSProfile,
-    ReliabilityPolicy,
-)
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.estimates import EstimateRow
-from vehicle_pf_tracker.parameters.files import read_yaml_file
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,14 +45,8 @@ class ReplayOptions:
         Begin paused, until ``~/resume`` or ``~/play_next`` is called.
     topics : tuple of str
         Play these topics only; empty for all. The image topic is among them only if named.
-    regex : str
-        Play only topics that this pattern matches whole; empty for all.
     exclude : tuple of str
         Play all but these.
-    exclude_regex : str
-        Play all but those that this pattern matches whole; empty for none.
-    qos : mapping of str to QoSProfile
-        Recorded topics that are published with another QoS than recorded.
     remap : mapping of str to str
         Recorded topic to the name it is published under.
     clock : float or None
@@ -92,10 +76,7 @@ class ReplayOptions:
     delay: float = 0.0
     start_paused: bool = False
     topics: tuple[str, ...] = ()
-    regex: str = ""
     exclude: tuple[str, ...] = ()
-    exclude_regex: str = ""
-    qos: Mapping[str, QoSProfile] = field(default_factory=dict)
     remap: Mapping[str, str] = field(default_factory=dict)
     clock: float | None = None
     wait_for_subscribers: bool = False
@@ -167,14 +148,6 @@ class ReplayReport:
     interrupted: bool = False
 
 
-_POLICIES = {
-    "history": HistoryPolicy,
-    "reliability": ReliabilityPolicy,
-    "durability": DurabilityPolicy,
-    "liveliness": LivelinessPolicy,
-}
-_DURATIONS = ("deadline", "lifespan", "liveliness_lease_duration")
-_CONVENTIONS = "avoid_ros_namespace_conventions"
 _DEEPEST = 100_000
 """Messages; so many small ones are kept without harm, and a larger number is a mistake."""
 
@@ -209,52 +182,9 @@ def recorded_qos(offered: str, depth: int) -> QoSProfile:
     )
 
 
-def read_qos_overrides(path: Path) -> dict[str, QoSProfile]:
-    """Read a file of QoS by recorded topic, as rosbag2's ``--qos-profile-overrides-path`` does.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or says something that is not understood.
-    """
-    document = read_yaml_file(path, "QoS file")
-    if not isinstance(document, dict):
-        raise InputError(f"the QoS file {path} does not name topics")
-    try:
-        return {str(topic): _profile(one) for topic, one in document.items()}
-    except (InputError, TypeError, ValueError) as error:
-        raise InputError(f"the QoS file {path}: {error}") from None
-
-
 def _listed(text: str) -> list[Any]:
     try:
         found = yaml.safe_load(text)
     except (yaml.YAMLError, ValueError, RecursionError):
         return []
     return found if isinstance(found, list) else []
-
-
-def _profile(wanted: Any) -> QoSProfile:
-    if not isinstance(wanted, Mapping):
-        raise InputError(f"{wanted!r:.60} is not a profile, like {{durability: transient_local}}")
-    values: dict[str, Any] = {"history": HistoryPolicy.KEEP_LAST, "depth": 10}
-    for key, value in wanted.items():
-        values[str(key)] = _value(str(key), value)
-    return QoSProfile(**values)
-
-
-def _value(key: str, value: Any) -> object:
-    if key in _POLICIES:
-        try:
-            return _POLICIES[key][str(value).upper()]
-        except KeyError:
-            known = ", ".join(name.lower() for name in _POLICIES[key].__members__)
-            raise InputError(f"{key} must be one of {known}, not {value!r:.60}") from None
-    if key == "depth" and isinstance(value, int) and 0 < value <= _DEEPEST:
-        return value
-    if key in _DURATIONS and isinstance(value, Mapping) and set(value) <= {"sec", "nsec"}:
-        return Duration(seconds=value.get("sec", 0), nanoseconds=value.get("nsec", 0))
-    if key == _CONVENTIONS and isinstance(value, bool):
-        return value
-    known = ", ".join([*_POLICIES, "depth", *_DURATIONS, _CONVENTIONS])
-    raise InputError(f"{key}: {value!r:.60} is not understood; there are {known}")

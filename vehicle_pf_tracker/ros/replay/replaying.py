@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -31,21 +30,11 @@ from rclpy.signals import SignalHandlerOptions
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
-from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
+from vehicle_pf_tracker.ros.replay.discovery import Spinner
 from vehicle_pf_tracker.ros.replay.player import Player
-from vehicle_pf_tracker.ros.replay.publishing import TopicPublisher, decompressed, make_publishers
-from vehicle_pf_tracker.ros.replay.replay_options import (
-    NodeReport,
-    Progress,
-    ReplayOptions,
-    ReplayReport,
-)
-from vehicle_pf_tracker.ros.replay.tracker_link import (
-    Targets,
-    TrackerLink,
-    first_image,
-    starting_target,
-)
+from vehicle_pf_tracker.ros.replay.publishing import decompressed
+from vehicle_pf_tracker.ros.replay.replay_options import Progress, ReplayOptions, ReplayReport
+from vehicle_pf_tracker.ros.replay.tracker_link import first_image
 from vehicle_pf_tracker.ros.transport import image_transport
 
 
@@ -77,10 +66,6 @@ def noted_interrupts() -> Iterator[threading.Event]:
 
 
 NODE_NAME = "bag_replay"
-
-
-class NoTargetError(InputError):
-    """Tracker nodes are there, but no target for them."""
 
 
 def replay(
@@ -118,110 +103,9 @@ def replay(
     with noted_interrupts() as stop, _ros_node(recording, options, tell) as node:
         spinner = Spinner(node, stop, watch)
         try:
-            return _Replay(node, spinner, recording, options, tell).run(on_progress)
+            return Player(node, spinner, recording, options, on_progress, tell).run()
         finally:
             spinner.close()
-
-
-class _Replay:
-    """One replay on a node that is ready."""
-
-    def __init__(
-        self,
-        node: Node,
-        spinner: Spinner,
-        recording: Recording,
-        options: ReplayOptions,
-        tell: Callable[[str], None],
-    ) -> None:
-        self._node = node
-        self._spinner = spinner
-        self._recording = recording
-        self._options = options
-        self._tell = tell
-        self._publishers, notices = make_publishers(node, recording, options)
-        for notice in notices:
-            tell(notice)
-        self._links: list[TrackerLink] = []
-        self._player = Player(node, spinner, recording, options, self._publishers, self._links)
-
-    def run(self, on_progress: Callable[[Progress], None]) -> ReplayReport:
-        """Prepare, play and report; an interruption ends the replay early, with its report."""
-        began = time.monotonic()
-        try:
-            targets = self._get_ready()
-            began = time.monotonic()
-            self._player.play(targets, on_progress)
-        except Interrupted:
-            return self._report(began, interrupted=True)
-        return self._report(began, interrupted=False)
-
-    def _get_ready(self) -> Targets:
-        options, images = self._options, self._publishers.get(self._recording.image_topic)
-        if images is not None:
-            self._await_subscriber(images)
-            self._connect(images)
-        elif options.lockstep or options.nodes or options.wait_for_subscribers:
-            raise InputError(
-                f"the image topic {self._recording.image_topic} is not played; "
-                "add it to --topics, or leave out what waits for it"
-            )
-        targets = self._targets()
-        self._spinner.until_time(time.monotonic() + options.delay)
-        return targets
-
-    def _await_subscriber(self, images: TopicPublisher) -> None:
-        if self._options.wait_for_subscribers and not images.subscription_count():
-            self._tell(f"waiting for a subscriber of {images.name}")
-            self._spinner.until(lambda: images.subscription_count() > 0)
-
-    def _connect(self, images: TopicPublisher) -> None:
-        """Link the nodes, and wait until images and answers will reach each other."""
-        options = self._options
-        lookout = Lookout(self._node, self._spinner, images.name)
-        if options.nodes:
-            names = lookout.await_named(options.nodes, options.timeout)
-        else:
-            names = lookout.find(options.timeout if options.lockstep else 0.0)
-        if not names:
-            if options.lockstep:
-                raise InputError(lookout.nobody())
-            self._tell(lookout.nobody())
-        self._links += [
-            TrackerLink(self._node, self._spinner, name, options.timeout) for name in names
-        ]
-        for link in self._links:
-            link.greet()
-        self._spinner.until(lambda: images.subscription_count() >= len(names), options.timeout)
-
-    def _targets(self) -> Targets:
-        target = None
-        if self._links and self._options.set_target:
-            target = starting_target(self._recording, self._options)
-            if target is None:
-                raise NoTargetError(
-                    f"the recording {self._recording.path} has no true box to start on; "
-                    "give --target x,y,w,h, or --no-target to leave the nodes' targets alone"
-                )
-        return Targets(self._links, target)
-
-    def _report(self, began: float, interrupted: bool) -> ReplayReport:
-        return ReplayReport(
-            frames=self._player.frames,
-            messages=self._player.messages,
-            seconds=time.monotonic() - began,
-            nodes=tuple(
-                NodeReport(
-                    link.name,
-                    link.answers.count,
-                    link.answers.rows(),
-                    link.answers.road_columns(),
-                )
-                for link in self._links
-            ),
-            notices=self._player.notices,
-            interrupted=interrupted,
-        )
 
 
 @contextmanager

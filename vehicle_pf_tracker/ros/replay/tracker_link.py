@@ -36,7 +36,7 @@ from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.messages import NOT_READY, stamp_ns
 from vehicle_pf_tracker.ros.replay.discovery import DISCOVERY, Spinner
-from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions
 from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS
 
 DROPPED = "DROPPED"
@@ -143,6 +143,11 @@ class TrackerLink:
         self._get = node.create_client(GetParameters, f"{name}/get_parameters")
         self._set = node.create_client(SetParametersAtomically, f"{name}/set_parameters_atomically")
         self._reset = node.create_client(Trigger, f"{name}/reset")
+
+    def report(self) -> NodeReport:
+        """Return what the node has answered."""
+        answers = self.answers
+        return NodeReport(self.name, answers.count, answers.rows(), answers.road_columns())
 
     def greet(self) -> None:
         """Wait until the node and the player know all of each other's endpoints.

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from rclpy.node import Node
-from sensor_msgs.msg import CompressedImage
+from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -32,12 +32,12 @@ from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
-from vehicle_pf_tracker.ros.node.image_input import SerializedImage
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import in_pixels
 from vehicle_pf_tracker.ros.traffic.messages import read_serialized_detections, read_stamp, scalars
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
+from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
@@ -191,7 +191,7 @@ class TrafficStream(NodeStream):
     ) -> None:
         super().__init__(node, configuration, outputs, health)
         self._outputs = outputs
-        self._waiting: WaitingImages[SerializedImage | CompressedImage] | None = None
+        self._waiting: WaitingImages[Image | CompressedImage] | None = None
         if configuration.tracker.detector.kind == TOPIC:
             self._waiting = WaitingImages()
         self.vehicles = Vehicles(configuration)
@@ -211,6 +211,7 @@ class TrafficStream(NodeStream):
             "detections of no image": waiting.unmatched,
         }  # fmt: skip
         return {
+            "variant": TRAFFIC.name,
             "seed": self.vehicles.session.tracker.seed,
             "detector": self._configuration.tracker.detector.kind,
             **self.vehicles.summary(),
@@ -222,7 +223,7 @@ class TrafficStream(NodeStream):
         """True while an image waits for its detections."""
         return bool(self._waiting)
 
-    def take(self, message: SerializedImage | CompressedImage) -> None:
+    def take(self, message: Image | CompressedImage) -> None:
         """Take an image, which is answered with exactly one `~/mode`, now or after its detector."""
         if self._waiting is None:
             self.process(message)
@@ -278,6 +279,16 @@ class TrafficStream(NodeStream):
         if self._waiting is not None:
             self._waiting.clear()
 
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Width and height of the stream's images, px; None before the first."""
+        return self.vehicles.session.size
+
+    def reset(self) -> str:
+        """Forget all vehicles and counts; begin on the configured target."""
+        self.vehicles.reset()
+        return "all vehicles are forgotten"
+
     def reconfigure(self, configuration: Configuration) -> None:
         """Take new parameters between two images."""
         tracker = self.vehicles.session.tracker
@@ -306,6 +317,8 @@ class TrafficStream(NodeStream):
         self._warn_of_unusable(self._detections, frame)
         step_ms = (time.perf_counter() - self._began) * 1e3
         vehicles, own, events = self.vehicles, self._configuration.node, self._events
+        while vehicles.given:
+            events += self.doubts(frame, vehicles.given.pop())
         period = vehicles.session.tracker.frame_period
         estimates, selected = vehicles.estimates, vehicles.selected
         self._outputs.publish_vehicles(header, estimates, own, period)

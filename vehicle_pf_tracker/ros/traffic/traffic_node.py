@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from geometry_msgs.msg import PointStamped
@@ -24,16 +24,15 @@ from rclpy.qos import QoSProfile
 from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Int64
 
-from vehicle_pf_tracker.core.box import check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import detections_type
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
-from vehicle_pf_tracker.ros.node.input_messages import box_of_region, check_frame_id, finite
+from vehicle_pf_tracker.ros.node.input_messages import box_of_region, finite
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.stream import MOST_WAITING, TrafficStream
-from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles, plane_of
+from vehicle_pf_tracker.ros.traffic.vehicles import plane_of
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
@@ -78,10 +77,8 @@ class TrafficNode(ImageNode):
         outputs = TrafficOutputs(self, image_topic(self, configuration.node.image_transport))
         self._outputs = outputs
         self.stream = TrafficStream(self, configuration, outputs, self.diagnostics.begin())
-        self.diagnostics.facts = {"variant": TRAFFIC.name, **self.stream.facts}
         self._look_timer = self.poll(_LOOK_EVERY, self._look)
         self._look_timer.cancel()
-        self.serve("~/reset", self._reset)
         self.serve("~/remove_selected", self._remove)
 
     def activate(self) -> None:
@@ -122,45 +119,34 @@ class TrafficNode(ImageNode):
             self._after_step(self.stream)
 
     def _after_step(self, stream: TrafficStream) -> None:
-        self.diagnostics.facts.update(stream.facts)
         if not stream.is_waiting:
             self._look_timer.cancel()
         elif self._look_timer.is_canceled():
             self._look_timer.reset()
 
     def _on_region(self, message: RegionOfInterest) -> None:
-        def add(vehicles: Vehicles) -> None:
-            identity = vehicles.add(box_of_region(message))
-            if identity is not None:
-                self.get_logger().info(f"following {box_of_region(message)} as {identity}")
+        box = box_of_region(message)
 
-        self._ask("target", add)
+        def add(stream: TrafficStream) -> None:
+            identity = stream.vehicles.add(box)
+            if identity is not None:
+                self.get_logger().info(f"following {box} as {identity}")
+
+        self.ask("target", add)
 
     def _on_point(self, message: PointStamped) -> None:
-        def choose(vehicles: Vehicles) -> None:
-            assert self.stream is not None
-            suffix = self.table.configuration.node.output_frame_suffix
-            check_frame_id("~/clicked_point", message.header, self.stream.frame_id, suffix)
+        def choose(stream: TrafficStream) -> None:
+            stream.check_frame_id("~/clicked_point", message.header)
             x, y = finite("~/clicked_point", message.point.x, message.point.y)
-            vehicles.selection.choose_at((x, y), vehicles.estimates)
+            stream.vehicles.selection.choose_at((x, y), stream.vehicles.estimates)
 
-        self._ask("selection", choose)
+        self.ask("selection", choose)
 
     def _on_select(self, message: Int64) -> None:
-        self._ask("selection", lambda it: it.selection.choose(message.data, it.estimates))
+        def choose(stream: TrafficStream) -> None:
+            stream.vehicles.selection.choose(message.data, stream.vehicles.estimates)
 
-    def _ask(self, what: str, change: Callable[[Vehicles], None]) -> None:
-        if self.stream is None:
-            return
-        try:
-            change(self.stream.vehicles)
-        except InputError as error:
-            self.stream.refuse(what, str(error))
-
-    def _reset(self) -> str:
-        assert self.stream is not None
-        self.stream.vehicles.reset()
-        return "all vehicles are forgotten"
+        self.ask("selection", choose)
 
     def _remove(self) -> str:
         assert self.stream is not None
@@ -168,13 +154,4 @@ class TrafficNode(ImageNode):
 
     def _check(self, configuration: Configuration) -> None:
         plane_of(configuration.session.road)
-        box = configuration.session.target.box
-        size = self.stream.vehicles.session.size if self.stream is not None else None
-        before = self.table.configuration.session.target.box
-        if box is not None and size is not None and box != before:
-            check_target(box, *size)
-
-    def _reconfigure(self, configuration: Configuration) -> None:
-        if self.stream is not None:
-            self.stream.reconfigure(configuration)
-            self.diagnostics.facts.update(self.stream.facts)
+        super()._check(configuration)

@@ -66,7 +66,7 @@ class Selection:
         InputError
             If no vehicle has it.
         """
-        numbers = [one.identity for one in estimates]
+        numbers = [one.identity for one in estimates if one.identity]
         if identity != NONE and identity not in numbers:
             known = ", ".join(map(str, numbers[:_SHOWN])) + (", …" if numbers[_SHOWN:] else "")
             there = f"there are {known}" if numbers else "there is none"
@@ -81,7 +81,7 @@ class Selection:
         InputError
             If there is none, within the size of a vehicle.
         """
-        shown = [one for one in estimates if one.mode is not TrackMode.LOST]
+        shown = [one for one in estimates if one.identity and one.mode is not TrackMode.LOST]
         inside = [one for one in shown if _contains(one.box, point)]
         if inside:
             self.identity = min(inside, key=lambda one: (one.box.area, one.identity)).identity
@@ -97,7 +97,8 @@ class Selection:
 
     def of(self, estimates: Sequence[TrackEstimate]) -> TrackEstimate | None:
         """Return the estimate of the selected vehicle, where there is one."""
-        return next((one for one in estimates if one.identity == self.identity), None)
+        chosen = self.identity
+        return next((one for one in estimates if chosen and one.identity == chosen), None)
 
 
 def _contains(box: Box, point: Position) -> bool:
@@ -132,6 +133,8 @@ class Vehicles:
         Last crossing of each place.
     waiting : list of Box
         Targets that the first image will start.
+    given : list of Box
+        Targets followed since whoever looks at them emptied it.
     selection : Selection
         The vehicle that is reported like that of a single tracker.
 
@@ -158,6 +161,7 @@ class Vehicles:
         self._is_shown = False
         self._added = 0
         self.waiting: list[Box] = []
+        self.given: list[Box] = []
         self._configured: Box | None = configuration.session.target.box
 
     @property
@@ -204,6 +208,7 @@ class Vehicles:
         if self._is_shown:
             identity = self.session.add(box)
             self._added += 1
+            self.given.append(box)
             return identity
         check_target(box, MAX_SIDE, MAX_SIDE)
         self.waiting.append(box)
@@ -290,10 +295,12 @@ class Vehicles:
     def _try_to_add(self, box: Box, problems: list[str]) -> int:
         """Return the number of the vehicle in `box`, or `NONE` with a problem."""
         try:
-            return self.session.add(box)
+            identity = self.session.add(box)
         except InputError as error:
             problems.append(f"target refused: {error}")
             return NONE
+        self.given.append(box)
+        return identity
 
 
 def plane_of(road: RoadParameters) -> RoadPlane | None:

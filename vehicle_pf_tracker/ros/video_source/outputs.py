@@ -83,31 +83,6 @@ class Pace:
         return self.last
 
 
-class BackOff:
-    """Waits before one more try, twice as long as before the last.
-
-    Parameters
-    ----------
-    stop : threading.Event
-        Ends every wait.
-    shortest, longest : float
-        First wait, and the one that is kept to in the end, s.
-    """
-
-    def __init__(self, stop: threading.Event, shortest: float = 1.0, longest: float = 30.0) -> None:
-        self._stop, self._shortest, self._longest = stop, shortest, longest
-        self.seconds = shortest
-
-    def reset(self) -> None:
-        """Begin with the shortest wait again: an image came."""
-        self.seconds = self._shortest
-
-    def wait(self) -> None:
-        """Wait, unless the process ends meanwhile."""
-        self._stop.wait(self.seconds)
-        self.seconds = min(2 * self.seconds, self._longest)
-
-
 class ImageOutputs:
     """Publishes images, and what belongs to them; what nobody subscribes to is not made.
 

@@ -20,28 +20,23 @@ import sys
 import threading
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import rclpy
-from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
-from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
-from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, LOWEST_FPS, Footage, Picture
+from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs
+from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
-from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process
-from vehicle_pf_tracker.ros.transport import image_transport
-from vehicle_pf_tracker.ros.video_source.outputs import (
-    BackOff,
-    ImageOutputs,
-    Pace,
-    read_calibration,
-)
+from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
+from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_node
+from vehicle_pf_tracker.ros.video_source.outputs import ImageOutputs, Pace, read_calibration
 
 _NAME = "video_source"
 _LATE = 1.0
@@ -52,55 +47,55 @@ _IMAGE_BYTES = 1920 * 1080 * 3
 """Size of an image of which the segment holds four; one of 4K still fits once."""
 _LAST_WAIT = 2.0
 """Seconds that the thread gets to end; one that waits for a silent camera is left behind."""
+_FIRST_RETRY, _LAST_RETRY = 1.0, 30.0
+"""Seconds until a source that broke off is opened again: twice as long each time, up to the last.
+A camera that restarts is back within a minute, and one that is gone costs next to nothing."""
 _LOOK_EVERY = 0.1
 """Seconds between two looks whether the source has ended."""
 _USAGE = """\
 usage: video_source SOURCE [--ros-args -p NAME:=VALUE -r image:=TOPIC ...]
 SOURCE is a video file, a folder of images, a camera's index or a stream's URL. Parameters: source,
 fps, loop, frame_id, compressed, jpeg_quality, camera_info_url."""
-_SPECS: dict[str, tuple[object, str]] = {
-    "source": ("", "A video file, a folder of images, a camera's index, a stream's URL"),
-    "fps": (0.0, "Frame rate of a folder or a video, 1/s; 0 takes what it states"),
-    "loop": (False, "Begin a video or a folder again at its end"),
-    "frame_id": ("camera", "Frame of the images' headers"),
-    "compressed": (False, "Publish JPEG images too, on image/compressed"),
-    "jpeg_quality": (95, "Of these, 1 to 100"),
-    "camera_info_url": ("", "Calibration YAML, a path or file:///URL; published as camera_info"),
-}
-_RANGES = {"jpeg_quality": {"integer_range": [IntegerRange(from_value=1, to_value=100, step=1)]}}
 
 
-def declare(node: Node) -> dict[str, Any]:
-    """Declare the parameters of `node` and return their values, by name.
+@dataclass(frozen=True)
+class Settings:
+    """Parameters of the node, all of them for its start only."""
+
+    source: str = parameter(
+        "", "A video file, a folder of images, a camera's index, a stream's URL", read_only=True
+    )
+    fps: float = parameter(
+        0.0, "Frame rate of a folder or a video; 0 takes what it states",
+        bounds=(0.0, HIGHEST_FPS), unit="1/s", read_only=True,
+    )  # fmt: skip
+    loop: bool = parameter(False, "Begin a video or a folder again at its end", read_only=True)
+    frame_id: str = parameter("camera", "Frame of the images' headers", read_only=True)
+    compressed: bool = parameter(
+        False, "Publish JPEG images too, on image/compressed", read_only=True
+    )
+    jpeg_quality: int = parameter(95, "Quality of the JPEG images", bounds=(1, 100), read_only=True)
+    camera_info_url: str = parameter(
+        "", "Calibration YAML, a path or file:///URL; published as camera_info", read_only=True
+    )
+
+
+def declare(node: Node) -> Settings:
+    """Declare the parameters on `node`, which was made with automatic ones, and return them.
 
     Raises
     ------
     InputError
-        Naming the parameter that has a wrong value.
+        Naming every value that does not fit.
     """
-    values = {name: _declared(node, name) for name in _SPECS}
-    fps = values["fps"]
-    if not isinstance(fps, int | float) or (fps and not LOWEST_FPS <= fps <= HIGHEST_FPS):
-        raise InputError(
-            f"the parameter fps is neither 0 nor from {LOWEST_FPS:g} to {HIGHEST_FPS:g} images per "
-            f"second: {fps!r}"
-        )
-    return values
-
-
-def _declared(node: Node, name: str) -> Any:
-    default, description = _SPECS[name]
-    descriptor = ParameterDescriptor(
-        description=description,
-        read_only=True,
-        # A camera's index and a whole frame rate are integers on a command line.
-        dynamic_typing=name in {"source", "fps"},
-        **_RANGES.get(name, {}),
-    )
-    try:
-        return node.declare_parameter(name, default, descriptor).value
-    except (InvalidParameterTypeException, InvalidParameterValueException) as error:
-        raise InputError(f"the parameter {name} cannot have this value: {error}") from None
+    given = take_overrides(node)
+    if isinstance(index := given.get("source"), int):  # of a camera
+        given["source"] = str(index)
+    settings = from_mapping(Settings, given)
+    for name, spec in specs(Settings).items():
+        value = getattr(settings, name)
+        node.declare_parameter(name, value, describe(spec), ignore_override=True)
+    return settings
 
 
 class VideoSourceNode(Node):  # type: ignore[misc]
@@ -125,23 +120,22 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     """
 
     def __init__(self, source: str = "", **keywords: Any) -> None:
-        super().__init__(_NAME, **keywords)
+        super().__init__(_NAME, automatically_declare_parameters_from_overrides=True, **keywords)
         settings = declare(self)
-        self._source_name = source or str(settings["source"])
+        self._source_name = source or settings.source
         if not self._source_name:
             raise InputError("give a source: `video_source SOURCE`, or -p source:=SOURCE")
-        self._fps = float(settings["fps"]) or None  # 0 leaves the source's own
-        self._loops, self._frame_id = bool(settings["loop"]), str(settings["frame_id"])
-        url = settings["camera_info_url"]
+        self._settings = settings
+        url = settings.camera_info_url
         self._outputs = ImageOutputs(
             self,
-            jpeg_quality=settings["jpeg_quality"] if settings["compressed"] else None,
+            jpeg_quality=settings.jpeg_quality if settings.compressed else None,
             calibration=read_calibration(url) if url else None,
         )
         self._is_live = False
         self._stop = threading.Event()
         self._pace = Pace(self._now, self._stop)
-        self._back_off = BackOff(self._stop)
+        self._retry = _FIRST_RETRY
         self._shown = 0
         self._told: set[str] = set()
         self._broke_at: float | None = None
@@ -165,7 +159,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         name = self._source_name
         if is_recording(Path(name)):
             raise InputError(f"{name} is a recording; `bag_replay {name}` plays it")
-        return open_footage(name, fps=self._fps)
+        return open_footage(name, fps=self._settings.fps or None)
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
@@ -193,6 +187,8 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         except InputError as error:
             self._note_break(str(error))
             return True
+        if self._stop.is_set() or not self.context.ok():
+            return False
         if self._is_live:
             self._note_break(f"{self._source_name} sends no more images")
             return True
@@ -200,9 +196,9 @@ class VideoSourceNode(Node):  # type: ignore[misc]
             if notice not in self._told:
                 self._told.add(notice)
                 self.get_logger().warning(notice)
-        if not self._loops:
+        if not self._settings.loop:
             self.get_logger().info(f"the source has ended after {self._shown} images")
-        return self._loops
+        return self._settings.loop
 
     def _show_images(self, source: Footage) -> None:
         self._is_live = is_live(source)
@@ -216,12 +212,12 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         stamp = self._pace.stamp(picture.stamp_ns)
         if self._stop.is_set():
             return
-        header = Header(frame_id=self._frame_id)
+        header = Header(frame_id=self._settings.frame_id)
         header.stamp.sec, header.stamp.nanosec = divmod(stamp, 1_000_000_000)
-        self._outputs.publish(header, picture.frame)
         if not self._shown:
             width, height = frame_size(picture.frame)
             self.get_logger().info(f"{width}x{height} px on {self._outputs.topic}")
+        self._outputs.publish(header, picture.frame)
         self._shown += 1
         self._note_image(stamp)
 
@@ -230,7 +226,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
             seconds = time.monotonic() - self._broke_at
             self.get_logger().info(f"images again after {seconds:.1f} s")
             self._broke_at = None
-        self._back_off.reset()
+        self._retry = _FIRST_RETRY
         late = (self._now() - stamp) / 1e9
         if late > _LATE and not self._is_live:
             self.get_logger().warning(
@@ -240,17 +236,18 @@ class VideoSourceNode(Node):  # type: ignore[misc]
 
     def _note_break(self, why: str) -> None:
         """Wait before the next try, or raise where there is none."""
-        if not self._is_live and not self._loops:
+        if not self._is_live and not self._settings.loop:
             raise InputError(why)
         if self._stop.is_set() or not self.context.ok():
             return
         if self._broke_at is None:
             self._broke_at = time.monotonic()
         self.get_logger().warning(
-            f"{why}; trying again after {self._back_off.seconds:.0f} s",
+            f"{why}; trying again after {self._retry:.0f} s",
             throttle_duration_sec=_SAY_AGAIN,
         )
-        self._back_off.wait()
+        self._stop.wait(self._retry)
+        self._retry = min(2 * self._retry, _LAST_RETRY)
 
     def _opened_again(self) -> Footage | None:
         """Open the source once more; None where it is not there."""
@@ -275,47 +272,29 @@ def run_video_source(arguments: Sequence[str]) -> int:
         Exit status: 0 ended by a signal or at the end of a file, 1 a source that cannot be read
         (printed on stderr), 2 usage.
     """
-    is_left_behind = False
 
     def serve(words: list[str]) -> int:
-        nonlocal is_left_behind
         if len(words) > 1 or any(word.startswith("-") for word in words):
             return answer_usage(_NAME, words, _USAGE)
-        status, is_left_behind = _serve(*words)
-        return status
+        return spin_node(lambda: VideoSourceNode(*words), _IMAGE_BYTES, _spin)
 
-    status = run_process(_NAME, arguments, serve)
-    if is_left_behind:
-        end_at_once(status)
-    return status
+    return run_process(_NAME, arguments, serve)
 
 
-def _serve(source: str = "") -> tuple[int, bool]:
-    """Return the exit status, and whether a thread was left behind."""
-    executor = SingleThreadedExecutor()
-    node = None
+def _spin(executor: SingleThreadedExecutor, node: VideoSourceNode) -> int:
+    """Run callbacks until the source has ended or a signal comes, then end the thread."""
     try:
-        with image_transport(_IMAGE_BYTES, rclpy.get_rmw_implementation_identifier()) as notices:
-            node = VideoSourceNode(source)
-        for notice in notices:
-            node.get_logger().warning(notice)
-        executor.add_node(node)
         while rclpy.ok() and not node.is_done:
             executor.spin_once(timeout_sec=_LOOK_EVERY)
-    except ExternalShutdownException:
-        pass
     except Exception:
         if rclpy.ok():
             raise  # otherwise a signal took the ground from under a call
-    finally:
-        executor.shutdown()
-    return _end(node) if node is not None else (0, False)
-
-
-def _end(node: VideoSourceNode) -> tuple[int, bool]:
-    """End the node, also beside a thread that waits: else its shared memory would stay."""
     has_ended = node.stop(_LAST_WAIT)
-    node.destroy_node()
+    status = 1 if node.problem else 0
     if node.problem:
         print(f"{_NAME}: {node.problem}", file=sys.stderr)
-    return (1 if node.problem else 0), not has_ended
+    if not has_ended:  # it waits for a silent camera; the node's shared memory would stay
+        node.destroy_node()
+        rclpy.try_shutdown()
+        end_at_once(status)
+    return status

@@ -155,6 +155,10 @@ class Hypotheses:
         returns = 1 - (1 - return_rate) ** elapsed
         return replace(self, visible=self.visible * stays + (1 - self.visible) * returns)
 
+    def never_visible(self) -> Hypotheses:
+        """Make hypotheses of a vehicle that has left."""
+        return replace(self, visible=np.zeros(len(self.visible)))
+
     def evidence(self, log_ratios: Array) -> float:
         """Likelihood ratio, of this set against a hidden vehicle, of what gave these log ratios."""
         return float(self.weights @ (self.visible * np.expm1(log_ratios))) + 1

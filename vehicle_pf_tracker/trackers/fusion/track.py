@@ -30,6 +30,7 @@ from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View, searched_size
+from vehicle_pf_tracker.trackers.fusion.departure import Departure
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, FASTEST_GROWTH, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
@@ -100,6 +101,7 @@ class Track(ParticleTracker[FusionParameters]):
     """Position, size, motion and appearance; the algorithm is in `tracker.py`."""
 
     _particles: Hypotheses
+    _departure: Departure | None
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `BaseTracker.start`."""
@@ -314,13 +316,20 @@ class Track(ParticleTracker[FusionParameters]):
     def _kept_inside(self, frame: Frame, position: Array) -> Array:
         return np.asarray(keep_inside(frame, position))
 
+    @property
+    def _regime(self) -> str:
+        """Branch of the algorithm: visible, occluded, or how the vehicle has left."""
+        if self._departure is not None:
+            return self._departure.reason
+        return "visible" if self._visible else "occluded"
+
     def _outcome(self, frame: Frame, response: float, left_image: bool) -> Outcome:
         particles = self._particles
         positions = keep_inside(frame, particles.positions)
         (x, y), (vx, vy) = self._position.tolist(), self._velocity.tolist()
         return Outcome(
             Cloud(positions, particles.weights), (x, y), (vx, vy),
-            "visible" if self._visible else "occluded", particles.probability_visible,
+            self._regime, particles.probability_visible,
             {
                 "response": min(max(response, 0.0), 1.0), "points": self._surface.share,
                 "whole": self._wholeness.probability,

@@ -40,6 +40,7 @@ from vehicle_pf_tracker.image.window import is_outside, keep_inside
 from vehicle_pf_tracker.trackers.base import Outcome
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.departure import Departure, Strangers, is_too_far
 from vehicle_pf_tracker.trackers.fusion.frozen_track import LOOKS_EVERY, FrozenTrack
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
@@ -82,6 +83,8 @@ class FusionTracker(Track):
         """Learn the target; see `BaseTracker.start`."""
         self._set_off = False
         self._frozen: FrozenTrack | None = None
+        self._strangers = Strangers()
+        self._departure: Departure | None = None
         return super().start(frame, box)
 
     def reconfigure(self, parameters: FusionParameters) -> None:
@@ -96,27 +99,16 @@ class FusionTracker(Track):
         elapsed = min(elapsed, _LONGEST_STEP)
         self._frames += 1
         self._move_with_camera(frame, elapsed)
-        self._set_off = False
-        if self._frames == 1:
-            self._take_first_motion(frame)
+        self._set_off = self._frames == 1 and self._take_first_motion(frame)
         left_image = self._predict(frame, elapsed)
+        if self._departure is not None:
+            return self._await_return(frame, self._departure, elapsed)
         view = self._observe(frame)
         position, response = self._locate(frame, view)
         self._calm = self._is_calm(response)
         if self._visible:
             self._judge_points(self._appearance.usual_patch(view.patch), position)
-        was_visible = self._visible
-        self._visible = self._particles.probability_visible > 0.5
-        seen = Observation(view, position, response, again=not was_visible)
-        if self._follow_turn(frame, view, elapsed):
-            self._visible, self._frozen = True, None
-        elif self._visible:
-            self._take_sighting(frame, self._looked_at_again(frame, seen), elapsed)
-        elif was_visible:
-            self._enter_occlusion()
-        if not self._visible:
-            self._position = self._kept_inside(frame, self._particles.mean)
-            self._velocity = self._particles.mean_velocity
+        left_image |= self._decide(frame, view, position, response, elapsed, left_image)
         patch = self._appearance.usual_patch(view.patch)
         if self._measures_size:
             self._points.keep(patch, self._position)
@@ -145,14 +137,15 @@ class FusionTracker(Track):
         if self._frozen is not None:
             self._frozen.pass_time(elapsed, camera)
 
-    def _take_first_motion(self, frame: Frame) -> None:
-        """Give the hypotheses the velocity of what moves in the first box."""
+    def _take_first_motion(self, frame: Frame) -> bool:
+        """Give the hypotheses the velocity of what moves in the first box; tell if it is known."""
         patch = self._appearance.patch(frame, self._position, self._learnt_size)
         move = self._points.first_motion(patch, self._size)
-        if move is not None:
-            self._set_off = True
-            known = self._particles.narrowed(self._position, _MEASURED_SPREAD)
-            self._particles = replace(known, velocities=known.velocities + move)
+        if move is None:
+            return False
+        known = self._particles.narrowed(self._position, _MEASURED_SPREAD)
+        self._particles = replace(known, velocities=known.velocities + move)
+        return True
 
     def _predict(self, frame: Frame, elapsed: float) -> bool:
         """Drive all hypotheses on; tell whether their mean left the image."""
@@ -228,6 +221,29 @@ class FusionTracker(Track):
         if share is not None:
             self._particles = self._particles.witnessed(points_evidence(share, evidence))
 
+    def _decide(
+        self, frame: Frame, view: View, position: Array, response: float, elapsed: float,
+        left_image: bool,
+    ) -> bool:  # fmt: skip
+        """Follow what is visible or turns, predict what is hidden, give up what has left."""
+        was_visible = self._visible
+        self._visible = self._particles.probability_visible > 0.5
+        seen = Observation(view, position, response, again=not was_visible)
+        if not was_visible and self._depart(frame, left_image=left_image and not self._visible):
+            return True
+        if self._follow_turn(frame, view, elapsed):
+            self._visible, self._frozen = True, None
+        elif self._visible:
+            self._take_sighting(frame, self._looked_at_again(frame, seen), elapsed)
+            if self._wholeness.is_likely:
+                self._strangers.measure(view, self._position, self._size)
+        elif was_visible:
+            self._enter_occlusion()
+        if not self._visible:
+            self._position = self._kept_inside(frame, self._particles.mean)
+            self._velocity = self._particles.mean_velocity
+        return False
+
     # Visible
 
     def _follow_turn(self, frame: Frame, view: View, elapsed: float) -> bool:
@@ -286,3 +302,41 @@ class FusionTracker(Track):
         self._appearance.kernels = self.kernels
         surely = np.full(len(frozen.particles.visible), 1 - DOUBT)
         self._particles = replace(frozen.particles, visible=surely)
+
+    # Gone
+
+    def _depart(self, frame: Frame, *, left_image: bool) -> bool:
+        """Give up a hidden vehicle if it has left the image, or is too far to see."""
+        position, size = self._kept_inside(frame, self._particles.mean), self._size
+        if left_image:
+            self._departure = Departure.by_border(frame, position, size, self._strangers)
+        elif is_too_far(size, np.array([self.target.box.width, self.target.box.height])):
+            heading = self._particles.mean_velocity
+            self._departure = Departure.far_away(position, size, heading, self._strangers)
+        else:
+            return False
+        self._position, self._visible, self._frozen = position, False, None
+        self._turning.end()
+        self._particles = self._particles.never_visible()
+        return True
+
+    def _await_return(self, frame: Frame, departure: Departure, elapsed: float) -> Outcome:
+        """Look for a vehicle that has left where it left; it stays lost until that is proven."""
+        learnt = departure.size * self._padding
+        patch = self._appearance.patch(frame, departure.position, learnt, wide=True)
+        view = self._appearance.view(patch)
+        returned = departure.returned(view, elapsed)
+        if returned is None:
+            self._position = self._kept_inside(frame, self._particles.mean)
+            self._velocity = self._particles.mean_velocity
+            self._particles = self._particles.never_visible()
+            return self._outcome(frame, 0.0, left_image=True)
+        position, velocity = returned
+        self._visible, self._departure = True, None
+        self._particles = self._gathered(position, velocity, 1 - DOUBT)
+        response = view.at(position)
+        self._take_sighting(frame, Observation(view, position, response, again=True), elapsed)
+        patch = self._appearance.usual_patch(view.patch)
+        self._points.keep(patch, self._position)
+        self._surface.keep(patch, self._position, self._size)
+        return self._outcome(frame, response, left_image=False)

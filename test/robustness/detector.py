@@ -1,0 +1,158 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A detector of vehicles that fails in one way or another, and what a node makes of its boxes."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import math
+import os
+import struct
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from lanes import Sighting
+from node_process import NodeProcess
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import PointCloud2
+from std_msgs.msg import Header
+
+CONFIRMED = (1, 2, 3)
+"""Modes in ~/tracks of vehicles that have had enough evidence."""
+FORMATS = {2: "u1", 6: "<u4", 7: "<f4"}
+"""numpy's words for the datatypes of sensor_msgs/PointField that ~/tracks has."""
+LOW = 0.05
+"""Score of a flood's boxes: that of what a detector gives without a threshold."""
+STAMP = 4
+"""Byte at which the stamp is in a serialized message."""
+NAN, HUGE = math.nan, 1e300
+UNUSABLE = {
+    "NaN": (NAN, 5.0, 9.0, 9.0),
+    "infinite size": (5.0, 5.0, math.inf, 9.0),
+    "negative size": (40.0, 40.0, -20.0, -10.0),
+    "no area": (5.0, 5.0, 0.0, 0.0),
+    "outside": (5e3, 5.0, 9.0, 9.0),
+    "huge": (-HUGE, 5.0, HUGE, 9.0),
+}
+
+Fault = Callable[[Header, np.ndarray], object]
+
+
+def vision(folder: Path) -> Any:
+    """Import vision_msgs.msg, built in `folder` from its definitions where it is not installed."""
+    if find_spec("vision_msgs") is None:
+        sys.path.append(str(Path(__file__).resolve().parents[1] / "ros"))
+        built = import_module("built_messages")
+        with contextlib.redirect_stdout(io.StringIO()):  # each file that is written
+            path = str(built.build("vision_msgs", built.VISION, folder))
+        sys.path.append(path)
+        # For the node's process.
+        known = os.environ.get("PYTHONPATH")
+        os.environ["PYTHONPATH"] = os.pathsep.join([path, *([known] if known else [])])
+    return import_module("vision_msgs.msg")
+
+
+def sightings(cloud: PointCloud2) -> list[Sighting]:
+    """Read ~/tracks by the fields that the message itself names."""
+    kind = np.dtype(
+        {
+            "names": [one.name for one in cloud.fields],
+            "formats": [FORMATS[one.datatype] for one in cloud.fields],
+            "offsets": [one.offset for one in cloud.fields],
+            "itemsize": cloud.point_step,
+        }
+    )
+    points = np.frombuffer(bytes(cloud.data), kind)
+    return [
+        Sighting(int(one["id"]), float(one["x"]), float(one["y"]), int(one["mode"]) in CONFIRMED)
+        for one in points
+    ]
+
+
+class Detector:
+    """Publishes boxes, right ones and faulty ones.
+
+    Parameters
+    ----------
+    node : NodeProcess
+        The node.
+    messages : module
+        vision_msgs.msg.
+    rate : int
+        Images per second; a flood comes with one of them.
+
+    Attributes
+    ----------
+    faults : dict of str to Fault
+        Ways to fail; each is called with an image's header and the right boxes.
+    """
+
+    def __init__(self, node: NodeProcess, messages: Any, rate: int) -> None:
+        self._messages, self._rate, self._turn = messages, rate, 0
+        self._topic = node.publisher(messages.Detection2DArray, "detections")
+        self.faults: dict[str, Fault] = {
+            "10 000 boxes, once a second": self._flood(10_000),
+            "1 500 boxes, once a second": self._flood(1_500),
+            **{words: self._bad(row) for words, row in UNUSABLE.items()},
+            "each box five times": lambda header, boxes: self.right(header, np.tile(boxes, (5, 1))),
+            "stamps that never match": self._stray,
+            "no detections any more": lambda header, boxes: None,
+        }
+
+    def right(self, header: Header, boxes: np.ndarray) -> None:
+        """Publish boxes (left, top, width, height) of an image."""
+        self._topic.publish(self.message(header, boxes))
+
+    def _flood(self, count: int) -> Fault:
+        rows = np.random.default_rng(3).uniform(0, 150, (count, 4))
+        serialized = bytearray(serialize_message(self.message(Header(), rows, LOW)))
+
+        def flood(header: Header, boxes: np.ndarray) -> None:
+            stamp = header.stamp
+            self._turn += 1
+            if self._turn % self._rate:
+                self.right(header, boxes)
+                return
+            struct.pack_into("<iI", serialized, STAMP, stamp.sec, stamp.nanosec)
+            self._topic.publish(bytes(serialized))
+
+        return flood
+
+    def _bad(self, row: tuple[float, float, float, float]) -> Fault:
+        return lambda header, boxes: self.right(header, np.concatenate([boxes, [row]]))
+
+    def _stray(self, header: Header, boxes: np.ndarray) -> None:
+        other = Header(frame_id=header.frame_id)
+        other.stamp.sec, other.stamp.nanosec = header.stamp.sec, header.stamp.nanosec ^ 1
+        self.right(other, boxes)
+
+    def message(self, header: Header, boxes: np.ndarray, score: float = 0.8) -> Any:
+        """Make detections (left, top, width, height)."""
+        made = self._messages.Detection2DArray(header=header)
+        for x, y, width, height in boxes.tolist():
+            one = self._messages.Detection2D()
+            one.bbox.center.position.x, one.bbox.center.position.y = x + width / 2, y + height / 2
+            one.bbox.size_x, one.bbox.size_y = width, height
+            result = self._messages.ObjectHypothesisWithPose()
+            result.hypothesis.class_id, result.hypothesis.score = "car", score
+            one.results = [result]
+            made.detections.append(one)
+        return made

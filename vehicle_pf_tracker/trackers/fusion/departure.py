@@ -1,0 +1,168 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+"""A vehicle that has left: by a border of the image, or too far away to be seen.
+
+From then on whatever looks like it may as well be a stranger, and on a road strangers come by all
+the time. It is taken to be back only where it comes back from: something enters by the same border
+and moves inwards, or goes on along the far road; and it looks more like the vehicle, in frame after
+frame, than anything else did while the vehicle was tracked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, KEPT_FRAMES
+
+TOO_FAR = "too far to see"
+_SMALLEST = 8.0
+"""Geometric mean of the sides, px, below which a vehicle that is hidden is too far to see: smaller
+ones are dots, and what is taken for their return is a pattern of the background in most cases."""
+_SHRUNK = 0.5
+"""The same, of the first one: a vehicle that was as small from the beginning has not shrunk."""
+_FRAMES = 8
+"""Frames in a row that prove a return: a quarter of a second, as for other motions of sides."""
+_ENTERS_WITHIN = 1.5
+"""Distance from the border at which something that enters is first seen, of the size: its centre
+has to be half a size inside, and moves at less than one per frame."""
+_MOVED = 0.5
+"""Way that proves a return, of the size: the background stands, and the noise of peaks is a tenth
+of that."""
+_FARTHEST_STEP = 1.0
+"""Way from one frame to the next within which peaks are of the same vehicle, of the size."""
+_STRANGERS_RATE = 0.005
+"""Rate per frame at which the strangers' response is forgotten: the road behind is another one."""
+
+
+class _Candidate(NamedTuple):
+    """What may be the vehicle: where it was first seen, where it is, and for how many frames."""
+
+    first: Array
+    latest: Array
+    frames: int
+
+
+class Strangers:
+    """How much the filter answers to what is not the vehicle, measured while it is visible.
+
+    Attributes
+    ----------
+    response : float
+        Highest response elsewhere, relative to the vehicle's usual one.
+    """
+
+    def __init__(self) -> None:
+        self.response = 0.0
+
+    @property
+    def level(self) -> float:
+        """Response that no stranger has reached, and that is clear in any case."""
+        return max(CLEAR_RESPONSE, self.response)
+
+    def measure(self, view: View, position: Array, size: Array) -> None:
+        """Take a frame in which the vehicle is at `position`, px."""
+        elsewhere = view.response.copy()
+        (left, top), (right, bottom) = view.places(np.stack([position - size, position + size]))
+        elsewhere[top : bottom + 1, left : right + 1] = 0.0
+        faded = self.response * (1 - _STRANGERS_RATE)
+        self.response = max(faded, float(elsewhere.max()))
+
+
+@dataclass(slots=True, eq=False)
+class Departure:
+    """Waits for a vehicle that has left, at the size and around the position where it did.
+
+    Attributes
+    ----------
+    reason : str
+        The border that it left by, or that it is too far to see.
+    way : (2,) array
+        Direction that a return has to move in: into the image, or on along the road.
+    position, size : (2,) arrays
+        Where it left, and its width and height then, px.
+    response : float
+        Response that a return has to reach, relative to the usual one.
+    waited : float
+        Frames since then.
+    """
+
+    reason: str
+    way: Array
+    position: Array
+    size: Array
+    response: float
+    waited: float = 0.0
+    _candidate: _Candidate | None = None
+
+    @classmethod
+    def by_border(
+        cls, frame: Frame, position: Array, size: Array, strangers: Strangers
+    ) -> Departure:
+        """Depart by the border next to a position."""
+        width, height = frame_size(frame)
+        x, y = position.tolist()
+        borders = {"left": x, "right": width - x, "top": y, "bottom": height - y}
+        inwards = {"left": (1, 0), "right": (-1, 0), "top": (0, 1), "bottom": (0, -1)}
+        border = min(borders, key=borders.__getitem__)
+        direction = np.array(inwards[border], float)
+        return cls(f"left at the {border}", direction, position, size, strangers.level)
+
+    @classmethod
+    def far_away(
+        cls, position: Array, size: Array, heading: Array, strangers: Strangers
+    ) -> Departure:
+        """Depart by becoming too small, on the way in the direction `heading`."""
+        direction = heading / max(float(np.hypot(*heading)), 1e-9)
+        return cls(TOO_FAR, direction, position, size, strangers.level)
+
+    def returned(self, view: View, elapsed: float = 1.0) -> tuple[Array, Array] | None:
+        """Look for a return in the next frame; position and velocity, px, once it is proven.
+
+        Of one too far to see the heading tells for as long as sightings tell of a motion.
+        """
+        self.waited += elapsed
+        if self.reason == TOO_FAR and self.waited > KEPT_FRAMES:
+            return None
+        row, column = np.unravel_index(int(view.response.argmax()), view.response.shape)
+        found = view.patch.centre + view.offsets()[row, column]
+        before, extent = self._candidate, float(np.sqrt(self.size.prod()))
+        self._candidate = None
+        if float(view.response[row, column]) < self.response:
+            return None
+        if before is None or np.linalg.norm(found - before.latest) > _FARTHEST_STEP * extent:
+            if self._is_entry(found, extent):
+                self._candidate = _Candidate(found, found, 1)
+            return None
+        self._candidate = candidate = _Candidate(before.first, found, before.frames + 1)
+        moved = found - candidate.first
+        if candidate.frames < _FRAMES or float(moved @ self.way) < _MOVED * extent:
+            return None
+        return found, moved / (candidate.frames - 1)
+
+    def _is_entry(self, position: Array, extent: float) -> bool:
+        """Test whether something seen for the first time is as near to the border as one enters."""
+        depth = float((position - self.position) @ self.way)
+        return self.reason == TOO_FAR or depth < _ENTERS_WITHIN * extent
+
+
+def is_too_far(size: Array, first: Array) -> bool:
+    """Test whether a hidden vehicle of this size is too small, and was larger at first."""
+    extent = float(np.sqrt(size.prod()))
+    return extent < _SMALLEST and extent < _SHRUNK * float(np.sqrt(first.prod()))
