@@ -55,6 +55,8 @@ _MOVING = 4.0
 _DOUBTED = 2.0
 """Log odds against a track, by the scores of its detections, for which it has to drive twice as
 far: false alarms side by side look like a short drive."""
+_SURELY_DRIVES = 50.0
+"""Evidence for a drive from which on scores do not count: false alarms side by side reach 35."""
 _SMALLEST = 0.25
 """Size of the smallest vehicle on the road, of the usual one, by which large ones count more: a
 motorcycle among lorries. Smaller ones that drive are parts of vehicles."""
@@ -195,8 +197,9 @@ class Existence:
         total, squared = self._sizes.tolist()
         if total > 0 and track.state.road_size < _SMALLEST * squared / total:
             return False
-        needed = self.parameters.birth.displacement * (1 + track.doubt / _DOUBTED)
         straightness, evidence = track.drive()
+        doubt = track.doubt if evidence < _SURELY_DRIVES else 0.0
+        needed = self.parameters.birth.displacement * (1 + doubt / _DOUBTED)
         return track.way > needed and straightness > _STRAIGHT and evidence > _DRIVES
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
