@@ -33,6 +33,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.ros.traffic.rates import TimedDetector
 from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
@@ -147,10 +148,11 @@ class Vehicles:
     def __init__(self, configuration: Configuration) -> None:
         check_library()
         parameters = configuration.tracker
+        make = detector_maker(parameters.detector)
         self._configuration = configuration
         self.session = TrafficSession(
             TrafficTracker(parameters, plane_of(configuration.session.road)),
-            detector_maker(parameters.detector),
+            (lambda: TimedDetector(make())) if make else None,
             frame_rate=parameters.frame_rate,
             reset_on_time_jump=configuration.session.reset_on_time_jump,
         )
@@ -213,6 +215,10 @@ class Vehicles:
         check_target(box, MAX_SIDE, MAX_SIDE)
         self.waiting.append(box)
         return None
+
+    def select_first(self, box: Box) -> None:
+        """Follow the vehicle in `box` of the next image, and select it."""
+        self._configured = box
 
     def remove_selected(self) -> int:
         """Forget the selected vehicle, and return its number.
