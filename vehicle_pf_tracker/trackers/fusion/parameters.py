@@ -50,12 +50,6 @@ class FilterParameters:
         tuned=(0.03, 1.0),
     )
     colour: bool = parameter(True, "Off: luminance and colour take no part, only gradients do.")
-    memory: int = parameter(
-        3,
-        "More: a hidden vehicle is recognised by what it looked like at more times; 0: only last.",
-        bounds=(0, 20),
-        unit="dated filters",
-    )
     level_rate: float = share(
         0.05,
         "Higher: the usual response follows the response of visible frames faster.",
@@ -159,9 +153,6 @@ class VisibilityParameters:
         bounds=(1e-6, 0.5),
         unit="per frame",
         tuned=(0.01, 0.2),
-    )
-    second_look: bool = parameter(
-        True, "Off: a return is final, though the vehicle may appear at a likelier place after."
     )
     partial_slope: float = parameter(
         8.0,

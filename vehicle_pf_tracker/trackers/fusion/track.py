@@ -55,8 +55,6 @@ flow judged and appearance learnt in the next. That saves a quarter of the time 
 costs nothing else that could be seen (laboratory/notes/fusion_tried.md)."""
 _SETTLED = 10
 """Frames before which none is calm: the usual response and share are not known yet."""
-_DATED_EVERY = 40
-"""Frames between two filters that are kept, all of calm frames: in a second a vehicle turns."""
 _STRONG = 0.8
 """Probability of visibility from which the size is followed."""
 _WEAK_RESPONSE = 0.6
@@ -108,7 +106,7 @@ class Track(ParticleTracker[FusionParameters]):
         self._size = np.array([box.width, box.height], float)
         self._position = np.array(box.centre, float)
         self._velocity = np.zeros(2)
-        self._frames = self._searches = self._next_dated = 0
+        self._frames = self._searches = 0
         self._visible, self._calm = True, False
         self._growth = self._grown = 0.0
         self._wholeness = Wholeness()
@@ -210,9 +208,6 @@ class Track(ParticleTracker[FusionParameters]):
             whole = self._wholeness.is_likely
             self._points.renew(self._position, self._size, whole=whole)
         self._learn_appearance(frame, seen.view, seen.response)
-        if self._calm and self._frames >= self._next_dated:
-            self._appearance.remember(self.parameters.filter.memory)
-            self._next_dated = self._frames + _DATED_EVERY
         if seen.again:  # what was kept shows an occluder; until now its share bounds the learning
             self._surface.restart()
 

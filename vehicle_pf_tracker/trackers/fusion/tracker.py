@@ -41,7 +41,6 @@ from vehicle_pf_tracker.trackers.base import Outcome
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.departure import Departure, Strangers, is_too_far
-from vehicle_pf_tracker.trackers.fusion.frozen_track import LOOKS_EVERY, FrozenTrack
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
     DOUBT,
@@ -60,6 +59,8 @@ from vehicle_pf_tracker.trackers.fusion.visibility import (
     points_evidence,
     response_evidence,
 )
+
+__all__ = ["FusionParameters", "FusionTracker"]
 
 _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
@@ -82,17 +83,9 @@ class FusionTracker(Track):
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `BaseTracker.start`."""
         self._set_off = False
-        self._frozen: FrozenTrack | None = None
         self._strangers = Strangers()
         self._departure: Departure | None = None
         return super().start(frame, box)
-
-    def reconfigure(self, parameters: FusionParameters) -> None:
-        """Take new parameters; see `BaseTracker.reconfigure`."""
-        before = self._appearance if self._target is not None else None
-        super().reconfigure(parameters)
-        if before is not None and self._appearance is not before:
-            self._frozen = None  # what it had learnt is of another kind now
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         _ = self.target  # says what is wrong before the start
@@ -134,8 +127,6 @@ class FusionTracker(Track):
         if not camera.still:
             self._position = camera.apply(self._position)
             self._particles = self._particles.moved(camera)
-        if self._frozen is not None:
-            self._frozen.pass_time(elapsed, camera)
 
     def _take_first_motion(self, frame: Frame) -> bool:
         """Give the hypotheses the velocity of what moves in the first box; tell if it is known."""
@@ -159,9 +150,6 @@ class FusionTracker(Track):
             self._size = self._bounded(frame, grown)
         across = 1.0 if self._visible else ACROSS_LANES
         driven = self._particles.driven(self._rng, elapsed, sigmas, across=across)
-        if self._frozen is not None:
-            hidden = motion.hidden_position_sigma, self._hidden_velocity_sigma
-            self._frozen.drive(self._rng, elapsed, hidden)
         rates = self.parameters.visibility
         driven = driven.passed(elapsed, rates.hiding_rate, rates.return_rate)
         left_image = is_outside(frame, *driven.mean.tolist())
@@ -193,7 +181,7 @@ class FusionTracker(Track):
         wide = hidden and particles.spread > WIDE_FROM * self._extent
         size = scale * self._learnt_size
         patch = self._appearance.patch(frame, particles.mean, size, wide=wide)
-        view = self._appearance.view(patch, recall=hidden and self.parameters.filter.memory > 0)
+        view = self._appearance.view(patch)
         climb = CLIMB_ON_PATH if hidden else CLIMB_FREELY
         climb = STAY if self._set_off else climb
         evidence = response_evidence(view, particles.positions, climb, self.parameters.visibility)
@@ -232,9 +220,9 @@ class FusionTracker(Track):
         if not was_visible and self._depart(frame, left_image=left_image and not self._visible):
             return True
         if self._follow_turn(frame, view, elapsed):
-            self._visible, self._frozen = True, None
+            self._visible = True
         elif self._visible:
-            self._take_sighting(frame, self._looked_at_again(frame, seen), elapsed)
+            self._take_sighting(frame, seen, elapsed)
             if self._wholeness.is_likely:
                 self._strangers.measure(view, self._position, self._size)
         elif was_visible:
@@ -255,27 +243,6 @@ class FusionTracker(Track):
             self._turning.end()
         return turned is not None
 
-    def _looked_at_again(self, frame: Frame, seen: Observation) -> Observation:
-        """Compare a return with other places for a while; the likelier place."""
-        frozen = self._frozen
-        if frozen is None or not self.parameters.visibility.second_look:
-            self._frozen = None
-            return seen
-        if seen.again:
-            frozen.take_return(self._appearance, self._sightings)
-            return seen
-        if self._frames % LOOKS_EVERY and not frozen.is_over:
-            return seen
-        options = self.parameters.visibility
-        found = frozen.likelier_place(frame, seen.position, self._padding, options)
-        if frozen.is_over or found is not None:
-            self._frozen = None
-        if found is None:
-            return seen
-        view, position = found
-        self._thaw(frozen)
-        return Observation(view, self._kept_inside(frame, position), view.at(position), again=True)
-
     # Hidden
 
     def _enter_occlusion(self) -> None:
@@ -293,15 +260,6 @@ class FusionTracker(Track):
         self._largest_hidden = LARGEST_GROWTH * self._size
         sigma, count = self._hidden_velocity_sigma, self.parameters.num_particles
         self._particles = hidden_hypotheses(self._rng, motion, last.age, count, self._extent, sigma)
-        self._frozen = FrozenTrack(self._appearance, self._sightings, self._particles, self._size)
-
-    def _thaw(self, frozen: FrozenTrack) -> None:
-        """Return to the track of before the occlusion, as it was predicted; it is visible now."""
-        self._size = frozen.size
-        self._appearance, self._sightings = frozen.appearance, frozen.sightings
-        self._appearance.kernels = self.kernels
-        surely = np.full(len(frozen.particles.visible), 1 - DOUBT)
-        self._particles = replace(frozen.particles, visible=surely)
 
     # Gone
 
@@ -315,7 +273,7 @@ class FusionTracker(Track):
             self._departure = Departure.far_away(position, size, heading, self._strangers)
         else:
             return False
-        self._position, self._visible, self._frozen = position, False, None
+        self._position, self._visible = position, False
         self._turning.end()
         self._particles = self._particles.never_visible()
         return True
