@@ -46,6 +46,7 @@ CHANGES: Mapping[str, Mapping[str, Value]] = {
     "hidden before a moving camera as before a standing one": {"motion.camera_velocity_sigma": 0.0},
     "no perspective while hidden": {"motion.perspective": False},
     "no colour": {"filter.colour": False},
+    "no dated filters": {"filter.memory": 0},
     "no points": {"visibility.points_slope": 0.0},
     "no partial state": {"visibility.partial_slope": 0.0},
     "no outlines in turns": {"motion.turns": False},

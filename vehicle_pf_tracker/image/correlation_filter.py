@@ -63,7 +63,7 @@ _STEPS, _GROWTH = 2, 5.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FilterWeights:
-    """A trained filter.
+    """A trained filter: what remains when it is kept for later.
 
     Attributes
     ----------
@@ -146,10 +146,12 @@ class CorrelationFilter:
             confined = self._target.spectrum_of(cells)
         return FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)
 
-    def respond(self, spectrum: Spectrum) -> Response:
-        """Respond to cells (half spectrum), at `UPSAMPLING` places per cell."""
-        assert self.weights is not None, "train the filter first"
-        return self._response(spectrum, self.weights.spectrum)
+    def respond(self, spectrum: Spectrum, weights: FilterWeights | None = None) -> Response:
+        """Respond to cells (half spectrum), at `UPSAMPLING` places per cell.
+
+        By the present weights, unless others that this filter has had are given.
+        """
+        return self._response(spectrum, self._chosen(weights).spectrum)
 
     @property
     def extent(self) -> tuple[int, int]:
@@ -173,11 +175,15 @@ class CorrelationFilter:
         """Half spectrum of the cells (channels, m, m) of a larger patch, m even and above n."""
         return self._wide(features.shape[1])[0].spectrum_of(features)
 
-    def respond_wide(self, spectrum: Spectrum) -> Response:
-        """Respond to the cells of a larger patch."""
-        assert self.weights is not None, "train the filter first"
+    def respond_wide(self, spectrum: Spectrum, weights: FilterWeights | None = None) -> Response:
+        """Respond to the cells of a larger patch, by the present weights or given ones."""
         target = self._wide(len(spectrum))[1]
-        return self._response(spectrum, target.spectrum_of(self.weights.target))
+        return self._response(spectrum, target.spectrum_of(self._chosen(weights).target))
+
+    def _chosen(self, weights: FilterWeights | None) -> FilterWeights:
+        chosen = weights or self.weights
+        assert chosen is not None, "train the filter first"
+        return chosen
 
     def _response(self, spectrum: Spectrum, weights: Spectrum) -> Response:
         return upsampled(self.kernels.correlated(spectrum, weights), UPSAMPLING)

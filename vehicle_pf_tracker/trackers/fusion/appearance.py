@@ -22,6 +22,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -33,6 +34,7 @@ from vehicle_pf_tracker.image.canonical_patch import Patch, cut_image, cut_patch
 from vehicle_pf_tracker.image.correlation_filter import (
     UPSAMPLING,
     CorrelationFilter,
+    FilterWeights,
     Response,
 )
 from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures, Grey
@@ -134,6 +136,13 @@ def _vertex(before: float, at: float, after: float) -> float:
     return min(max(0.5 * (before - after) / bend, -0.5), 0.5) if bend < 0 else 0.0
 
 
+class _Dated(NamedTuple):
+    """An earlier filter, and the usual response at its time."""
+
+    weights: FilterWeights
+    usual_response: float
+
+
 class Appearance:
     """Learns the target from patches of canonical size, and responds to others.
 
@@ -158,6 +167,7 @@ class Appearance:
         self.kernels = kernels
         self.usual_response = 0.0
         self._least_usual = 0.0
+        self.dated: tuple[_Dated, ...] = ()
 
     @property
     def kernels(self) -> Kernels:
@@ -177,8 +187,8 @@ class Appearance:
         """Return the part of a wide patch that a usual one shows; a usual one itself."""
         return patch if patch.side == self._side else patch.middle(self._side)
 
-    def view(self, patch: Patch) -> View:
-        """Respond to a patch."""
+    def view(self, patch: Patch, *, recall: bool = False) -> View:
+        """Respond to a patch; with `recall`, by the best of the present and the dated filters."""
         features = self._features(patch.image, patch.grey)
         wide = patch.side > self._side
         respond = self._filter.respond_wide if wide else self._filter.respond
@@ -189,7 +199,19 @@ class Appearance:
             least = max(self._least_usual, _LEAST_USUAL)
             self.usual_response = max(float(response.max()), least)
         response = response / np.float32(self.usual_response)
+        for dated in self.dated if recall else ():
+            once = respond(spectrum, dated.weights) / np.float32(dated.usual_response)
+            response = np.maximum(response, once)
         return View(patch, None if wide else spectrum, response)
+
+    def remember(self, count: int) -> None:
+        """Keep the present filter as a dated one: the first and the latest ones, `count` in all."""
+        if self._filter.weights is None or not self.usual_response:
+            return
+        dated = *self.dated, _Dated(self._filter.weights, self.usual_response)
+        if len(dated) > count:
+            dated = (*dated[: min(count, 1)], *dated[len(dated) - max(count - 1, 0) :])
+        self.dated = dated
 
     def response_at(self, frame: Frame, position: Array, size: Array) -> float:
         """Response to a box of this centre and size (px), relative to the usual one."""

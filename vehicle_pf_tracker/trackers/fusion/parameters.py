@@ -50,6 +50,12 @@ class FilterParameters:
         tuned=(0.03, 1.0),
     )
     colour: bool = parameter(True, "Off: luminance and colour take no part, only gradients do.")
+    memory: int = parameter(
+        3,
+        "More: a hidden vehicle is recognised by what it looked like at more times; 0: only last.",
+        bounds=(0, 20),
+        unit="dated filters",
+    )
     level_rate: float = share(
         0.05,
         "Higher: the usual response follows the response of visible frames faster.",
