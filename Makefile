@@ -14,8 +14,10 @@ INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
 # What the versions of NumPy and OpenCV decide: numbers, pixels and messages.
 VERSIONED := $(addprefix test/,filtering image trackers recordings scenes/test_first_scenes_stay.py \
 	ros/test_conversions.py ros/node/test_node_images.py ros/node/test_node_encodings.py)
-# Folders of tests that a part of their own runs.
-FOOTAGE := scenes recordings reproduction
+# What each part of the tests but test-offline runs, which has the rest.
+test-ros := ros
+test-footage := scenes recordings reproduction
+test-programs := test_programs.py
 # Share of the package's branches and lines that the tests must run through.
 COVERED := 92
 
@@ -23,10 +25,10 @@ COVERED := 92
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 # Each target that says of itself what it does, with two hashes, is listed by `make help`.
-.PHONY: help demo test test-all test-offline test-footage test-ros test-noble kernels lint types format config colcon baselines bench reproduce docs dist clean
+.PHONY: help demo test test-all test-offline test-footage test-programs test-ros test-noble kernels lint types format config colcon baselines bench reproduce docs dist clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
-	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
+	BIN=$(abspath $(BIN)) .ci/demo results/demo
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*  ## \(.*\)/\1|\2/p' $(firstword $(MAKEFILE_LIST)) | \
@@ -48,7 +50,7 @@ endif
 # Everything, with branch coverage; the slow tests try every way to install, colcon's too.
 test-all: .venv/installed .venv/colcon kernels  ## every test, with branch coverage
 	$(BIN)/coverage erase
-	$(MAKE) --no-print-directory --jobs=2 --keep-going $(PARTS) RUN="$(BIN)/coverage run -m pytest"
+	$(MAKE) --no-print-directory --jobs=2 --keep-going $(PARTS) test-programs RUN="$(BIN)/coverage run -m pytest"
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report --fail-under=$(COVERED)
 
@@ -57,11 +59,11 @@ kernels: .venv/installed
 	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.choice import load_kernels; load_kernels('auto')"
 
 test-offline: .venv/installed
-	$(RUN) $(addprefix --ignore test/,ros $(FOOTAGE))
+	$(RUN) $(addprefix --ignore test/,$(test-ros) $(test-footage) $(test-programs))
 
 # Shown when they have ended, so that the parts do not mix.
-test-ros test-footage: .venv/installed
-	@log=$$(mktemp); $(RUN) $(addprefix test/,$(if $(filter test-ros,$@),ros,$(FOOTAGE))) > $$log 2>&1; \
+test-ros test-footage test-programs: .venv/installed
+	@log=$$(mktemp); $(RUN) $(addprefix test/,$($@)) > $$log 2>&1; \
 	status=$$?; cat $$log; rm -f $$log; exit $$status
 
 test-noble: .venv-noble/installed  ## numbers, pixels and messages with the NumPy and OpenCV of Ubuntu 24.04
@@ -106,6 +108,8 @@ dist: .venv/docs  ## build the wheel and the source archive, into results/dist
 	rm -rf results/dist
 	$(BIN)/python -m build --no-isolation --outdir results/dist . > /dev/null
 	$(BIN)/twine check --strict results/dist/*
+	cd results/dist && tar -xzf *.tar.gz && cd */ && \
+		PYTHONPATH=. $(CURDIR)/$(BIN)/python -m pytest -m "not slow" test/core test/packaging test/tools test/test_walls.py
 
 clean:  ## remove what the other targets made
 	rm -rf .venv .venv-noble .venv-baselines build install log results *.egg-info

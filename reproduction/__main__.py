@@ -19,27 +19,26 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-from reproduction.catalogue import (
-    ALL,
-    EXPERIMENTS,
-    PAPERS,
-    find_experiments,
-)
-from reproduction.experiment import (
-    QUICK_SEEDS,
-    SEEDS,
-    Experiment,
-    Holds,
-    Size,
-)
+from reproduction.catalogue import ALL, EXPERIMENTS, PAPERS, find_experiments
+from reproduction.experiment import QUICK_SEEDS, SEEDS, Size
 from reproduction.output import write_report
 from reproduction.page import write_page
 from reproduction.running import complete
 from vehicle_pf_tracker.cli.console import USAGE, UsageError, telling
 from vehicle_pf_tracker.cli.main import exit_status
-from vehicle_pf_tracker.cli.requests import WorkersOption, add_options, natural, positive
+from vehicle_pf_tracker.cli.requests import (
+    WorkersOption,
+    add_options,
+    natural,
+    option,
+    positional,
+    positive,
+    request_of,
+    switch,
+)  # fmt: skip
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
 PROGRAM = "python -m reproduction"
@@ -47,78 +46,73 @@ CELLS = "cells.jsonl"
 """File in the output folder with what was run so far."""
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line `argv`, that of the process if None, and return the exit status."""
-    words = sys.argv[1:] if argv is None else argv
-    return exit_status(lambda: _run(words), PROGRAM)
+@dataclass(frozen=True, kw_only=True)
+class Request(WorkersOption):
+    """Request of experiments."""
 
-
-def _run(words: Sequence[str]) -> int:
-    parser = argparse.ArgumentParser(prog=PROGRAM, description="Make the papers' figures again.")
-    _add_arguments(parser)
-    try:
-        args = parser.parse_args(words)
-    except SystemExit as ended:  # argparse has said all there is to say
-        return ended.code if isinstance(ended.code, int) else USAGE
-    return _reproduce_all(args)
-
-
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
-    add("figures", nargs="*", metavar="FIGURE", help=f"{ALL}, or some of: {', '.join(EXPERIMENTS)}")
-    add("--list", action="store_true", help="list the figures and tables")
-    add(
-        "-o", "--output", type=Path, default=Path("results/reproduce"), metavar="DIR",
+    figures: Sequence[str] = positional(
+        nargs="*", metavar="FIGURE", help=f"{ALL}, or some of: {', '.join(EXPERIMENTS)}"
+    )
+    list: bool = switch(help="list the figures and tables")
+    output: Path = option(
+        "-o", type=Path, default=Path("results/reproduce"), metavar="DIR",
         help="folder for the results; what was run there before is not run again "
         "(default: results/reproduce)",
     )  # fmt: skip
-    add("--seeds", type=positive, metavar="N", help=f"runs of each kind (default: {SEEDS})")
-    add(
-        "--first-seed", type=natural, default=0, metavar="S",
+    seeds: int | None = option(
+        type=positive, metavar="N", help=f"runs of each kind (default: {SEEDS})"
+    )
+    first_seed: int = option(
+        type=natural, default=0, metavar="S",
         help="the first of the seeds; to try things out take others than 0 to 9, from 100 on",
     )  # fmt: skip
-    add_options(parser, WorkersOption)
-    add(
-        "--quick", action="store_true",
-        help=f"coarse grids and {QUICK_SEEDS} seeds, to see that everything works",
-    )  # fmt: skip
-    add(
-        "--docs", type=Path, metavar="DIR",
+    quick: bool = switch(help=f"coarse grids and {QUICK_SEEDS} seeds, to see that everything works")
+    docs: Path | None = option(
+        type=Path, metavar="DIR",
         help="also write reproduction.md with the figures into this folder, of all that is in the "
         "output folder",
     )  # fmt: skip
 
 
-def _reproduce_all(args: argparse.Namespace) -> int:
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line `argv`, that of the process if None, and return the exit status."""
+    words = sys.argv[1:] if argv is None else list(argv)
+    return exit_status(lambda: _run(words), PROGRAM)
+
+
+def _run(words: Sequence[str]) -> int:
+    parser = argparse.ArgumentParser(prog=PROGRAM, description="Make the papers' figures again.")
+    add_options(parser, Request)
+    parser.set_defaults(command=[PROGRAM, *words])
+    try:
+        args = parser.parse_args(words)
+    except SystemExit as ended:  # argparse has said all there is to say
+        return ended.code if isinstance(ended.code, int) else USAGE
+    return _reproduce_all(request_of(Request, args))
+
+
+def _reproduce_all(request: Request) -> int:
     """Run what is missing, write the reports, and print the verdicts."""
-    if args.list:
+    if request.list:
         print("\n".join(f"{e.name}: {e.title}" for e in EXPERIMENTS.values()))
         return 0
-    if not args.figures:
+    if not request.figures:
         raise UsageError(f"name a FIGURE, or {ALL}; `{PROGRAM} --list` shows them")
-    experiments = find_experiments(args.figures)
-    count = args.seeds or (QUICK_SEEDS if args.quick else SEEDS)
-    size = Size(range(args.first_seed, args.first_seed + count), args.quick)
-    store = ResultStore(args.output / CELLS)
+    experiments = find_experiments(request.figures)
+    count = request.seeds or (QUICK_SEEDS if request.quick else SEEDS)
+    size = Size(range(request.first_seed, request.first_seed + count), request.quick)
+    store = ResultStore(request.output / CELLS)
     for experiment in experiments:
-        holds = _reproduce(experiment, size, store, args)
-        print(f"{experiment.name}: {holds.value}  ({experiment.title})", flush=True)
-    print(f"results are in {args.output}")
-    if args.docs is not None:
-        command = f"{PROGRAM} {ALL} --docs {args.docs}"
-        page = write_page(args.docs, args.output, PAPERS, command)
-        print(f"the page is {page}")
+        with telling(experiment.name) as on_progress:
+            results = complete(experiment.cells(size), store, request.workers, on_progress)
+        report = experiment.report(results, size)
+        write_report(request.output / experiment.name, experiment, report, size)
+        print(f"{experiment.name}: {report.verdict.holds.value}  ({experiment.title})", flush=True)
+    print(f"results are in {request.output}")
+    if request.docs is not None:
+        command = f"{PROGRAM} {ALL} --docs {request.docs}"
+        print(f"the page is {write_page(request.docs, request.output, PAPERS, command)}")
     return 0
-
-
-def _reproduce(
-    experiment: Experiment, size: Size, store: ResultStore, args: argparse.Namespace
-) -> Holds:
-    with telling(experiment.name) as on_progress:
-        results = complete(experiment.cells(size), store, args.workers, on_progress)
-    report = experiment.report(results, size)
-    write_report(args.output / experiment.name, experiment, report, size)
-    return report.verdict.holds
 
 
 if __name__ == "__main__":

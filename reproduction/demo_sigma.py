@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Find each variant's own best sigma for the demo, on scenes and seeds that the demo does not use.
+"""Find each variant's own best sigma for the README's animation, on other scenes and seeds.
 
     python -m reproduction.demo_sigma
 

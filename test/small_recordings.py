@@ -83,3 +83,14 @@ def frame_folder(folder, *, count=COUNT):
     (folder / "groundtruth.csv").write_text("\n".join(lines) + "\n")
     (folder / "sequence.json").write_text('{"fps": 25}')
     return folder
+
+
+def write_video(path, frames, fps=25.0, codec="MJPG"):
+    """Write RGB frames as a video."""
+    frames = list(frames)
+    size = frames[0].shape[1::-1]
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*codec), fps, size)
+    for frame in frames:
+        writer.write(np.ascontiguousarray(frame[:, :, ::-1]))
+    writer.release()
+    return path

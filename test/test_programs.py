@@ -18,7 +18,6 @@ The one that .ci/run starts itself is left out: `make bench BENCH_ARGS=--toy`.
 """
 
 import json
-import os
 import subprocess
 import sys
 from itertools import islice
@@ -27,6 +26,7 @@ from typing import NamedTuple
 
 import cv2
 import pytest
+from unmeasured import unmeasured_environment
 
 from reproduction.catalogue import EXPERIMENTS
 from vehicle_pf_tracker.core.errors import InputError
@@ -152,7 +152,7 @@ def run(module, *words):
     done = subprocess.run(
         [sys.executable, "-m", module, *words],
         cwd=ROOT,
-        env={**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "MPLBACKEND": "Agg"},
+        env={**unmeasured_environment(), "MPLBACKEND": "Agg"},
         capture_output=True,
         text=True,
         timeout=PATIENCE,

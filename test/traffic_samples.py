@@ -44,10 +44,12 @@ def vehicle(identity, x, bottom, mode=TrackMode.TRACKING, *, label="car", size=(
         score=math.nan,
         age=1.0,
         hidden_by=None,
+        serial=identity,
     )
 
 
-def track(number, left, top=100.0, **facts):
+def track(number, left, top=100.0, *, confirmed=False, **facts):
     """Make the track of a vehicle of 40 x 30 px that stands under a far horizon."""
     edges = np.array([left, top, left + 40.0, top + 30.0])
-    return Track(number, VehicleState(edges, np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0)), **facts)
+    state = VehicleState(edges, np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0))
+    return Track(number, state, number if confirmed else 0, **facts)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Environment of commands that a test ends by a signal."""
+"""Environment of commands that coverage does not follow: ended by a signal, or long."""
 
 import os
 

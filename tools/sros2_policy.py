@@ -65,6 +65,7 @@ PERMISSIONS: _Permissions = {
         "~/reset",
         "~/set_parameters",
         "~/set_parameters_atomically",
+        "~/snapshot",
     ),
 }
 """Everything that a tracker node has; a test compares it with the ROS graph of running nodes."""

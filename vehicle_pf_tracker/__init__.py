@@ -29,15 +29,17 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.recordings.source import open_source
     from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
     from vehicle_pf_tracker.trackers.registry import make_tracker
+    from vehicle_pf_tracker.trackers.traffic.library import TrafficTracker
 
 __version__: str
-__all__ = ["Box", "Estimate", "InputError", "Mode", "make_tracker", "open_source"]
+__all__ = ["Box", "Estimate", "InputError", "Mode", "TrafficTracker", "make_tracker", "open_source"]
 
 _HOMES = {
     "Box": "core.box",
     "Estimate": "trackers.estimate",
     "InputError": "core.errors",
     "Mode": "trackers.estimate",
+    "TrafficTracker": "trackers.traffic.library",
     "make_tracker": "trackers.registry",
     "open_source": "recordings.source",
 }

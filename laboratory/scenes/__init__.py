@@ -35,6 +35,7 @@ from laboratory.scenes.drives import (
     shadows,
 )
 from laboratory.scenes.road import RoadSceneParameters, road
+from laboratory.scenes.traffic_close import CloseParameters, close_scene
 from laboratory.scenes.traffic_perspective import PerspectiveParameters, perspective_scene
 from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.catalogue import SceneKind
@@ -100,6 +101,12 @@ TRAFFIC_SCENES = catalogue.TRAFFIC_SCENES | {
             "gap": 9.0,
             "frames": 420,
         },
+    ),
+    "traffic-close": SceneKind(
+        CloseParameters,
+        close_scene,
+        "a close road before a shaking camera; each vehicle is in view for about a second",
+        {"vehicles": 24, "speed": 50.0, "gap": 22.0, "frames": 420, "frame_rate": 25.0},
     ),
 }
 """All scenes with many vehicles, by name."""

@@ -21,10 +21,11 @@ import sys
 from pathlib import Path
 
 from laboratory.scenes import SCENES, TRAFFIC_SCENES, make_scene, make_traffic_scene
+from laboratory.scenes.traffic_close import BRIEF, CloseScene
 from laboratory.scenes.traffic_perspective import PerspectiveScene, road_file
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.cli.synth import record_scene
-from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
+from vehicle_pf_tracker.scenes.mot_folder import SIMULATED_DETECTORS, write_mot_folder
 
 
 def main() -> int:
@@ -39,7 +40,8 @@ def main() -> int:
         record_scene(make_scene(args.scene, seed=args.seed, settings=args.set), args.out)
     else:
         scene = make_traffic_scene(args.scene, seed=args.seed, settings=args.set)
-        write_mot_folder(scene, args.out, args.seed)
+        more = {"brief": BRIEF} if isinstance(scene, CloseScene) else {}
+        write_mot_folder(scene, args.out, args.seed, detectors={**SIMULATED_DETECTORS, **more})
         if isinstance(scene, PerspectiveScene):
             (args.out / "road.yaml").write_text(road_file(scene), encoding="utf-8")
     return 0

@@ -42,7 +42,7 @@ from vehicle_pf_tracker.scenes.vehicles import TYRE
 _OVERSAMPLING = 4
 """Cells drawn per pixel and axis; a frame draws every vehicle anew, at its own distance."""
 _MOST_CELLS = 500_000
-"""Cells of a vehicle beyond which it is drawn more coarsely: one at the camera fills the image."""
+"""The default: one at the camera fills the image."""
 _TREAD = 0.2
 """Width of a tyre, m."""
 
@@ -60,10 +60,13 @@ class RoadCamera:
         Focal lengths, principal point and distortion.
     pose : Pose
         Pose of its optical frame in the road's.
+    most_cells : int
+        Cells of a vehicle beyond which it is drawn more coarsely.
     """
 
     lens: Lens
     pose: Pose
+    most_cells: int = _MOST_CELLS
 
     @property
     def plane(self) -> RoadPlane:
@@ -202,7 +205,7 @@ def draw(placed: tuple[Array, _Solid], camera: RoadCamera, opacity: float) -> Sp
     corners, solid = placed
     pixels = camera.project(corners)
     box = bounds(pixels)
-    fineness = min(_OVERSAMPLING, math.sqrt(_MOST_CELLS / box.area))
+    fineness = min(_OVERSAMPLING, math.sqrt(camera.most_cells / box.area))
     columns = math.ceil(box.width * fineness)
     rows = math.ceil(box.height * fineness)
     cells = (pixels - (box.x, box.y)) * (columns / box.width, rows / box.height)

@@ -79,7 +79,7 @@ class PerspectiveScene(TrafficScene):
     road: RoadPlane
 
 
-class _OnRoad:
+class OnRoad:
     """A vehicle of the flow, on the plane of the road.
 
     Parameters
@@ -99,9 +99,16 @@ class _OnRoad:
         self.x, self.y = x, np.where(y < _FARTHEST, np.maximum(y, _LOWEST), _LOWEST)
 
     def at(self, frame: float) -> tuple[float, float]:
-        """Give its middle's position in `frame`; constant before the first and after the last."""
-        index = min(max(round(frame), 0), len(self.x) - 1)
-        return float(self.x[index]), float(self.y[index])
+        """Give its middle's position in `frame`; constant before the first and after the last.
+
+        It leaps from one end of the stretch to the other, with no way between.
+        """
+        index = int(min(max(frame, 0), len(self.x) - 1))
+        after, share = min(index + 1, len(self.x) - 1), frame - index
+        if not 0 < share < 1 or abs(self.y[after] - self.y[index]) > LANE_WIDTH:
+            return float(self.x[index]), float(self.y[index])
+        x, y = ((1 - share) * way[index] + share * way[after] for way in (self.x, self.y))
+        return float(x), float(y)
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,12 +149,12 @@ def perspective_scene(parameters: PerspectiveParameters, seed: int) -> Perspecti
             camera, (WIDTH, HEIGHT), _marks(parameters), stream(seed, "ground")
         ),
         vehicles=tuple(
-            _actors(vehicle, -1 if number < count else 1, camera)
+            actors_of(vehicle, -1 if number < count else 1, camera)
             for number, vehicle in enumerate(vehicles)
         ),
         obstacles=(),
         camera=Camera(parameters.noise, seed),
-        order=_order(vehicles, float(camera.pose.position[0])),
+        order=order_of(vehicles, float(camera.pose.position[0])),
         road=camera.plane,
     )
 
@@ -201,10 +208,10 @@ def _marks(parameters: PerspectiveParameters) -> RoadMarks:
 
 def _direction(
     count: int, coming: bool, parameters: PerspectiveParameters, rng: np.random.Generator
-) -> list[_OnRoad]:
+) -> list[OnRoad]:
     """Make the vehicles of one direction with their ways; those that come drive on the left."""
     is_lorry = draw_lorries(count, parameters, rng)
-    vehicles = [_lorry(rng) if large else _car(rng) for large in is_lorry]
+    vehicles = [_lorry(rng) if large else any_car(rng) for large in is_lorry]
     lengths = [vehicle.length for vehicle in vehicles]
     flow = drive(lengths, is_lorry, parameters, FAR - NEAR, rng)
     lanes = _lanes(-1 if coming else 1, parameters)
@@ -215,27 +222,29 @@ def _direction(
     return vehicles
 
 
-def _car(rng: np.random.Generator) -> _OnRoad:
+def any_car(rng: np.random.Generator) -> OnRoad:
+    """Draw a car or a van."""
     paint = tinted(PAINTS[rng.integers(len(PAINTS))], rng.uniform(0.9, 1.08))
     maker, axles = _CARS[rng.integers(len(_CARS))]
-    return _OnRoad(maker(paint), axles)
+    return OnRoad(maker(paint), axles)
 
 
-def _lorry(rng: np.random.Generator) -> _OnRoad:
+def _lorry(rng: np.random.Generator) -> OnRoad:
     cab, load, stripe = (PAINTS[number] for number in rng.choice(len(PAINTS), 3, replace=False))
     # From the side no end of the box is seen.
     ends = [
         Face(((x, 0.0, 1.1), (x, 0.0, 4.0), (x, 2.5, 4.0), (x, 2.5, 1.1)), load) for x in (0, 8.3)
     ]
-    return _OnRoad([*ends, *lorry(cab, load, stripe)], _LORRY_AXLES)
+    return OnRoad([*ends, *lorry(cab, load, stripe)], _LORRY_AXLES)
 
 
-def _actors(vehicle: _OnRoad, way: int, camera: RoadCamera) -> tuple[Actor, Actor]:
+def actors_of(vehicle: OnRoad, way: int, camera: RoadCamera) -> tuple[Actor, Actor]:
+    """Return shadow and body of a vehicle that drives along y (way 1) or against it (-1)."""
     heading = way * math.pi / 2
     return RoadVehicle(vehicle.faces, vehicle.axles, heading, vehicle.at, camera).actors()
 
 
-def _order(vehicles: Sequence[_OnRoad], camera_x: float) -> Callable[[int], list[int]]:
+def order_of(vehicles: Sequence[OnRoad], camera_x: float) -> Callable[[int], list[int]]:
     """Order of painting, far to near.
 
     Of two vehicles one behind the other the farther one is painted first, of two side by side

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
@@ -27,11 +27,13 @@ from laboratory.stress.cases import Case
 from laboratory.stress.changes import Change
 from laboratory.stress.footage import StressSource, open_footage
 from laboratory.stress.occlusion_cases import lorries, poles, walls
-from laboratory.stress.starts import later_starts, shifted_starts
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 
 LATER_STARTS = 20
 """As in OTB's temporal robustness evaluation."""
+_LAST_START = 0.8
+"""Share of a recording in which runs start: a fifth of it at least is left to track."""
 _LEAST_FRAMES = 20
 """A case with fewer frames tells little."""
 _LEAST_SIDE = 8.0
@@ -110,6 +112,21 @@ def _half_rate(origin: StressSource, seed: int) -> Iterator[Case]:
 
 def _dropped(origin: StressSource, seed: int) -> Iterator[Case]:
     yield from _playing(origin, "dropped_frames", seed=seed, dropped=_DROPPED)
+
+
+def later_starts(truths: Sequence[Truth | None], count: int) -> list[int]:
+    """Return the indices of `count` frames with truth, spread evenly over most of a sequence.
+
+    The first one is left out. Where the vehicle is hidden, even in part, the next frame in which it
+    is not is taken; so there may be fewer.
+    """
+    known = [(index, truth) for index, truth in enumerate(truths) if truth is not None]
+    found = []
+    for number in range(1, count + 1):
+        begin = round(number * _LAST_START * (len(known) - 1) / count)
+        clear = (n for n in range(begin, len(known)) if known[n][1].occlusion is Occlusion.NONE)
+        found.append(next(clear, 0))
+    return [known[n][0] for n in dict.fromkeys(found) if n]
 
 
 def _later_start(origin: StressSource, seed: int) -> Iterator[Case]:

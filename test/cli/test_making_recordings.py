@@ -17,7 +17,6 @@ import numpy as np
 import pytest
 from small_recordings import COUNT, box_of, frame_folder
 
-from vehicle_pf_tracker.cli.console import megabytes
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
@@ -37,9 +36,7 @@ def test_a_frame_folder_becomes_a_recording(tmp_path, capsys):
     assert recording.frame_count == COUNT
     assert recording.truth()[3].box == box_of(3)
     told = capsys.readouterr().out
-    assert "bag: 12 frames of 96x64 px at 25 frames/s, 12 with truth; " in told
-    written = sum(path.stat().st_size for path in (tmp_path / "bag").iterdir()) / 1e6
-    assert float(told.split()[-2]) == pytest.approx(written, rel=0.05)
+    assert "bag: 12 frames of 96x64 px at 25 frames/s, 12 with truth\n" in told
 
 
 def test_a_scene_becomes_a_recording_with_its_frames_and_truth(tmp_path, capsys):
@@ -124,12 +121,3 @@ def test_traffic_becomes_a_folder_of_mot_challenge(tmp_path, capsys):
 def test_traffic_becomes_nothing_else(tmp_path, capsys, words):
     assert main(["synth", "traffic-pair", str(tmp_path / words[0]), *words[1:]]) == 2
     assert "is written as a new MOTChallenge folder" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("count", "text"),
-    [(0, "0 MB"), (1234, "0.0012 MB"), (56_789, "0.057 MB"), (9_960_000, "10 MB"),
-     (25_600_000, "26 MB"), (420_400_000, "420 MB"), (12_345_600_000, "12346 MB")],
-)  # fmt: skip
-def test_sizes_are_printed_with_two_digits(count, text):
-    assert megabytes(count) == text

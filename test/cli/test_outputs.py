@@ -18,10 +18,8 @@ import os
 import subprocess
 import sys
 
-import cv2
-import numpy as np
 import pytest
-from small_recordings import COUNT, TARGET, frame_of, record
+from small_recordings import COUNT, TARGET, frame_folder, frame_of, record, write_video
 
 from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.main import main
@@ -46,13 +44,8 @@ def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(pick, "ask", lambda *_: [parse_target(f"van@1:{TARGET}")])
     record(tmp_path / "bag")
-    writer = cv2.VideoWriter("clip.mp4", cv2.VideoWriter.fourcc(*"mp4v"), 25.0, (96, 64))
-    (tmp_path / "frames").mkdir()
-    for index in range(COUNT):
-        bgr = np.ascontiguousarray(frame_of(index)[:, :, ::-1])
-        writer.write(bgr)
-        cv2.imwrite(f"frames/{index + 1:06d}.png", bgr)
-    writer.release()
+    write_video(tmp_path / "clip.mp4", map(frame_of, range(COUNT)), codec="mp4v")
+    frame_folder(tmp_path / "frames")
     return tmp_path
 
 
@@ -105,9 +98,9 @@ def test_a_link_as_a_source_protects_what_it_leads_to(here, capsys):
         ["run", "bag/bag_0.mcap", "-o", "out", "--recording", "bag"],
         ["run", "bag", "-o", "out", "--video", "bag/seen.mp4"],
         ["traffic", "bag", "-o", "linked"],
-        ["pick", "frames", "-o", "frames/000001.png"],
+        ["pick", "frames", "-o", "frames/img/000001.jpg"],
         ["pick", "frames", "--grid", "frames/grid.png"],
-        ["pick", "frames", "--grid", "hard.png"],
+        ["pick", "frames", "--grid", "hard.jpg"],
         ["road", "calibrate", "bag", *PAIRS, "--grid", "bag/grid.png"],
         ["evaluate", "bag", "--variants", "pf", "-o", "bag"],
         ["tune", "bag", "--variant", "pf", "-o", "bag"],
@@ -116,7 +109,7 @@ def test_a_link_as_a_source_protects_what_it_leads_to(here, capsys):
 )
 def test_the_folder_of_a_source_is_no_output(here, capsys, words):
     (here / "linked").symlink_to("bag")
-    os.link("frames/000002.png", "hard.png")
+    os.link("frames/img/000002.jpg", "hard.jpg")
     before = content(here)
     again = [] if words[0] in {"evaluate", "tune"} else ["--overwrite"]
     fails([*words, *again], "would change the input", capsys)
@@ -158,11 +151,6 @@ def test_what_exists_is_replaced_on_request_only(here, capsys, words):
     assert main([*third, "--overwrite"]) == 0
 
 
-def test_the_demo_keeps_what_exists(here, capsys):
-    (here / "demo.png").touch()
-    fails(["demo", "-o", "."], "demo.png exists; give --overwrite", capsys)
-
-
 def test_files_of_others_in_the_folder_are_in_nobody_s_way(here):
     (here / "notes.txt").write_text("mine")
     assert main(["run", "clip.mp4", "--variant", "pf", "--target", TARGET, "-o", "."]) == 0
@@ -195,7 +183,6 @@ def hold(here):
         ("folder", "out", ["evaluate", "bag", "--variants", "pf", "--seeds", "1", "-o", "out"]),
         ("folder", "out", ["tune", "bag", "--variant", "pf", "--trials", "1", "-o", "out"]),
         ("folder", "out", ["report", "out"]),
-        ("folder", "out", ["demo", "-o", "out"]),
         ("path", "out", ["import", "frames", "out"]),
         ("path", "out", ["synth", "bar", "out"]),
         ("path", "out", ["synth", "traffic-pair", "out"]),

@@ -32,6 +32,7 @@ from vehicle_pf_tracker.cli.pick import BOXES, FrameStore, PickingServer
 from vehicle_pf_tracker.cli.tracking_options import read_targets
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.recordings.importing import jpeg
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import open_source
 
 ANSWER = [
@@ -153,6 +154,30 @@ def test_nothing_picked_is_an_error(answered, tmp_path, capsys):
     for verb in (["pick"], ["pick", "--road"], ["road", "calibrate"]):
         assert main([*verb, frames]) == 2
         assert "nothing was picked" in capsys.readouterr().err
+
+
+def test_no_frame_is_read_after_the_user_is_done():
+    """A decoder at work while Python exits aborted the process after the targets were written."""
+    read, asked = [], threading.Event()
+
+    class Endless:
+        frame_count = None
+
+        def frames(self):
+            while True:
+                read.append(len(read))
+                asked.set()
+                yield StampedFrame(len(read), frame_of(0))
+
+    store = FrameStore(Endless())
+    thread = threading.Thread(target=store.jpeg, args=(10**9,))
+    thread.start()
+    assert asked.wait(30)
+    store.close()
+    count = len(read)
+    thread.join(30)
+    assert not thread.is_alive()
+    assert (len(read), store.jpeg(1)) == (count, None)
 
 
 def test_an_idle_connection_keeps_nobody_waiting(server):

@@ -24,7 +24,7 @@ from contextlib import contextmanager
 import cv2
 import numpy as np
 import pytest
-from small_recordings import COUNT, TARGET, box_of, frame_folder, frame_of, record
+from small_recordings import COUNT, TARGET, box_of, frame_folder, frame_of, record, write_video
 
 import vehicle_pf_tracker.cli.run as run_verb
 from vehicle_pf_tracker.cli.main import main
@@ -39,12 +39,7 @@ from vehicle_pf_tracker.recordings.reader import Recording
 @pytest.fixture
 def video(tmp_path):
     """The red vehicle as a video at 25 frames/s."""
-    path = tmp_path / "traffic.avi"
-    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 25.0, (96, 64))
-    for index in range(COUNT):
-        writer.write(np.ascontiguousarray(frame_of(index)[:, :, ::-1]))
-    writer.release()
-    return path
+    return write_video(tmp_path / "traffic.avi", map(frame_of, range(COUNT)))
 
 
 @pytest.fixture

@@ -80,7 +80,9 @@ class Follower:
 
     @staticmethod
     def _estimate(identity, box, mode, label="car"):
-        return TrackEstimate(identity, box, (0.0, 3.0), mode, 0.9, label, math.nan, 1.0, None)
+        return TrackEstimate(
+            identity, box, (0.0, 3.0), mode, 0.9, label, math.nan, 1.0, None, identity
+        )
 
 
 @pytest.fixture(autouse=True)

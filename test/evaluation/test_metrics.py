@@ -55,24 +55,7 @@ def test_on_target_leaves_hidden_frames_out_and_follows_the_true_size():
     assert metrics.on_target == pytest.approx(2 / 3)
 
 
-def test_mode_against_truth():
-    metrics = metrics_of(
-        scored(1, 0),
-        scored(2, 0, mode="OCCLUDED"),
-        scored(3, 0, PARTIAL),
-        scored(4, 0, TOTAL),
-        scored(5, 0, TOTAL, mode="OCCLUDED"),
-        scored(6, 0, TOTAL, mode="LOST"),
-        scored(7, 0, TOTAL, mode="OCCLUDED"),
-    )
-    assert metrics.visible_tracking == pytest.approx(2 / 3)
-    assert metrics.hidden_not_tracking == 0.75
-    assert metrics.frames_by_mode == {
-        "TRACKING": 3, "OCCLUDED": 3, "LOST": 1, WAITING: 0, REJECTED: 0,
-    }  # fmt: skip
-
-
-def test_claims_of_an_occlusion_by_hand():
+def test_modes_and_claims_of_an_occlusion_by_hand():
     metrics = metrics_of(
         scored(1, 0, mode="OCCLUDED"),
         scored(2, 0, PARTIAL, mode="OCCLUDED"),
@@ -82,10 +65,17 @@ def test_claims_of_an_occlusion_by_hand():
         scored(6, 0, NONE, mode="LOST"),
         scored(7, 0, NONE, mode="LOST"),
         scored(8, 0, TOTAL),
+        scored(9, 0, PARTIAL),
+        scored(10, 0),
     )
     assert (metrics.occluded_precision, metrics.occluded_precision_partial) == (0.5, 0.75)
     assert metrics.occluded_recall == 0.5
     assert (metrics.lost_hidden, metrics.lost_visible) == (1, 2)
+    assert metrics.visible_tracking == pytest.approx(2 / 6)
+    assert metrics.hidden_not_tracking == 0.75
+    assert metrics.frames_by_mode == {
+        "TRACKING": 3, "OCCLUDED": 4, "LOST": 3, WAITING: 0, REJECTED: 0,
+    }  # fmt: skip
 
 
 def test_waiting_frames_and_frames_without_truth_are_counted_and_not_scored():

@@ -13,38 +13,17 @@
 # limitations under the License.
 
 import cv2
-import numpy as np
 import pytest
-from scoring_samples import NONE, PARTIAL, TOTAL, row, run_of, scored
+from matplotlib.figure import Figure
+from scoring_samples import NONE, PARTIAL, TOTAL, run_of
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.plots import overview_figure, save
-from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-
-FRAME = np.full((240, 320, 3), 128, np.uint8)
-RUNS = {
-    "one": run_of((10, 1, NONE), (4, 5, PARTIAL), (6, 30, TOTAL), (10, 2, NONE)),
-    "two": run_of((10, 2, NONE), (4, 5, PARTIAL), (6, 90, TOTAL), (10, 0, NONE)),
-}
-
-
-def errors_of(runs):
-    return overview_figure(FRAME, runs).axes[1]
-
-
-def named_lines(axes):
-    return {line.get_label(): line for line in axes.lines if line.get_label()[0] != "_"}
-
-
-def test_errors_are_drawn_by_frame_on_a_scale_that_has_a_foot():
-    line = named_lines(errors_of(RUNS))["two"]
-    assert list(line.get_xdata()) == list(range(1, 31))
-    assert line.get_ydata()[0] == 2
-    assert line.get_ydata()[-1] == 0.5
+from vehicle_pf_tracker.evaluation.plots import save, shade_occlusions
 
 
 def test_occlusions_are_shaded_once():
-    axes = errors_of(RUNS)
+    axes = Figure().add_subplot()
+    shade_occlusions(axes, run_of((10, 1, NONE), (4, 5, PARTIAL), (6, 30, TOTAL), (10, 2, NONE)))
     spans = [
         (patch.get_label(), patch.get_extents().transformed(axes.transData.inverted()))
         for patch in axes.patches
@@ -54,38 +33,8 @@ def test_occlusions_are_shaded_once():
     assert len(spans) == 2
 
 
-def test_runs_differ_in_colour_and_in_line():
-    lines = named_lines(errors_of(RUNS))
-    assert lines["one"].get_color() != lines["two"].get_color()
-    assert lines["one"].get_linestyle() != lines["two"].get_linestyle()
-
-
-def test_paths_are_dashed_exactly_where_the_vehicle_is_hidden():
-    figure = overview_figure(FRAME, {"one": RUNS["one"]})
-    drawn = {
-        line.is_dashed(): int(np.isfinite(line.get_xdata()).sum())
-        for line in figure.axes[0].lines
-        if line.get_color() == "#0072B2"
-        and line.get_linestyle() != "None"
-        and len(line.get_xdata())
-    }
-    # 14 frames, 6 hidden begun at the last one seen, and 10 begun at the last one hidden.
-    assert drawn == {False: 14 + 11, True: 7}
-
-
-def test_a_gap_breaks_the_path():
-    frames = [scored(n, None if n == 5 else 1) for n in range(1, 10)]
-    figure = overview_figure(FRAME, {"one": Scores(tuple(frames))})
-    drawn = next(line for line in figure.axes[0].lines if line.get_color() == "#0072B2")
-    assert np.isfinite(drawn.get_xdata()).tolist() == [True] * 4 + [False] + [True] * 4
-
-
-@pytest.mark.parametrize("runs", [{}, {"no truth": score_frames([row(1, 5.0), row(2, 6.0)], [])}])
-def test_runs_without_truth_can_be_drawn(tmp_path, runs):
-    save(overview_figure(FRAME, runs), tmp_path / "path.png")
+def test_a_picture_is_written_and_one_that_cannot_be_is_named(tmp_path):
+    save(Figure(figsize=(9, 5)), tmp_path / "path.png")
     assert cv2.imread(str(tmp_path / "path.png")).shape[1] == 1350
-
-
-def test_a_picture_that_cannot_be_written_is_named(tmp_path):
     with pytest.raises(InputError, match=r"cannot write .*missing/error\.png"):
-        save(overview_figure(FRAME, RUNS), tmp_path / "missing" / "error.png")
+        save(Figure(), tmp_path / "missing" / "error.png")

@@ -14,11 +14,10 @@
 
 """The page of real sequences (`reproduction.sequences`), of an evaluation folder made for tests."""
 
-import json
 import statistics
 
 from reproduction.sequences import page
-from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, read_document
 
 
 def cells_of(text, heading, system):
@@ -30,26 +29,20 @@ def cells_of(text, heading, system):
 
 def test_means_over_seeds_and_then_sequences(made_evaluation):
     text = page(EvaluationFolder(made_evaluation))
-    values = {
-        name: [
-            json.loads((made_evaluation / f"cells/{name}/pf/seed-{seed}/metrics.json").read_text())
-            for seed in (0, 1)
-        ]
-        for name in ("bridge", "free")
-    }
-    means = [statistics.fmean(run["rmse_visible_px"] for run in runs) for runs in values.values()]
+    folders = ([made_evaluation / f"cells/{name}/pf/seed-{seed}" for seed in (0, 1)]
+               for name in ("bridge", "free"))  # fmt: skip
+    means = [
+        statistics.fmean(read_document(f / "metrics.json")["rmse_visible_px"] for f in some)
+        for some in folders
+    ]
     cells = cells_of(text, "RMSE of the centre", "pf")
     assert [float(cell.split()[0]) for cell in cells[:2]] == [round(mean, 1) for mean in means]
     assert cells[2] == f"**{statistics.fmean(means):.1f}**"
 
 
-def test_a_baseline_that_did_not_run_is_named(made_evaluation):
+def test_baselines_that_did_not_run_and_occlusions_that_are_judged(made_evaluation):
     text = page(EvaluationFolder(made_evaluation))
     assert cells_of(text, "RMSE of the centre", "baseline:csrt") == ["–", "–", "–"]
     assert "- free, baseline:csrt: the environment of the baselines is not there" in text
-
-
-def test_only_sequences_with_judged_occlusions_have_recoveries(made_evaluation):
-    text = page(EvaluationFolder(made_evaluation))
-    assert cells_of(text, "Total occlusions recovered from", "ms")[0].endswith(" of 1")
-    assert len(cells_of(text, "Total occlusions recovered from", "ms")) == 1
+    (recovered,) = cells_of(text, "Total occlusions recovered from", "ms")  # of one sequence
+    assert recovered.endswith(" of 1")

@@ -22,7 +22,6 @@ from small_recordings import frame_folder, record
 
 from laboratory.__main__ import main
 from laboratory.stress import KINDS
-from vehicle_pf_tracker.cli import main as command_line
 from vehicle_pf_tracker.evaluation.grid.cells import BASELINE
 
 PAGE = Path(__file__).parents[2] / "laboratory" / "notes" / "stress.md"
@@ -62,12 +61,6 @@ def test_a_battery_is_run_and_resumed(footage, tmp_path, capsys):
     assert evaluate(out, *words) == 0
     assert (out / "scores.jsonl").read_text() == scores
     assert (out / "stress.md").read_bytes() == before
-
-
-def test_the_former_option_of_evaluate_names_the_new_command(footage, tmp_path, capsys):
-    words = ["evaluate", str(footage), "--stress", "quick", "-o", str(tmp_path / "out")]
-    assert command_line.main(words) == 2
-    assert "python -m laboratory stress" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -40,7 +40,7 @@ SEEN = TrackEstimate(
 HIDDEN = replace(
     SEEN, identity=8, mode=TrackMode.OCCLUDED, confidence=0.8, score=math.nan, hidden_by=7
 )
-TENTATIVE = replace(SEEN, identity=9, mode=TrackMode.TENTATIVE)
+TENTATIVE = replace(SEEN, identity=0, serial=9, mode=TrackMode.TENTATIVE)
 LOST = replace(SEEN, identity=10, mode=TrackMode.LOST, hidden_by=SCENE)
 ALL = (SEEN, HIDDEN, TENTATIVE, LOST)
 
@@ -51,6 +51,18 @@ def test_the_mot_file_has_confirmed_vehicles_predicted_ones_with_less_confidence
     assert (tmp_path / "tracks.txt").read_text() == (
         "3,7,10.12,20.00,30.00,40.00,0.9000,-1,-1,-1\n3,8,10.12,20.00,30.00,40.00,0.4000,-1,-1,-1\n"
     )
+
+
+def test_a_vehicle_has_its_number_from_its_first_detection_on(tmp_path):
+    confirmed = replace(TENTATIVE, identity=5, mode=TrackMode.TRACKING)
+    other = replace(TENTATIVE, serial=10)
+    with track_files(tmp_path) as files:
+        files.write(1, 100, [TENTATIVE, other])
+        files.write(2, 200, [TENTATIVE])
+        assert (tmp_path / "tracks.txt").exists() is False
+        files.write(3, 300, [confirmed])
+    rows = (tmp_path / "tracks.txt").read_text().splitlines()
+    assert [row.split(",")[:2] for row in rows] == [["1", "5"], ["2", "5"], ["3", "5"]]
 
 
 def test_visible_only_leaves_predicted_ones_out(tmp_path):
@@ -65,13 +77,13 @@ def test_the_table_has_every_estimate_with_all_digits(tmp_path):
         files.write(3, 100, ALL)
     with (tmp_path / "tracks.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert [row["mode"] for row in rows] == ["TRACKING", "OCCLUDED", "TENTATIVE", "LOST"]
+    assert [row["mode"] for row in rows] == ["TRACKING", "OCCLUDED", "LOST"]
     first, second = rows[:2]
     assert float(first["x"]) == SEEN.box.centre[0]  # the very same number
     assert (first["frame"], first["stamp_ns"], first["id"]) == ("3", "100", "7")
     assert (first["width"], first["vy"], first["label"]) == ("30.0", "-0.1", "car")
     assert (first["score"], second["score"]) == ("0.4", "")
-    assert [row["hidden_by"] for row in rows] == ["", "7", "", "scene"]
+    assert [row["hidden_by"] for row in rows] == ["", "7", "scene"]
 
 
 def test_crossings_are_rows_of_counts(tmp_path):

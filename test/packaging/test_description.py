@@ -18,6 +18,7 @@ import re
 import runpy
 import sys
 import xml.etree.ElementTree as ET
+from configparser import ConfigParser
 from pathlib import Path
 
 import pytest
@@ -97,9 +98,10 @@ def test_layouts_of_viewers_are_installed(setup):
 
 
 def test_executables_are_installed_where_ros2_run_looks():
-    text = (ROOT / "setup.cfg").read_text()
-    assert text.count("scripts=$base/lib/vehicle_pf_tracker") == 1
-    assert text.count("script_dir=$base/lib/vehicle_pf_tracker") == 1
+    config = ConfigParser()
+    config.read(ROOT / "setup.cfg")
+    folder = "$base/lib/vehicle_pf_tracker"
+    assert config["develop"]["script_dir"] == config["install"]["install_scripts"] == folder
 
 
 @pytest.mark.parametrize("command", [("install",), ("egg_info", "build", "install"), ("develop",)])

@@ -24,6 +24,7 @@ import cv2
 import numpy as np
 import pytest
 from recording_samples import frame_of
+from small_recordings import write_video
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -32,7 +33,6 @@ from vehicle_pf_tracker.recordings import topics
 from vehicle_pf_tracker.recordings.importing import import_recording
 from vehicle_pf_tracker.recordings.reader import Recording
 
-SEQUENCES = Path(__file__).parents[3] / "shared" / "sequences"
 HEADER = "frame,x,y,w,h,visible,occ\n"
 
 
@@ -193,12 +193,8 @@ def test_what_cannot_be_imported_is_said(frame_folder, tmp_path):
 @pytest.fixture
 def video(tmp_path):
     """A video of 20 frames, each of another brightness, at 12.5 frames per second."""
-    path = tmp_path / "video.avi"
-    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 12.5, (64, 48))
-    for index in range(20):
-        writer.write(np.full((48, 64, 3), (10 * index, 0, 200), np.uint8))
-    writer.release()
-    return path
+    frames = [np.full((48, 64, 3), (200, 0, 10 * index), np.uint8) for index in range(20)]
+    return write_video(tmp_path / "video.avi", frames, 12.5)
 
 
 @pytest.mark.parametrize("wanted", [None, "raw"])
@@ -250,36 +246,6 @@ def test_a_video_shorter_than_it_states_is_imported_with_a_notice(video, tmp_pat
     summary = import_recording(video, tmp_path / "bag")
     assert 0 < summary.frames < 20
     assert "states 20 frames" in summary.notices[0]
-
-
-def sequence_folders():
-    return sorted(SEQUENCES.glob("*/*/sequence.json"))
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not SEQUENCES.exists(), reason="../shared/sequences is not there")
-@pytest.mark.parametrize("wanted", [None, "raw"])
-def test_all_real_sequences_import(tmp_path, wanted):
-    folders = [path.parent for path in sequence_folders()]
-    assert len(folders) >= 19  # as its README lists
-    for folder in folders:
-        said = json.loads((folder / "sequence.json").read_text())
-        out = tmp_path / folder.parent.name / folder.name
-        summary = import_recording(folder, out, format=wanted)
-        recording = Recording(out)
-        truth = recording.truth()
-        assert summary.frames == recording.frame_count == said["frames"] == len(truth)
-        if "width" in said:  # the later sequences state frames and first box only
-            assert (summary.width, summary.height) == (said["width"], said["height"])
-        first = truth[0].box
-        assert (first.x, first.y) == pytest.approx(said["first_box"][:2], abs=1e-4)
-        total = [index + 1 for index, t in enumerate(truth) if t.occlusion is Occlusion.TOTAL]
-        if (spans := said.get("total_occlusion_frames")) is not None:
-            assert total == [n for first, last in spans for n in range(first, last + 1)]
-        stamps = [found.stamp_ns for found in recording.frames()]
-        assert stamps == [t.stamp_ns for t in truth]
-        assert recording.notices == []
-        shutil.rmtree(out)
 
 
 def truth_file(tmp_path, *lines):

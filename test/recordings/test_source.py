@@ -22,6 +22,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from small_recordings import write_video
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.importing import import_recording
@@ -39,12 +40,8 @@ def write_images(folder: Path, names) -> Path:
     return folder
 
 
-def write_video(path: Path, fps: float = 12.5, count: int = 6) -> Path:
-    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), fps, (32, 24))
-    for index in range(count):
-        writer.write(np.full((24, 32, 3), 20 * index, np.uint8))
-    writer.release()
-    return path
+def video_of(path: Path, fps: float = 12.5) -> Path:
+    return write_video(path, [np.full((24, 32, 3), 20 * n, np.uint8) for n in range(6)], fps)
 
 
 def stamps(source) -> list[int]:
@@ -107,13 +104,13 @@ def test_the_truth_of_a_folder_is_known_before_it_is_read(tmp_path):
 
 
 def test_a_video_of_an_even_rate_keeps_to_it_to_the_nanosecond(tmp_path):
-    source = open_source(write_video(tmp_path / "v.avi", fps=30))
+    source = open_source(video_of(tmp_path / "v.avi", fps=30))
     assert stamps(source) == [round(n * 1e9 / 30) for n in range(6)]
     assert isinstance(source, VideoFile)
 
 
 def test_a_rate_given_takes_the_place_of_the_one_stated(tmp_path):
-    source = open_source(write_video(tmp_path / "v.avi"), fps=100)
+    source = open_source(video_of(tmp_path / "v.avi"), fps=100)
     assert stamps(source) == [n * 10_000_000 for n in range(6)]
 
 
@@ -136,7 +133,7 @@ class StatedTimes:
 
 
 def test_the_times_of_a_variable_rate_are_kept(tmp_path, monkeypatch):
-    video = VideoFile(write_video(tmp_path / "v.avi"))
+    video = VideoFile(video_of(tmp_path / "v.avi"))
     video.fps = 1000 / 60
     monkeypatch.setattr(video, "_open", lambda: StatedTimes([0.0, 40.0, 120.0, 160.0, 240.0]))
     assert [p.stamp_ns - START for p in video.frames()] == [
@@ -145,7 +142,7 @@ def test_the_times_of_a_variable_rate_are_kept(tmp_path, monkeypatch):
 
 
 def test_times_that_go_back_are_replaced_and_counted(tmp_path, monkeypatch):
-    video = VideoFile(write_video(tmp_path / "v.avi"))
+    video = VideoFile(video_of(tmp_path / "v.avi"))
     monkeypatch.setattr(video, "_open", lambda: StatedTimes([0.0, 0.0, 0.0, 500.0]))
     video.fps = 100.0
     found = [p.stamp_ns - START for p in video.frames()]
@@ -154,7 +151,7 @@ def test_times_that_go_back_are_replaced_and_counted(tmp_path, monkeypatch):
 
 
 def test_recordings_are_opened_as_such(tmp_path):
-    import_recording(write_video(tmp_path / "v.avi"), tmp_path / "bag")
+    import_recording(video_of(tmp_path / "v.avi"), tmp_path / "bag")
     assert isinstance(open_source(tmp_path / "bag"), Recording)
     (mcap,) = (tmp_path / "bag").glob("*.mcap")
     assert isinstance(open_source(str(mcap)), Recording)
@@ -182,4 +179,4 @@ def test_what_cannot_be_opened_is_said_with_the_remedy(tmp_path, monkeypatch, na
 
 def test_only_recordings_have_topics(tmp_path):
     with pytest.raises(InputError, match="leave --topic out"):
-        open_source(write_video(tmp_path / "v.avi"), topic="/image")
+        open_source(video_of(tmp_path / "v.avi"), topic="/image")

@@ -68,7 +68,7 @@ def findings(report, claim):
 
 
 @pytest.mark.slow
-def test_table_1_judges_by_the_best_single_feature(results):
+def test_table_1_judges_by_the_best_single_feature_and_counts_runs_that_end_close(results):
     report = EXPERIMENTS["mfpf-table1"].report(results, SIZE)
     least = findings(report, 0)
     assert list(least) == ["the paper's rule", "our interpretation", "defaults", "as printed"]
@@ -82,11 +82,6 @@ def test_table_1_judges_by_the_best_single_feature(results):
     )
     assert over_all["the paper's rule, single features with their defaults"].holds is Holds.YES
     assert findings(report, 5)["the paper's rule"].holds is Holds.YES  # glcm is the best
-
-
-@pytest.mark.slow
-def test_table_1_counts_runs_that_end_close(results):
-    report = EXPERIMENTS["mfpf-table1"].report(results, SIZE)
     ends = next(table for title, table in report.tables.items() if title.startswith("Runs"))
     rows = {row[0]: row[1:] for row in ends.rows}
     assert rows["MFPF"] == (2, 2)

@@ -13,18 +13,11 @@
 # limitations under the License.
 
 import json
-import signal
-import subprocess
-import sys
-import time
-from pathlib import Path
 
 import pytest
-from unmeasured import unmeasured_environment
 
 from reproduction.__main__ import main
 
-ROOT = Path(__file__).resolve().parents[2]
 WORDS = ["--quick", "--seeds", "1", "--first-seed", "100", "--workers", "1"]
 
 
@@ -38,8 +31,7 @@ def test_the_experiments_are_listed(capsys):
     assert [line.partition(":")[0] for line in lines][:3] == ["apf-fig1", "apf-fig2", "apf-fig3"]
 
 
-@pytest.mark.slow
-def test_one_experiment_writes_its_folder_and_the_page(tmp_path, capsys):
+def test_one_experiment_writes_its_folder_and_its_section_of_the_page(tmp_path, capsys):
     out, docs = tmp_path / "out", tmp_path / "docs"
     assert reproduce(out, "apf-fig4", "--docs", str(docs)) == 0
     assert {path.name for path in (out / "apf-fig4").iterdir()} == {
@@ -51,27 +43,13 @@ def test_one_experiment_writes_its_folder_and_the_page(tmp_path, capsys):
     sizes = [(out / "apf-fig4" / f"figure.{kind}").stat().st_size for kind in ("svg", "png")]
     assert picture.stat().st_size == min(sizes)
     verdict = json.loads((out / "apf-fig4" / "verdict.json").read_text())
-    word = verdict["holds"]
-    assert f"and 30 px | **{word}** |" in page
     assert "| 100 |" in page  # the seed
-    assert f"apf-fig4: {word}  (" in capsys.readouterr().out
-
-
-def test_the_page_gives_each_claim_a_row_with_the_numbers_of_all_three_interpretations(tmp_path):
-    out = tmp_path / "out"
-    reproduce(out, "apf-fig4", "--docs", str(tmp_path))
-    page = (tmp_path / "reproduction.md").read_text()
+    assert f"apf-fig4: {verdict['holds']}  (" in capsys.readouterr().out
     section = page.partition("\n### apf-fig4")[2]
     assert "| claim | the paper's rule | our interpretation | as printed |" in section
-    for claim in json.loads((out / "apf-fig4" / "verdict.json").read_text())["claims"]:
+    for claim in verdict["claims"]:
         cells = [f"**{f['holds']}**: {f['numbers']}" for f in claim["findings"]]
         assert f"| {claim['claim']} ({claim['place']}) | {' | '.join(cells)} |" in section
-
-
-def test_the_page_gives_a_claim_without_interpretations_one_result(tmp_path):
-    reproduce(tmp_path / "out", "apf-fig2", "--docs", str(tmp_path))
-    section = (tmp_path / "reproduction.md").read_text().partition("\n### apf-fig2")[2]
-    assert "| claim | result |" in section
 
 
 @pytest.mark.slow
@@ -84,6 +62,7 @@ def test_the_page_has_what_was_made_before_too_and_a_second_time_nothing_changes
         page.index("\n## Scharcanski") < page.index("\n### apf-fig2") < page.index("\n### apf-fig4")
     )
     assert "Khong" not in page  # nothing of it was made
+    assert "| claim | result |" in page.partition("\n### apf-fig2")[2]  # no interpretations
     files = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     reproduce(out, "apf-fig2", "apf-fig4", "--docs", str(docs))
     assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == files
@@ -108,37 +87,3 @@ def test_an_output_that_is_a_file_is_told(tmp_path, capsys):
     (tmp_path / "out").write_text("")
     assert reproduce(tmp_path / "out", "apf-fig2") == 1
     assert "is a file" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
-def test_what_was_ended_continues_and_comes_out_the_same(tmp_path, number):
-    whole, ended = tmp_path / "whole", tmp_path / "ended"
-    assert reproduce(whole, "apf-fig3") == 0
-    # Those who start us in the background may have had SIGINT ignored, which a child inherits.
-    code = (
-        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "from reproduction.__main__ import main; sys.exit(main())"
-    )
-    words = ["apf-fig3", *WORDS[:-1], "2", "-o", str(ended)]
-    process = subprocess.Popen(
-        [sys.executable, "-c", code, *words], cwd=ROOT, stderr=subprocess.PIPE, text=True,
-        env=unmeasured_environment(),
-    )  # fmt: skip
-    cells = ended / "cells.jsonl"
-    try:
-        deadline = time.monotonic() + 60
-        while not (cells.exists() and cells.stat().st_size) and time.monotonic() < deadline:
-            time.sleep(0.02)
-        process.send_signal(number)
-        _, parts = process.communicate(timeout=10)
-    finally:
-        process.kill()
-    if number == signal.SIGINT:
-        assert process.returncode == 130
-        assert "Traceback" not in parts
-    assert cells.stat().st_size > 0
-    assert not (ended / "apf-fig3").exists()
-    assert reproduce(ended, "apf-fig3") == 0
-    for file in ("data.csv", "figure.svg", "verdict.json"):
-        assert (ended / "apf-fig3" / file).read_bytes() == (whole / "apf-fig3" / file).read_bytes()

@@ -66,6 +66,8 @@ class NodeProcess:
         Parameters, ``name:=value``.
     target : (float, float, float, float) or None
         Left, top, width, height of the target in px; None gives none.
+    is_reliable : bool
+        Images come reliably; else by best effort, as from a camera.
     """
 
     def __init__(
@@ -73,10 +75,12 @@ class NodeProcess:
         variant: str,
         *assignments: str,
         target: tuple[float, float, float, float] | None = TARGET,
+        is_reliable: bool = True,
     ) -> None:
         os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         box = zip(("x", "y", "width", "height"), target or (), strict=target is not None)
-        words = [RELIABLE, *(f"target.{name}:={value}" for name, value in box), *assignments]
+        words = [*(f"target.{name}:={value}" for name, value in box), *assignments]
+        words += [RELIABLE] if is_reliable else []
         self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - open as long as the node
         code = (
             "from vehicle_pf_tracker.ros.executables import main;"
@@ -97,6 +101,10 @@ class NodeProcess:
         self.name = own = f"/{variant}_tracker"
         self._node.create_subscription(
             DiagnosticArray, f"{own}/mode", self.modes.append, QoSProfile(depth=100)
+        )
+        self._reports: list[DiagnosticArray] = []
+        self._node.create_subscription(
+            DiagnosticArray, "/diagnostics", self._reports.append, QoSProfile(depth=10)
         )
         self._camera = self._node.create_publisher(Image, "image", QoSProfile(depth=100))
         self._targets = {
@@ -123,6 +131,16 @@ class NodeProcess:
     def _is_loading(self) -> bool:
         values = self.modes[-1].status[0].values
         return any(pair.value.startswith(NOT_READY) for pair in values)
+
+    @property
+    def lost(self) -> int:
+        """Images that were sent but never reached the node, by their publication numbers."""
+        self._reports.clear()
+        deadline = time.monotonic() + TIMEOUT
+        while not self._reports and time.monotonic() < deadline:
+            self.spin(0.1)
+        values = self._reports[-1].status[0].values if self._reports else ()
+        return next((int(pair.value) for pair in values if pair.key == "dropped"), 0)
 
     def collect(self, kind: type, name: str) -> list[Any]:
         """Subscribe to an output of the node; returns the list that messages are appended to."""

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The highway: the two total occlusions for every seed, and what the demo relies on."""
+"""The highway: two total occlusions for every seed, and what the README's animation relies on."""
 
 from itertools import groupby
 

@@ -86,12 +86,6 @@ def print_table(table: Table) -> None:
     console.print(table)
 
 
-def megabytes(count: int) -> str:
-    """Return a number of bytes for people: two digits, and more above 100 MB."""
-    size = count / 1e6
-    return f"{size:.0f} MB" if size >= 100 else f"{float(f'{size:.2g}'):g} MB"
-
-
 OnFrames: TypeAlias = Callable[[int, int | None], None]
 """Takes the numbers of frames done and of all, None if unknown."""
 Show: TypeAlias = Callable[[str, float | None], None]

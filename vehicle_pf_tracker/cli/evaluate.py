@@ -47,6 +47,7 @@ from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.grid.cells import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
+from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
 
 _GRID_ONLY = (
     "params", "without_defaults", "baseline_model", "max_rmse", "topic", "recordings",
+    "shifted_starts", "figures", "write",
 )  # fmt: skip
 """Options of the grid that do not apply."""
 
@@ -160,6 +162,9 @@ class Request(TrafficRequest, ReportParts, MaxDiffOption):
     """Request of `evaluate`."""
 
     topic: str | None = option(help="the image topic, where recordings have several")
+    shifted_starts: bool = switch(
+        help="also start on twelve shifted and scaled boxes (OTB), with the first seed"
+    )
     max_rmse: float | None = option(
         type=float, metavar="PX",
         help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
@@ -197,12 +202,13 @@ def _plan(request: Request, sources: Sequence[str]) -> Plan:
         range(request.first_seed, request.first_seed + (request.seeds or system_options.SEEDS)),
         list(request.command),
         request.max_diff,
+        shifted_starts() if request.shifted_starts else (),
     )
 
 
 def _judge(written: Report, limit: float | None) -> int:
     """Print the means, and return the status that they give."""
-    from vehicle_pf_tracker.evaluation.report.page_tables import overall_table
+    from vehicle_pf_tracker.evaluation.report.page_tables import overall_table, starts_table
 
     evaluation, aggregates = written.evaluation, written.aggregates
     for system, reason in dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed):
@@ -211,6 +217,8 @@ def _judge(written: Report, limit: float | None) -> int:
         tell_error("no system could run; the report says why")
         return 1
     print_rows(*overall_table(aggregates, _SHOWN).texts())
+    if starts := starts_table(aggregates):
+        print_rows(*starts.texts(), "shifted starts")
     status = 0
     if failed := dict.fromkeys(cell.system for cell in evaluation.failed):
         tell_error(f"not every run succeeded: {', '.join(failed)}; the report says why")

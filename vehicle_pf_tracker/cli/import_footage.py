@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import counting, megabytes, tell_notices
+from vehicle_pf_tracker.cli.console import counting, tell_notices
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.recordings.importing import FORMATS, import_recording
@@ -65,7 +65,7 @@ def run(request: Request) -> int:
         )
     tell_notices(made.notices)
     print(
-        f"{made.path}: {made.frames} frames of {made.width}x{made.height} px "
-        f"at {made.fps:g} frames/s, {made.truths} with truth; {megabytes(made.size)}"
+        f"{request.out}: {made.frames} frames of {made.width}x{made.height} px "
+        f"at {made.fps:g} frames/s, {made.truths} with truth"
     )
     return 0

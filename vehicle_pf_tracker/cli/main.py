@@ -75,7 +75,6 @@ def remedy(module: str) -> str:
 
 VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        "demo": ("demo", "run the whole chain on a synthetic scene, scored against truth"),
         "import": ("import_footage", "convert a video file or a frame folder to a recording"),
         "synth": ("synth", "render a synthetic scene to a recording, with exact truth"),
         "params": ("params", "print the commented default parameters of a variant"),
@@ -96,7 +95,7 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
 )
 """Module in this package and one line of help, by verb."""
 
-EVALUATING = frozenset({"demo", "evaluate", "tune", "report"})
+EVALUATING = frozenset({"evaluate", "tune", "report"})
 """Verbs that need the extra `evaluation`: nodes, `replay`, `run` and `import` do without it."""
 
 EVALUATION_MODULES = ("matplotlib", "scipy", "jinja2")

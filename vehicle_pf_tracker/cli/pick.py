@@ -24,6 +24,7 @@ import tempfile
 import threading
 import webbrowser
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
 from dataclasses import astuple, dataclass
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -155,25 +156,31 @@ class FrameStore:
         self._file = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the store
         self._ends = [0]
         self._lock = threading.Lock()
+        self._is_closed = False
 
     def jpeg(self, number: int) -> bytes | None:
         """Return frame `number`, from 1, as a JPEG file; None if there is none that can be read."""
         with self._lock:
-            return self._jpeg(number)
-
-    def _jpeg(self, number: int) -> bytes | None:
-        while len(self._ends) <= number:
-            found = next(self._frames, None)
-            if found is None:
-                self.count = len(self._ends) - 1
+            while len(self._ends) <= number and not self._is_closed:
+                found = next(self._frames, None)
+                if found is None:
+                    self.count = len(self._ends) - 1
+                    return None
+                coded = b"" if found.frame is None else jpeg(found.frame)
+                self._file.seek(self._ends[-1])
+                self._file.write(coded)
+                self._ends.append(self._ends[-1] + len(coded))
+            if self._is_closed:
                 return None
-            coded = b"" if found.frame is None else jpeg(found.frame)
-            self._file.seek(self._ends[-1])
-            self._file.write(coded)
-            self._ends.append(self._ends[-1] + len(coded))
-        begin, end = self._ends[number - 1 : number + 1]
-        self._file.seek(begin)
-        return self._file.read(end - begin) or None
+            begin, end = self._ends[number - 1 : number + 1]
+            self._file.seek(begin)
+            return self._file.read(end - begin) or None
+
+    def close(self) -> None:
+        """Wait for the frame under way; no other is read, as a decoder aborts Python's exit."""
+        self._is_closed = True
+        with self._lock:
+            self._file.close()
 
 
 class PickingServer(ThreadingHTTPServer, Generic[PickedT]):
@@ -234,7 +241,7 @@ class PickingServer(ThreadingHTTPServer, Generic[PickedT]):
 
 def ask(source: Source, tool: Tool[PickedT], first: int) -> Sequence[PickedT]:
     """Let the user pick in the frames of `source`; empty if they cancel."""
-    with PickingServer(FrameStore(source), tool, first) as server:
+    with closing(FrameStore(source)) as frames, PickingServer(frames, tool, first) as server:
         print(f"open {server.url} in a browser on this machine; Ctrl-C ends this", flush=True)
         if has_display():  # without one, a text browser would take the terminal
             webbrowser.open(server.url)

@@ -66,7 +66,7 @@ def shown_replay(
                 began = clock()
             count, seconds = progress.frames, clock() - began
             words = f"{count} frame{'s' * (count > 1)}"
-            if seconds > 0:
+            if count > 1 and seconds > 0:
                 words += f", {(count - 1) / seconds:.1f} frames/s"
             show(words, progress.position / progress.length if progress.position else None)
 

@@ -16,16 +16,32 @@
 
 from __future__ import annotations
 
+import argparse
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli.console import stages, tell_notice
+from vehicle_pf_tracker.cli.console import stages, tell_notice, tell_notices
 from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, switch
 from vehicle_pf_tracker.core.outputs import Products, claimed
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report import Report
+
+
+def _several(*known: str) -> Callable[[str], tuple[str, ...]]:
+    """Return what reads some of `known`, with commas."""
+
+    def read(text: str) -> tuple[str, ...]:
+        names = tuple(dict.fromkeys(text.split(",")))
+        for name in names:
+            if name not in known:
+                choice = f"choose from {', '.join(known)}"
+                raise argparse.ArgumentTypeError(f"{name!r} is not a format; {choice}")
+        return names
+
+    return read
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,6 +55,16 @@ class ReportParts(VerbRequest):
     recordings: bool = switch(
         help="write the recordings with truth and all estimates to DIR/estimates, for Foxglove"
     )
+    figures: tuple[str, ...] = option(
+        type=_several("pdf", "svg", "png"), default=(), metavar="FORMATS",
+        help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
+        "pdf, svg or png, several with commas",
+    )  # fmt: skip
+    write: tuple[str, ...] = option(
+        type=_several("otb", "vot", "mot"), default=(), metavar="TOOLKITS",
+        help="write every run to DIR/results as other toolkits read it; TOOLKITS are otb, vot or "
+        "mot, several with commas",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,14 +88,18 @@ def run(request: Request) -> int:
 def write(folder: Path, request: ReportParts) -> Report:
     """Write the report of `folder` with the parts that are asked for."""
     from vehicle_pf_tracker.evaluation.report import write_report
+    from vehicle_pf_tracker.evaluation.report.scored_runs import version_notes
 
     with stages("report") as on_stage:
         report = write_report(
             folder,
             images=request.images,
             recordings=request.recordings,
+            figures=request.figures,
+            toolkits=request.write,
             notify=tell_notice,
             on_stage=on_stage,
         )
+    tell_notices(version_notes(report.evaluation))
     print(f"the report is {report.paths[0]}")
     return report

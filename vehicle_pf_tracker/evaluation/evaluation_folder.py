@@ -20,6 +20,7 @@
     recordings/<recording>/truth.csv
     cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json, run.json and digests.json; or
     cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
+    cells/<recording>/<system>/seed-<n>-<start>/         the same from a shifted first box
 """
 
 from __future__ import annotations
@@ -155,9 +156,6 @@ class SystemEntry:
 class Cell:
     """One run of the grid: its rows and `run.json`, or the reason why there are none."""
 
-    recording: str
-    system: str
-    seed: int
     rows: tuple[EstimateRow, ...] | None
     run: Mapping[str, Any]
     reason: str
@@ -181,6 +179,8 @@ class EvaluationFolder:
         See the plan for the order.
     seeds : tuple of int
         See the plan for the order.
+    shifted : tuple of str
+        Names of the shifted first boxes.
 
     Raises
     ------
@@ -201,6 +201,7 @@ class EvaluationFolder:
         try:
             self.recordings = tuple(_source(entry) for entry in self.plan["recordings"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
+            self.shifted = tuple(map(str, self.plan.get("shifted_starts", ())))
             self.systems = tuple(_system(entry, self.seeds) for entry in self.plan["systems"])
         except (KeyError, TypeError, ValueError) as error:
             raise InputError(f"the plan {path / PLAN} is broken: {error!r}") from error
@@ -210,25 +211,26 @@ class EvaluationFolder:
         path = self.path / "recordings" / recording / TRUTH
         return read_truth(path) if path.is_file() else {}
 
-    def cell(self, recording: str, system: str, seed: int) -> Cell:
+    def cell(self, recording: str, system: str, seed: int, start: str = "") -> Cell:
         """Read one cell of the grid."""
-        folder = cell_folder(self.path, recording, system, seed)
+        folder = cell_folder(self.path, recording, system, seed, start)
         if (folder / FAILED).is_file():
             reason = str(read_document(folder / FAILED).get("reason", "no reason was given"))
-            return Cell(recording, system, seed, None, {}, reason)
+            return Cell(None, {}, reason)
         if not (folder / ESTIMATES).is_file():
-            return Cell(recording, system, seed, None, {}, "it was not run")
+            return Cell(None, {}, "it was not run")
         fault = damage(folder)
         if fault:
             reason = f"its stored result is damaged: {fault}; the same `evaluate` runs it again"
-            return Cell(recording, system, seed, None, {}, reason)
+            return Cell(None, {}, reason)
         rows = tuple(read_estimates(folder / ESTIMATES))
-        return Cell(recording, system, seed, rows, read_document(folder / RUN), "")
+        return Cell(rows, read_document(folder / RUN), "")
 
 
-def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:
-    """Return the folder of one cell of the evaluation in `folder`."""
-    return folder / "cells" / recording / safe_name(system) / f"seed-{seed}"
+def cell_folder(folder: Path, recording: str, system: str, seed: int, start: str = "") -> Path:
+    """Return the folder of one cell of the evaluation in `folder`; `start` names a shifted box."""
+    name = f"seed-{seed}-{start}" if start else f"seed-{seed}"
+    return folder / "cells" / recording / safe_name(system) / name
 
 
 def safe_name(label: str) -> str:

@@ -19,9 +19,10 @@ from __future__ import annotations
 import csv
 import math
 from collections import Counter as Tally
+from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -49,8 +50,53 @@ _HIDDEN_CONFIDENCE = 0.5
 threshold of a half leaves no predicted box."""
 
 
+IN_TRACKS = frozenset({TrackMode.TENTATIVE, *CONFIRMED})
+"""Modes of numbered vehicles that `tracks.txt` has."""
+_HELD_FRAMES = 90
+"""Frames that are held back at most until their tentative vehicles are known: 3 s at 30 Hz."""
+FrameEstimates = tuple[int, int, Sequence[TrackEstimate]]
+"""Number of a frame, its stamp in ns, and the vehicles in it."""
+Frames = Iterator[FrameEstimates]
+
+
+class Backdating:
+    """Holds frames back until it is known which of their tentative vehicles are confirmed.
+
+    These get their numbers from their first detection on; the others are left out.
+    """
+
+    def __init__(self) -> None:
+        self._held: deque[FrameEstimates] = deque()
+        self._numbers: dict[int, int] = {}
+
+    def add(self, frame: int, stamp_ns: int, estimates: Sequence[TrackEstimate]) -> Frames:
+        """Take the next frame, and return those that are known, in order."""
+        self._held.append((frame, stamp_ns, estimates))
+        self._numbers.update({one.serial: one.identity for one in estimates if one.identity})
+        open_ones = {one.serial for one in estimates if not one.identity}
+        while self._held and (
+            len(self._held) > _HELD_FRAMES
+            or open_ones.isdisjoint(one.serial for one in self._held[0][2])
+        ):
+            yield self._known(*self._held.popleft())
+
+    def rest(self) -> Frames:
+        """Return the frames that are still held back, as the source has ended."""
+        while self._held:
+            yield self._known(*self._held.popleft())
+
+    def _known(
+        self, frame: int, stamp_ns: int, estimates: Sequence[TrackEstimate]
+    ) -> FrameEstimates:
+        numbered = [
+            one if one.identity else replace(one, identity=self._numbers.get(one.serial, 0))
+            for one in estimates
+        ]
+        return frame, stamp_ns, [one for one in numbered if one.identity]
+
+
 class TrackFiles:
-    """Writes the estimates of frame after frame.
+    """Writes the estimates of frame after frame, tentative ones once they are confirmed.
 
     Parameters
     ----------
@@ -73,7 +119,8 @@ class TrackFiles:
         self._tracks = csv.writer(csv_file, lineterminator="\n")
         self._mot = mot_file
         self._counts = csv.writer(counts_file, lineterminator="\n") if counts_file else None
-        self._in_mot = {TrackMode.TRACKING} if visible_only else set(CONFIRMED)
+        self._in_mot = IN_TRACKS - ({TrackMode.OCCLUDED} if visible_only else set())
+        self._backdating = Backdating()
         self._tracks.writerow(TRACK_COLUMNS)
         if self._counts:
             self._counts.writerow(COUNT_COLUMNS)
@@ -85,11 +132,21 @@ class TrackFiles:
         estimates: Sequence[TrackEstimate],
         crossings: Iterable[Crossing] = (),
     ) -> None:
-        """Write what is known of a frame, whose number counts from 1."""
-        self._tracks.writerows(_track_row(frame, stamp_ns, one) for one in estimates)
-        self._mot.writelines(_mot_row(frame, one) for one in estimates if one.mode in self._in_mot)
+        """Take what is known of a frame, whose number counts from 1."""
+        self._write(self._backdating.add(frame, stamp_ns, estimates))
         if self._counts:
             self._counts.writerows(_count_row(frame, one) for one in crossings)
+
+    def finish(self) -> None:
+        """Write what was held back."""
+        self._write(self._backdating.rest())
+
+    def _write(self, frames: Frames) -> None:
+        for frame, stamp_ns, estimates in frames:
+            self._tracks.writerows(_track_row(frame, stamp_ns, one) for one in estimates)
+            self._mot.writelines(
+                _mot_row(frame, one) for one in estimates if one.mode in self._in_mot
+            )
 
 
 @contextmanager
@@ -113,7 +170,9 @@ def track_files(
                 opened.enter_context(partial.open("w", encoding="utf-8", newline="\n"))
                 for partial in partials
             ]
-            yield TrackFiles(*files, visible_only=visible_only)
+            tracks = TrackFiles(*files, visible_only=visible_only)
+            yield tracks
+            tracks.finish()
     if not counting:  # none of an earlier run beside the tracks of this one
         with output_errors(folder / COUNTS):
             (folder / COUNTS).unlink(missing_ok=True)

@@ -68,6 +68,16 @@ class NodeParameters:
         "Appended to the images' frame_id in outputs that are in pixels (`_px`, for instance), so "
         "that nothing takes them for metres; ~/mode and ~/overlay keep the images' own.",
     )
+    keep_target: bool = parameter(
+        False, "Write the target's box to ~/.ros once a second, so that a node that was killed and "
+        "starts again within 30 s goes on with it.",
+        read_only=True,
+    )  # fmt: skip
+    incident_memory: int = parameter(
+        0, "Memory for the images and answers of the last 10 s, which ~/snapshot writes to ~/.ros "
+        "as a recording; 0 keeps none.",
+        bounds=(0, 100_000), unit="MB", read_only=True,
+    )  # fmt: skip
     publish: PublishParameters = group(PublishParameters)
 
 

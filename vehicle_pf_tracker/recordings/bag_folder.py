@@ -20,14 +20,14 @@ Read by rosbag2's `MetadataIo` and by `rosbags`; the field names are rosbag2_sto
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path, PurePath
 from typing import Any
 
 import yaml
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings.cdr import type_hash
 
 
 def recording_files(path: Path) -> tuple[list[Path], list[str]]:
@@ -149,16 +149,6 @@ RELIABLE_QOS: list[dict[str, Any]] = [
 """The QoS profiles that every topic of our recordings offers."""
 
 
-@dataclass(frozen=True, slots=True)
-class TopicSummary:
-    """A topic of a bag: its type, the type's RIHS01 hash and how many messages it has."""
-
-    name: str
-    type_name: str
-    type_hash: str
-    message_count: int
-
-
 class _PlainDumper(yaml.SafeDumper):
     """Writes equal values out each time: rosbag2's readers need not know YAML's aliases."""
 
@@ -167,45 +157,47 @@ class _PlainDumper(yaml.SafeDumper):
 
 
 def bag_information(
-    file_name: str, start_ns: int, duration_ns: int, summaries: Sequence[TopicSummary]
+    file_name: str, start_ns: int, duration_ns: int, topics: Mapping[str, tuple[str, int]]
 ) -> dict[str, Any]:
-    """Describe a bag of one MCAP file whose first message is at `start_ns`, in ns."""
-    start = {"nanoseconds_since_epoch": start_ns}
-    duration = {"nanoseconds": duration_ns}
-    count = sum(summary.message_count for summary in summaries)
+    """Describe a bag of one MCAP file.
+
+    Parameters
+    ----------
+    file_name : str
+        Name of the file.
+    start_ns, duration_ns : int
+        Log time of its first message, and time from there to its last one, ns.
+    topics : mapping of str to (str, int)
+        Type of each topic, and the number of its messages.
+    """
+    summary = {
+        "duration": {"nanoseconds": duration_ns},
+        "starting_time": {"nanoseconds_since_epoch": start_ns},
+        "message_count": sum(count for _, count in topics.values()),
+    }
     return {
         "version": VERSION,
         "storage_identifier": "mcap",
-        "duration": duration,
-        "starting_time": start,
-        "message_count": count,
-        "topics_with_message_count": [_topic(summary) for summary in summaries],
+        **summary,
+        "topics_with_message_count": [
+            {
+                "topic_metadata": {
+                    "name": name,
+                    "type": type_name,
+                    "serialization_format": "cdr",
+                    "offered_qos_profiles": RELIABLE_QOS,
+                    "type_description_hash": type_hash(type_name),
+                },
+                "message_count": count,
+            }
+            for name, (type_name, count) in topics.items()
+        ],
         "compression_format": "",
         "compression_mode": "",
         "relative_file_paths": [file_name],
-        "files": [
-            {
-                "path": file_name,
-                "starting_time": start,
-                "duration": duration,
-                "message_count": count,
-            }
-        ],
+        "files": [{"path": file_name, **summary}],
         "custom_data": None,
         "ros_distro": "jazzy",
-    }
-
-
-def _topic(summary: TopicSummary) -> dict[str, Any]:
-    return {
-        "topic_metadata": {
-            "name": summary.name,
-            "type": summary.type_name,
-            "serialization_format": "cdr",
-            "offered_qos_profiles": RELIABLE_QOS,
-            "type_description_hash": summary.type_hash,
-        },
-        "message_count": summary.message_count,
     }
 
 

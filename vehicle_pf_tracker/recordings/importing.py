@@ -38,27 +38,21 @@ class ImportSummary:
 
     Attributes
     ----------
-    path : Path
-        Path of the recording.
     frames, truths : int
         Number of images, and of those with truth.
     fps : float
         Frame rate of the source in 1/s.
     width, height : int
         Size of the images in px.
-    size : int
-        Size of the recording, bytes.
     notices : tuple of str
         Irregularities, a sentence each.
     """
 
-    path: Path
     frames: int
     truths: int
     fps: float
     width: int
     height: int
-    size: int
     notices: tuple[str, ...]
 
 
@@ -114,8 +108,7 @@ def import_recording(
             frames += 1
             if progress is not None:
                 progress(frames, footage.frame_count)
-    written = sum(path.stat().st_size for path in out.iterdir())
-    return ImportSummary(out, frames, truths, footage.fps, *size, written, tuple(footage.notices))
+    return ImportSummary(frames, truths, footage.fps, *size, tuple(footage.notices))
 
 
 def _open(source: Path, truth: Path | None, fps: float | None) -> Footage:

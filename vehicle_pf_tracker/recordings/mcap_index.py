@@ -106,11 +106,10 @@ def read_index(path: Path) -> McapIndex:
 def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
     """Make the index of the summary, if there is one that can be trusted."""
     summary = _read_summary(stream, size)
-    if summary is None or summary.statistics is None:
+    if summary is None or not _is_complete(summary, size):
         return None
+    assert summary.statistics is not None
     counts = Counter(summary.statistics.channel_message_counts)
-    if not _is_complete(summary, counts, size):
-        return None
     blocks = [
         Block(
             chunk.chunk_start_offset,
@@ -125,12 +124,17 @@ def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
 
 
 def _read_summary(stream: BinaryIO, size: int) -> Summary | None:
-    if size < len(MAGIC) + _TAIL:
+    """Read the summary, if the footer's checksum does not contradict it."""
+    stream.seek(max(size - _TAIL, 0))
+    tail = stream.read()
+    if not (len(tail) == _TAIL and tail.startswith(_FOOTER) and tail.endswith(MAGIC)):
         return None
-    stream.seek(-_TAIL, io.SEEK_END)
-    tail = stream.read(_TAIL)
-    is_whole = tail.startswith(_FOOTER) and tail.endswith(MAGIC)
-    if not is_whole or not _has_true_checksum(stream, tail, size):
+    start, _, checksum = struct.unpack_from("<QQI", tail, len(_FOOTER))
+    end = size - len(MAGIC) - 4  # the checksum covers the footer up to itself
+    if not len(MAGIC) <= start < end:
+        return None
+    stream.seek(start)
+    if checksum and zlib.crc32(stream.read(end - start)) != checksum:
         return None
     stream.seek(0)
     try:
@@ -139,31 +143,19 @@ def _read_summary(stream: BinaryIO, size: int) -> Summary | None:
         return None
 
 
-def _has_true_checksum(stream: BinaryIO, tail: bytes, size: int) -> bool:
-    """Check the summary against the footer's checksum, which covers the footer up to itself."""
-    start, _, checksum = struct.unpack_from("<QQI", tail, len(_FOOTER))
-    end = size - len(MAGIC) - 4
-    if not len(MAGIC) <= start < end:
-        return False
-    stream.seek(start)
-    return checksum in {0, zlib.crc32(stream.read(end - start))}
-
-
-def _is_complete(summary: Summary, counts: Counter[int], size: int) -> bool:
+def _is_complete(summary: Summary, size: int) -> bool:
     """Return whether channels, schemas and chunks of all messages are listed and in the file."""
-    statistics, chunks = summary.statistics, summary.chunk_indexes
+    statistics, chunks, channels = summary.statistics, summary.chunk_indexes, summary.channels
+    if statistics is None:
+        return False
+    counts = statistics.channel_message_counts
     return (
-        statistics is not None
-        and sum(counts.values()) == statistics.message_count
+        sum(counts.values()) == statistics.message_count
         and (bool(chunks) or statistics.message_count == 0)
         and len(chunks) == statistics.chunk_count
         and all(chunk.chunk_start_offset + chunk.chunk_length <= size for chunk in chunks)
-        and all(channel_id in summary.channels for channel_id in counts)
-        and all(
-            channel.schema_id in summary.schemas
-            for channel in summary.channels.values()
-            if channel.schema_id
-        )
+        and counts.keys() <= channels.keys()
+        and {one.schema_id for one in channels.values()} <= {0, *summary.schemas}
     )
 
 
@@ -244,7 +236,10 @@ def merged_messages(
     on_damage : callable
         Called with a block that cannot be read; reading goes on after it.
     """
-    wanted = [_channels(index, topics) for index in files]
+    wanted = [
+        {number for number, one in index.channels.items() if topics is None or one.topic in topics}
+        for index in files
+    ]
     heap = _wanted_blocks(files, wanted, first_ns, end_ns)
     heapq.heapify(heap)
     while heap:
@@ -261,14 +256,6 @@ def merged_messages(
                     heapq.heappush(heap, (message.log_time_ns, number, offset, place, message))
         except DamageError as error:
             on_damage(files[number], item, error)
-
-
-def _channels(index: McapIndex, topics: Collection[str] | None) -> set[int]:
-    return {
-        channel_id
-        for channel_id, channel in index.channels.items()
-        if topics is None or channel.topic in topics
-    }
 
 
 def _wanted_blocks(

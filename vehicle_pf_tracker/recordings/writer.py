@@ -36,7 +36,6 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.bag_folder import (
     RELIABLE_QOS,
-    TopicSummary,
     bag_information,
     to_yaml,
 )
@@ -162,12 +161,16 @@ class RecordingWriter:
 
     def _channel(self, topic: str, type_name: str) -> _Channel:
         if topic not in self._channels:
+            if type_name not in self._schemas:
+                self._schemas[type_name] = self._mcap.register_schema(
+                    type_name, SchemaEncoding.ROS2, definition(type_name).encode()
+                )
             metadata = {
                 "offered_qos_profiles": to_yaml(RELIABLE_QOS),
                 "topic_type_hash": type_hash(type_name),
             }
             channel_id = self._mcap.register_channel(
-                topic, MessageEncoding.CDR, self._schema(type_name), metadata
+                topic, MessageEncoding.CDR, self._schemas[type_name], metadata
             )
             self._channels[topic] = _Channel(channel_id, type_name)
         channel = self._channels[topic]
@@ -175,21 +178,10 @@ class RecordingWriter:
             raise InputError(f"the topic {topic} carries {channel.type_name}, not {type_name}")
         return channel
 
-    def _schema(self, type_name: str) -> int:
-        if type_name not in self._schemas:
-            text = definition(type_name).encode()
-            self._schemas[type_name] = self._mcap.register_schema(
-                type_name, SchemaEncoding.ROS2, text
-            )
-        return self._schemas[type_name]
-
     def _finish(self) -> None:
         first, last = self._times or (0, 0)
-        summaries = [
-            TopicSummary(topic, channel.type_name, type_hash(channel.type_name), channel.count)
-            for topic, channel in self._channels.items()
-        ]
-        information = bag_information(self._file_name, first, last - first, summaries)
+        counts = {name: (one.type_name, one.count) for name, one in self._channels.items()}
+        information = bag_information(self._file_name, first, last - first, counts)
         with output_errors(self.folder):
             self._mcap.add_metadata("rosbag2", {"serialized_metadata": to_yaml(information)})
             self._mcap.finish()  # type: ignore[no-untyped-call]

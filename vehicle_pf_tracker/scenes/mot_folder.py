@@ -38,6 +38,8 @@ _BLIND, _SURE = 0.25, 0.75
 """Visible shares below which a vehicle is never detected, and above which like a free one."""
 _CONCENTRATION = 12.0
 """Concentration of the beta distribution of scores: a standard deviation of about 0.13."""
+_SPOT_RATE = 0.4
+"""Share of the frames in which a standing spot is taken for a vehicle."""
 _FALSE_SCORE = 0.35
 """Mean score of false alarms: some are as high as those of vehicles."""
 
@@ -58,6 +60,8 @@ class SimulatedDetector:
         Standard deviation of each edge, as a share of the side.
     merges : float
         Share of overlapping pairs that are detected as one.
+    spots : int
+        Standing spots of the background that are often taken for vehicles, with low scores.
     """
 
     misses: float = 0.02
@@ -65,6 +69,7 @@ class SimulatedDetector:
     false_alarms: float = 0.05
     noise: float = 0.03
     merges: float = 0.0
+    spots: int = 0
 
 
 SIMULATED_DETECTORS: Mapping[str, SimulatedDetector] = MappingProxyType(
@@ -116,6 +121,8 @@ def detect(
         found += [_false_alarm(size, rng) for _ in range(rng.poisson(detector.false_alarms))]
         for box, score in found:
             rows.append([frame, *box.tolist(), score])
+    for spot in range(detector.spots):
+        rows += _standing_spot(len(truths), size, stream(seed, "spot", spot))
     return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
@@ -188,6 +195,18 @@ def _false_alarm(size: tuple[int, int], rng: np.random.Generator) -> tuple[Array
     return np.array([left, top, width, height]), float(score)
 
 
+def _standing_spot(
+    frames: int, size: tuple[int, int], rng: np.random.Generator
+) -> list[list[float]]:
+    """Report a place of the background in every second or third frame, about the same box."""
+    box, _ = _false_alarm(size, rng)
+    seen = 1 + np.flatnonzero(rng.uniform(size=frames) < _SPOT_RATE)
+    return [
+        [float(frame), *(box + rng.normal(0.0, 1.0, 4)).tolist(), float(rng.uniform(0.05, 0.3))]
+        for frame in seen.tolist()
+    ]
+
+
 OCCLUDERS_HEADER = "frame,id,depth,hidden_by,share"
 JPEG_QUALITY = 95
 """Quality of the images: OpenCV's default, at which edges of vehicles stay sharp."""
@@ -200,8 +219,9 @@ def write_mot_folder(
     folder: Path,
     seed: int,
     progress: Callable[[int, int], None] = lambda number, total: None,
+    detectors: Mapping[str, SimulatedDetector] = SIMULATED_DETECTORS,
 ) -> None:
-    """Render `scene` with its truth and all `SIMULATED_DETECTORS` into `folder`.
+    """Render `scene` with its truth and simulated detectors into `folder`.
 
     The folder appears when it is whole.
 
@@ -215,6 +235,8 @@ def write_mot_folder(
         Seed of the detectors.
     progress : callable
         Called with the number of frames done and of all.
+    detectors : mapping of str to SimulatedDetector
+        Detectors by name.
 
     Raises
     ------
@@ -233,7 +255,7 @@ def write_mot_folder(
                 truths.append(truth)
                 progress(number, scene.frame_count)
             (partial / "seqinfo.ini").write_text(_information(scene, folder.resolve().name))
-            _write_tables(scene, truths, partial, seed)
+            _write_tables(scene, truths, partial, seed, detectors)
     except OSError as error:
         raise InputError(f"cannot write {folder}: {error.strerror}") from error
 
@@ -254,7 +276,11 @@ def _information(scene: TrafficScene, name: str) -> str:
 
 
 def _write_tables(
-    scene: TrafficScene, truths: Sequence[Sequence[VehicleTruth]], folder: Path, seed: int
+    scene: TrafficScene,
+    truths: Sequence[Sequence[VehicleTruth]],
+    folder: Path,
+    seed: int,
+    detectors: Mapping[str, SimulatedDetector],
 ) -> None:
     boxes = [(frame, one) for frame, now in enumerate(truths, start=1) for one in now]
     _write(folder / "gt" / "gt.txt", (truth_row(*one) for one in boxes if _is_judged(one[1])))
@@ -264,7 +290,7 @@ def _write_tables(
         (OCCLUDERS_HEADER, *(_occluder(*pair) for pair in judged)),
     )
     _write(folder / "ignore.txt", (_ignored(*one) for one in boxes if not _is_judged(one[1])))
-    for name, detector in SIMULATED_DETECTORS.items():
+    for name, detector in detectors.items():
         found = detect(detector, truths, (scene.width, scene.height), seed)
         _write(folder / "det" / f"{name}.txt", map(_detection, found))
 

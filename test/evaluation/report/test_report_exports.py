@@ -28,8 +28,7 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, topic
 
 @pytest.fixture(scope="module")
 def exported(made_evaluation, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("exported") / "evaluation"
-    shutil.copytree(made_evaluation, folder)
+    folder = shutil.copytree(made_evaluation, tmp_path_factory.mktemp("exported") / "evaluation")
     told = []
     write_report(folder, images=False, recordings=True, notify=told.append)
     assert told == []

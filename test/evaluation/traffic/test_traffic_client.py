@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from traffic_samples import scene
+from scored_scenes import scene
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation import baselines as client

@@ -57,7 +57,18 @@ class Echo:
         assert frame.shape == (360, 640, 3)
         modes = (TrackMode.TRACKING, TrackMode.OCCLUDED, TrackMode.TENTATIVE, TrackMode.LOST)
         return tuple(
-            TrackEstimate(i + 1, Box(*box), (0, 0), modes[i % 4], 1.0, "", 1.0, 1.0, None)
+            TrackEstimate(
+                0 if modes[i % 4] is TrackMode.TENTATIVE else i + 1,
+                Box(*box),
+                (0, 0),
+                modes[i % 4],
+                1.0,
+                "",
+                1.0,
+                1.0,
+                None,
+                i + 1,
+            )
             for i, box in enumerate(detections.boxes.tolist())
         )
 

@@ -16,7 +16,7 @@
 
 import numpy as np
 import pytest
-from traffic_samples import scene
+from scored_scenes import scene
 
 from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
 

@@ -69,7 +69,7 @@ def test_the_policy_allows_what_a_node_has_and_no_more(bench, variant, transport
             context=bench.context,
             parameter_overrides=[
                 *overrides(image_transport=transport),
-                *overrides(road__from_camera_info=True, road__from_tf=True),
+                *overrides(road__from_camera_info=True, road__from_tf=True, incident_memory=1),
                 Parameter("use_sim_time", value=True),
             ],
         )
@@ -93,7 +93,11 @@ def test_the_policy_allows_what_the_node_of_many_vehicles_has_and_no_more(bench)
     (profile,) = policy.findall(".//enclave[@path='/vehicle_pf_tracker/traffic']//profile")
     node = bench.add(
         TrafficNode(
-            context=bench.context, parameter_overrides=[Parameter("use_sim_time", value=True)]
+            context=bench.context,
+            parameter_overrides=[
+                Parameter("use_sim_time", value=True),
+                *overrides(incident_memory=1),
+            ],
         )
     )
     own = node.get_name()

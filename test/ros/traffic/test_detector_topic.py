@@ -37,8 +37,8 @@ from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros import messages as ros_messages
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.ros.traffic import stream
-from vehicle_pf_tracker.ros.traffic.stream import WaitingImages
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
+from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession

@@ -78,6 +78,7 @@ def in_numbers(rows):
     return [
         (stamp, int(number), *map(float, box), mode, float(confidence))
         for stamp, number, *box, mode, confidence in rows
+        if mode != "TENTATIVE"  # of which the file has those that were confirmed later
     ]
 
 
@@ -111,7 +112,7 @@ def test_lockstep_and_offline_runs_give_identical_vehicles(
     assert f"/traffic_tracker: {FRAMES} answered, 0 not" in replay.output
     words = ["--detector", "none", "--target", f"@1:{target}"] if by_hand else []
     expected = offline(recording, tmp_path / "out", *words)
-    assert len(expected) > FRAMES / 2
+    assert len(in_numbers(expected)) > FRAMES / 2
     assert in_numbers(online(heard)) == in_numbers(expected)
     first, *others = read_estimates(tmp_path / "replayed" / "estimates.csv")
     assert first.mode == "WAITING"

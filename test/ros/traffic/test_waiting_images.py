@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import pytest
 
-from vehicle_pf_tracker.ros.traffic.stream import MOST_WAITING, WaitingImages
+from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING, WaitingImages
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 
 WAIT = 0.5

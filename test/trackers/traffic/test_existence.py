@@ -18,12 +18,23 @@ import numpy as np
 import pytest
 from traffic_samples import track
 
-from vehicle_pf_tracker.trackers.traffic.detections import DetectionEvidence
+from vehicle_pf_tracker.trackers.traffic.association import FrameDetections, fits
+from vehicle_pf_tracker.trackers.traffic.detections import DetectionEvidence, Detections
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.track import ColourBins
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge
 
 SIZE = (320, 240)
 SCORE = 0.8
+
+
+def found(evidence, *boxes):
+    """Detections of one frame, as the tracker has them."""
+    frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    detections = Detections.make(boxes, np.full(len(boxes), SCORE))
+    evidence.look()
+    return FrameDetections(detections, evidence, ColourBins(frame), SIZE)
 
 
 def ended_unconfirmed(places):
@@ -31,16 +42,16 @@ def ended_unconfirmed(places):
     evidence = DetectionEvidence()
     existence = Existence(TrafficParameters(), evidence)
     for _ in range(10):
-        one = track(1, 0.0)
-        for frame, (left, top) in enumerate(places):
-            one.state, one.age = track(1, left, top).state, float(frame)
-            edges = one.state.edges
-            existence.detected(one, edges, evidence.sample(edges, SCORE, SIZE), 0.0)
-        assert not one.confirmed
+        one = track(1, *places[0])
+        for frame, place in enumerate(places):
+            one.predict(1.0 if frame else 0.0)
+            detections = found(evidence, (*place, 40, 30))
+            for edge in Edge:
+                one.state.measure(edge, detections.edges[0, edge], 1.0)
+            assert not existence.detected(one, detections, 0, 0.0)
         one.undetected = 100.0
         assert existence.survivors([one], SIZE, 1 / 30) == []
-    elsewhere = evidence.sample(np.array([200.0, 180.0, 240.0, 210.0]), SCORE, SIZE)
-    return float(evidence.log_odds([elsewhere])[0])
+    return float(found(evidence, (200, 180, 40, 30)).log_odds[0])
 
 
 def test_what_flickered_in_one_place_speaks_against_its_scores():
@@ -54,6 +65,29 @@ def test_what_drove_and_ended_unconfirmed_tells_nothing_about_its_scores():
 
 def test_what_was_seen_a_few_times_speaks_against_its_scores():
     assert ended_unconfirmed([(20 + 4 * frame, 100) for frame in range(3)]) < -1
+
+
+def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_alarm():
+    evidence = DetectionEvidence()
+    one = track(1, 100.0)
+    one.predict(1.0)
+    here, aside = fits([one], found(evidence, (103, 100, 40, 30), (280, 20, 9, 9)), [0, 1], 0.05)[0]
+    assert here > 2
+    assert aside < -10
+    sample = evidence.sample(np.array([103.0, 100, 143, 130]), SCORE, SIZE)
+    for _ in range(30):  # of a place where false alarms are common, less so
+        evidence.look()
+        evidence.learn(sample, False)
+    assert fits([one], found(evidence, (103, 100, 40, 30)), [0], 0.05)[0, 0] < here - 2
+
+
+def test_a_detector_that_finds_one_vehicle_in_three_is_known_to():
+    existence = Existence(TrafficParameters(), DetectionEvidence())
+    one = track(1, 100.0, confirmed=True, has_driven=True)
+    for frame in range(300):
+        one.undetected, one.log_odds = float(frame % 3 > 0), 5.0
+        existence.fade([one, track(2, 200.0, confirmed=True)], 1.0)
+    assert existence.detection_rate == pytest.approx(1 / 3, abs=0.05)
 
 
 def missed(undetected, *, seen=()):

@@ -14,7 +14,6 @@
 
 """The grid of an evaluation: recordings by systems by seeds, each cell one stored run.
 
-`sources` finds the recordings, `cells` defines systems and starts, and `plan` lists the cells.
-`tracking` runs one cell and measures speed. `running` runs the cells that are missing, on this
-machine or on a cluster, and stores each under its cache key.
+`sources` finds the recordings, `starts` defines shifted first boxes, and `cells` lists the cells.
+`running` runs those that are missing, and stores each under its cache key.
 """

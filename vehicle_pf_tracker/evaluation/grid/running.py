@@ -19,7 +19,7 @@ from __future__ import annotations
 import functools
 import shutil
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import astuple, dataclass, field
+from dataclasses import astuple, dataclass, field, replace
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -28,6 +28,7 @@ import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, GridCell, Plan, VariantSystem
@@ -98,7 +99,7 @@ def _run_variant(
         find_variant(system.variant),
         system.tracker_parameters(cell.seed),
         system.session_parameters(),
-        first_truth=recording.truth[0],
+        first_truth=_first_truth(cell, recording),
         max_diff=cell.max_diff,
     )
     rows = list(tracker.rows(recording.frames()))
@@ -108,11 +109,16 @@ def _run_variant(
     return rows, describe_run(info, tracker.session)
 
 
+def _first_truth(cell: GridCell, recording: Footage) -> Truth:
+    first = recording.truth[0]
+    return replace(first, box=cell.start.box(first.box))
+
+
 def _run_baseline(
     cell: GridCell, system: BaselineSystem, recording: Footage
 ) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a baseline and its `run.json`."""
-    first = recording.truth[0]
+    first = _first_truth(cell, recording)
     python = Path(system.python) if system.python else None
     with Baseline(system.baseline, python, system.model_files()) as baseline:
         rows = list(baseline_rows(baseline, recording.frames(), first))

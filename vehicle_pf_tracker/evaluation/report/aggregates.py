@@ -17,11 +17,15 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
-from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
+from vehicle_pf_tracker.evaluation.report.scored_runs import (
+    ScoredEvaluation,
+    ScoredRun,
+    version_notes,
+)
 from vehicle_pf_tracker.evaluation.statistics import (
     FEWEST_RECORDINGS,
     Ranking,
@@ -199,6 +203,9 @@ class Aggregates:
         Rankings by the key of a ranked column.
     recoveries : mapping of str to (int, int)
         Total occlusions recovered from and judged, of all runs of a system.
+    shifted : Aggregates or None
+        The same of the runs from shifted first boxes, where there are any; their spreads are over
+        the boxes.
     """
 
     order: tuple[str, ...]
@@ -206,10 +213,12 @@ class Aggregates:
     overall: Mapping[str, Summaries]
     rankings: Mapping[str, Ranking]
     recoveries: Mapping[str, tuple[int, int]]
+    shifted: Aggregates | None
 
 
 def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     """Summarise all runs."""
+    shifted = evaluation.shifted
     runs = {s.label: some for s in evaluation.systems if (some := evaluation.of(system=s.label))}
     values = {
         label: {column.key: _values(some, column) for column in COLUMNS}
@@ -251,6 +260,7 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
         },
         rankings=rankings,
         recoveries={label: _recoveries(runs[label]) for label in order},
+        shifted=aggregate(replace(evaluation, runs=shifted, shifted=())) if shifted else None,
     )
 
 
@@ -272,24 +282,11 @@ def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
     """State the leader, the systems statistically tied with it, and missing results."""
     best = (_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED))
     failed = len(evaluation.failed)
-    cells = counted(len(evaluation.runs) + failed, "cell")
+    cells = counted(len(evaluation.runs) + len(evaluation.shifted) + failed, "cell")
     result = f"All {cells} of the grid have a result."
     if failed:
         result = f"{failed} of {cells} have no result; see Failed cells."
-    return [*_leader(aggregates), *filter(None, best), result, *_mixed_versions(evaluation)]
-
-
-def _mixed_versions(evaluation: ScoredEvaluation) -> Iterator[str]:
-    """Name the libraries that not all runs of variants were made with the same version of."""
-    ours = {entry.label for entry in evaluation.systems if not entry.kind.startswith("baseline:")}
-    for library in ("vehicle_pf_tracker", "numpy", "opencv", "numba"):
-        found = {run.versions.get(library) for run in evaluation.runs if run.system in ours}
-        if len(found) > 1:
-            versions = listing(sorted(str(version or "none") for version in found))
-            yield (
-                f"Runs with {library} {versions} are compared: differences of half a pixel may be "
-                "the library's."
-            )
+    return [*_leader(aggregates), *filter(None, best), result, *version_notes(evaluation)]
 
 
 def _leader(aggregates: Aggregates) -> list[str]:

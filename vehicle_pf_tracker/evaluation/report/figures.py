@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -34,28 +35,31 @@ from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.aggregates import RANKED, Aggregates
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
+from vehicle_pf_tracker.offline.output_files import make_folder, replacing
 
 COLOURS: Mapping[str, str] = MappingProxyType(
     {
         "ink": "#010101",
-        "muted": "#020202",
-        "rule": "#030303",
-        "total": "#040404",
-        "partial": "#050505",
-        "accent": "#060606",
-        **{f"s{slot}": f"#0a0a{slot:02x}" for slot in range(len(STYLES))},
+        "muted": "#404040",
+        "rule": "#b0b0b0",
+        "total": "#c9ced4",
+        "partial": "#e9ecef",
+        "accent": "#0a5c9e",
+        **{f"s{slot}": style.colour.lower() for slot, style in enumerate(STYLES)},
     }
 )
-"""Stand-ins for the page's colours: what is drawn in one of them is drawn in ``var(--name)``."""
+"""Colours of figures in files. On the page, which has schemes, each is ``var(--name)``: so no two
+are the same, and none is a black that SVG leaves out."""
 INK, MUTED, RULE, ACCENT = (COLOURS[name] for name in ("ink", "muted", "rule", "accent"))
 _LETTERS = 8.0
-"""Size of the letters, points."""
+"""Size of the letters, points: as large as captions; the smallest that IEEE advises is 8."""
 _NARROW, _WIDE = 3.9, 10.2
 """Widths of a figure and of a row of panels, inches."""
 
 SETTINGS: Any = {
     "svg.fonttype": "none",  # the reader's fonts
     "svg.hashsalt": "vehicle_pf_tracker",
+    "pdf.fonttype": 42,  # journals refuse matplotlib's usual Type 3
     "font.size": _LETTERS,
     "axes.edgecolor": RULE,
     "axes.labelcolor": MUTED,
@@ -71,6 +75,18 @@ SETTINGS: Any = {
     "grid.linewidth": 0.5,
 }
 """Settings that figures are made and written under; see `matplotlib.rc_context`."""
+_PAPER_WIDTHS = {_NARROW: 3.5, _WIDE: 7.16}
+"""A column and the page in IEEE's two-column layout, inches."""
+_DPI = 300
+"""Resolution of PNG files, which IEEE asks of colour pictures."""
+_METADATA: Mapping[str, Any] = MappingProxyType(
+    {
+        "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+        "svg": {"Date": None, "Creator": None},
+        "png": {"Software": None},
+    }
+)
+"""No date and no version, so that the same folder gives the same files."""
 
 
 CURVES = {
@@ -114,6 +130,36 @@ def draw_all(
             truths = evaluation.truths[entry.name]
             found[ERRORS + safe_name(entry.name)] = _errors(runs, truths)
     return {name: drawn for name, drawn in found.items() if drawn is not None}
+
+
+def write_figures(
+    evaluation: ScoredEvaluation,
+    aggregates: Aggregates,
+    slots: Mapping[str, int],
+    formats: Sequence[str],
+) -> list[Path]:
+    """Write every figure to ``figures/`` in each of the formats, in the widths of a paper.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    folder = make_folder(evaluation.folder.path / "figures")
+    written = []
+    for name, drawn in draw_all(evaluation, aggregates, slots).items():
+        width, height = drawn.figure.get_size_inches()
+        drawn.figure.set_size_inches(_PAPER_WIDTHS[width], height)
+        with rc_context({**SETTINGS, "svg.fonttype": "path"}):  # the same in every program
+            # Laid out once: each drawing moves a constrained layout a little further.
+            drawn.figure.draw_without_rendering()
+            drawn.figure.set_layout_engine("none")
+            for kind in formats:
+                path = folder / f"{name}.{kind}"
+                with replacing(path) as partial:
+                    drawn.figure.savefig(partial, format=kind, dpi=_DPI, metadata=_METADATA[kind])
+                written.append(path)
+    return written
 
 
 def _curves(

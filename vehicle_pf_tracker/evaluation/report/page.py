@@ -116,6 +116,7 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         figures=figures,
         ranks=page_tables.ranks_table(aggregates),
         rank_notes=list(_rank_notes(aggregates)),
+        starts=page_tables.starts_table(aggregates),
         curves=[name for name in CURVES if name in figures],
         recordings=[
             _section(evaluation, aggregates, entry, images) for entry in evaluation.recordings
@@ -215,7 +216,7 @@ def _failed_groups(failed: Sequence[FailedCell]) -> list[tuple[str, str, str]]:
     groups: dict[tuple[str, str], dict[str, list[str]]] = {}
     for cell in failed:
         by_recording = groups.setdefault((cell.system, cell.reason), {})
-        by_recording.setdefault(cell.recording, []).append(str(cell.seed))
+        by_recording.setdefault(cell.recording, []).append(cell.run)
     return [
         (*key, "; ".join(f"{name}: seed {', '.join(seeds)}" for name, seeds in cells.items()))
         for key, cells in groups.items()

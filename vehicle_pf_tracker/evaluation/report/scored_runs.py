@@ -57,8 +57,8 @@ class ScoredRun:
 
     Attributes
     ----------
-    recording, system, seed : str, str, int
-        Cell of the grid.
+    recording, system, seed, start : str, str, int, str
+        Cell of the grid; `start` names a shifted first box, and is empty for the true one.
     metrics : Metrics
         Metrics of the run.
     errors : (N,) array
@@ -76,6 +76,7 @@ class ScoredRun:
     recording: str
     system: str
     seed: int
+    start: str
     metrics: Metrics
     errors: NDArray[np.float64]
     boxes: Sequence[Box | None]
@@ -91,7 +92,13 @@ class FailedCell:
     recording: str
     system: str
     seed: int
+    start: str
     reason: str
+
+    @property
+    def run(self) -> str:
+        """Seed, and start if it is shifted."""
+        return f"{self.seed} {self.start}".rstrip()
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,14 +112,17 @@ class ScoredEvaluation:
     truths : mapping of str to mapping of int to Truth
         Truths by recording and number of the frame.
     runs : tuple of ScoredRun
-        Runs in the order of the plan: recordings, systems, seeds.
+        Runs from the true box in the order of the plan: recordings, systems, seeds.
+    shifted : tuple of ScoredRun
+        Runs from shifted first boxes.
     failed : tuple of FailedCell
-        Failed cells in the same order.
+        Failed cells in the same order, from any start.
     """
 
     folder: EvaluationFolder
     truths: Mapping[str, Mapping[int, Truth]]
     runs: tuple[ScoredRun, ...]
+    shifted: tuple[ScoredRun, ...]
     failed: tuple[FailedCell, ...]
 
     @property
@@ -142,14 +152,17 @@ def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
     """Score all cells; those that cannot be read or scored are failed cells."""
     truths = {entry.name: folder.truth(entry.name) for entry in folder.recordings}
     results = [
-        _result(folder, (recording.name, system.label, seed), truths[recording.name])
+        _result(folder, (recording.name, system.label, seed, start), truths[recording.name])
         for recording, system in itertools.product(folder.recordings, folder.systems)
-        for seed in system.seeds
+        for start in ("", *folder.shifted)
+        for seed in (system.seeds[:1] if start else system.seeds)
     ]
+    runs = [result for result in results if isinstance(result, ScoredRun)]
     return ScoredEvaluation(
         folder,
         truths,
-        tuple(result for result in results if isinstance(result, ScoredRun)),
+        tuple(run for run in runs if not run.start),
+        tuple(run for run in runs if run.start),
         tuple(result for result in results if isinstance(result, FailedCell)),
     )
 
@@ -162,7 +175,7 @@ def typical(runs: Sequence[ScoredRun]) -> ScoredRun | None:
 
 
 def _result(
-    folder: EvaluationFolder, key: tuple[str, str, int], truth: Mapping[int, Truth]
+    folder: EvaluationFolder, key: tuple[str, str, int, str], truth: Mapping[int, Truth]
 ) -> ScoredRun | FailedCell:
     max_diff = float(folder.plan.get("options", {}).get("max_diff", MAX_DIFF))
     try:
@@ -193,6 +206,30 @@ def _result(
 def _box(frame: FrameScore) -> Box | None:
     row = frame.scored_row
     return None if row is None or frame.waiting else row.box
+
+
+_PROGRAMS = {
+    "vehicle_pf_tracker": "vehicle_pf_tracker", "numpy": "NumPy", "opencv": "OpenCV",
+    "numba": "numba",
+}  # fmt: skip
+"""Programs whose version moves estimates, with their names for readers."""
+
+
+def version_notes(evaluation: ScoredEvaluation) -> list[str]:
+    """State that runs of variants were made with different versions, if they were."""
+    ours = {entry.label for entry in evaluation.systems if not entry.kind.startswith("baseline:")}
+    runs = [run for run in (*evaluation.runs, *evaluation.shifted) if run.system in ours]
+    found = {
+        name: sorted({str(run.versions.get(key) or "none") for run in runs})
+        for key, name in _PROGRAMS.items()
+    }
+    differing = [f"{name} {' and '.join(some)}" for name, some in found.items() if len(some) > 1]
+    if not differing:
+        return []
+    return [
+        f"Results of different versions are compared ({'; '.join(differing)}); "
+        "docs/scoring.md says what to expect."
+    ]
 
 
 ESTIMATE_RECORDINGS = "estimates"

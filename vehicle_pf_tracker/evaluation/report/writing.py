@@ -34,17 +34,20 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     aggregate,
     findings,
 )
-from vehicle_pf_tracker.evaluation.report.page import make_page, title
+from vehicle_pf_tracker.evaluation.report.figures import write_figures
+from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
 from vehicle_pf_tracker.evaluation.report.page_tables import (
     overall_table,
     ranks_table,
     recording_table,
+    starts_table,
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
     score_folder,
     write_estimate_recordings,
 )
+from vehicle_pf_tracker.evaluation.report.toolkits import write_toolkits
 from vehicle_pf_tracker.evaluation.tables import csv_text, markdown
 from vehicle_pf_tracker.offline.output_files import write_json, write_text
 
@@ -61,9 +64,11 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     """Return the findings, the means, the ranks and each recording as Markdown."""
     parts = [f"# {title(evaluation)}\n"]
     parts.append("".join(f"- {line}\n" for line in findings(evaluation, aggregates)))
+    starts = starts_table(aggregates)
     tables = {
         "Means over recordings": overall_table(aggregates),
         "Ranks": ranks_table(aggregates),
+        **({"Shifted starts": starts} if starts else {}),
         **{
             entry.name: recording_table(aggregates, entry.name, COLUMNS)
             for entry in evaluation.recordings
@@ -72,7 +77,7 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     for heading, table in tables.items():
         parts.append(f"## {heading}\n\n{markdown(*table.texts())}")
     if evaluation.failed:
-        cells = [[c.system, c.recording, str(c.seed), c.reason] for c in evaluation.failed]
+        cells = [[c.system, c.recording, c.run, c.reason] for c in evaluation.failed]
         header = ["system", "recording", "seed", "reason"]
         parts.append("## Failed cells\n\n" + markdown(header, cells))
     return "\n".join(parts)
@@ -80,16 +85,18 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
 
 def summary_csv(aggregates: Aggregates) -> str:
     """Return every mean with its spread and interval, a line each, with every digit."""
-    places = {ALL_RECORDINGS: aggregates.overall, **aggregates.recordings}
+    starts = {"true": aggregates, "shifted": aggregates.shifted}
     rows = [
-        [recording, system, column.key, column.unit, *astuple(found)]
-        for recording, by_system in places.items()
+        [recording, system, column.key, column.unit, *astuple(found), start]
+        for start, some in starts.items()
+        if some is not None
+        for recording, by_system in {ALL_RECORDINGS: some.overall, **some.recordings}.items()
         for system, summaries in by_system.items()
         for column in COLUMNS
         if (found := summaries.get(column.key)) is not None
     ]
-    header = ("recording", "system", "metric", "unit", "count", "mean", "spread", "low", "high")
-    return csv_text(header, rows)
+    numbers = ("count", "mean", "spread", "low", "high")
+    return csv_text(("recording", "system", "metric", "unit", *numbers, "start"), rows)
 
 
 def summary_tex(aggregates: Aggregates) -> str:
@@ -144,6 +151,8 @@ def write_report(
     *,
     images: bool = True,
     recordings: bool = False,
+    figures: Sequence[str] = (),
+    toolkits: Sequence[str] = (),
     notify: Callable[[str], object] = lambda _: None,
     on_stage: Callable[[str], object] = lambda _: None,
 ) -> Report:
@@ -159,6 +168,10 @@ def write_report(
         True for stills of the recordings in the page.
     recordings : bool
         True for recordings with truth and all estimates, in ``estimates/``.
+    figures : sequence of str
+        Formats of the figures in ``figures/``: ``pdf``, ``svg`` and ``png``.
+    toolkits : sequence of str
+        Formats of the runs in ``results/``: ``otb``, ``vot`` and ``mot``.
     notify : callable
         Called with a sentence for each file that could not be made.
     on_stage : callable
@@ -176,6 +189,10 @@ def write_report(
     on_stage("drawing the page")
     write_text(page, make_page(evaluation, aggregates, images=images))
     written = [page, *_write_summaries(folder, evaluation, aggregates)]
+    if figures:
+        on_stage("drawing the figures")
+        written += write_figures(evaluation, aggregates, styled(aggregates), figures)
+    written += write_toolkits(evaluation, toolkits)
     if recordings:
         written += write_estimate_recordings(evaluation, notify, on_stage)
     return Report(written, evaluation, aggregates)

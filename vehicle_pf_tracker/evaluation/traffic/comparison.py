@@ -45,8 +45,9 @@ from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identi
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.offline.run_folder import versions
+from vehicle_pf_tracker.offline.traffic_results import IN_TRACKS, Backdating, Frames
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -208,6 +209,7 @@ def follow(
         frame_rate=sequence.frame_rate,
     )
     tracks: list[list[float]] = []
+    backdating = Backdating()
     seconds = 0.0
     for number, frame in enumerate(sequence.frames(), start=1):
         detections = None
@@ -217,13 +219,19 @@ def follow(
         before = time.process_time()
         estimates = session.feed(frame, round(number * 1e9 / sequence.frame_rate), detections)
         seconds += time.process_time() - before
-        tracks += [
-            [number, one.identity, *astuple(one.box)]
-            for one in estimates
-            if one.mode in {TrackMode.TRACKING, TrackMode.OCCLUDED}
-        ]
+        tracks += _rows(backdating.add(number, 0, estimates))
+    tracks += _rows(backdating.rest())
     rows = np.array(tracks, dtype=np.float64).reshape(-1, 6)
     return rows, recorder.rows() if given is None else given, seconds / sequence.frame_count
+
+
+def _rows(frames: Frames) -> list[list[float]]:
+    return [
+        [number, one.identity, *astuple(one.box)]
+        for number, _, estimates in frames
+        for one in estimates
+        if one.mode in IN_TRACKS
+    ]
 
 
 NAME = "traffic"

@@ -240,4 +240,5 @@ def _estimate(row: list[float]) -> TrackEstimate:
         score=1.0,
         age=1.0,
         hidden_by=None,
+        serial=int(row[1]),
     )

@@ -152,6 +152,8 @@ class Diagnostics:
         Node to report on.
     facts : callable
         Returns other values to publish, by name.
+    judge : callable
+        Called once a second; names what is not as usual, empty where all is.
 
     Attributes
     ----------
@@ -161,8 +163,13 @@ class Diagnostics:
         The open subscription; None while the node is not active.
     """
 
-    def __init__(self, node: Node, facts: Callable[[], Mapping[str, object]]) -> None:
-        self._node, self._facts = node, facts
+    def __init__(
+        self,
+        node: Node,
+        facts: Callable[[], Mapping[str, object]],
+        judge: Callable[[], str],
+    ) -> None:
+        self._node, self._facts, self._judge_stream = node, facts, judge
         self.health = Health()
         self.source: ImageInput | None = None
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
@@ -193,9 +200,9 @@ class Diagnostics:
 
     def publish(self) -> None:
         """Publish one report."""
-        level, words = self._judge()
         publishers = self.source.publisher_count if self.source else 0
         values = {**self.health.report(), "matched publishers": publishers, **self._facts()}
+        level, words = self._judge()
         name, topic = self._node.get_name(), self.source.topic if self.source else ""
         message = DiagnosticArray(status=[status(level, f"{name}: tracker", words, topic, values)])
         message.header.stamp = self._node.get_clock().now().to_msg()
@@ -204,10 +211,12 @@ class Diagnostics:
     def _judge(self) -> tuple[bytes, str]:
         if self.source is None:
             return DiagnosticStatus.OK, "not active"
-        if self.health.silence < SILENCE:
-            return LEVELS[self.health.mode], self.health.mode
-        words = (
-            f"no image for {SILENCE:g} s on {self.source.topic}: {self.source.explain_silence()}"
-        )
+        topic, level = self.source.topic, LEVELS[self.health.mode]
+        if self.health.silence >= SILENCE:
+            words = f"no image for {SILENCE:g} s on {topic}: {self.source.explain_silence()}"
+        elif words := self._judge_stream():
+            words = f"{self.health.mode}; {words}"
+        else:
+            return level, self.health.mode
         self._node.get_logger().warning(words, throttle_duration_sec=_WARNING_PERIOD)
-        return DiagnosticStatus.WARN, words
+        return max(level, DiagnosticStatus.WARN), words

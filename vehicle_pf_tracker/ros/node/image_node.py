@@ -102,7 +102,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         try:
             given = self.overrides
             self.table = ParameterTable(self, defaults, given, self._check, self._reconfigure)
-            self.diagnostics = Diagnostics(self, self._facts)
+            self.diagnostics = Diagnostics(self, self._facts, self._judge)
             for loss in missing(self):
                 words = f"this release of rclpy is not one of those tried: {loss}"
                 self.get_logger().warning(words)
@@ -123,12 +123,11 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         if self.stream is not None:
             self.stream.reconfigure(configuration)
 
+    def _judge(self) -> str:
+        return self.stream.judge() if self.stream is not None else ""
+
     def _facts(self) -> Mapping[str, object]:
         return self.stream.facts if self.stream is not None else {}
-
-    def _reset(self) -> str:
-        assert self.stream is not None
-        return self.stream.reset()
 
     def open_images(self) -> ImageInput:
         """Listen to images."""
@@ -180,7 +179,10 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         """Prepare for images."""
         try:
             self.prepare()
-            self.serve("~/reset", self._reset)
+            assert self.stream is not None
+            self.serve("~/reset", self.stream.reset)
+            if self.stream.incidents is not None:
+                self.serve("~/snapshot", self.stream.write_incident)
         except Exception:  # of whatever a network or numba raises
             self.cleanup()
             raise

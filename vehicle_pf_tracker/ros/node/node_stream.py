@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import time
 import traceback
 from abc import ABC, abstractmethod
@@ -35,10 +36,15 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.image_input import read_image
+from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder, KeptTarget
 from vehicle_pf_tracker.ros.node.input_messages import check_frame_id
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
 
+_PATIENCE, _LEAST_PATIENCE = 10.0, 0.5
+"""Periods of the images, and s at least, after which a step is reported with where it was: by then
+images are lost, and a camera of 100 Hz is no reason to report a busy machine."""
+_STDERR = 2
 _PERIOD = 5.0
 """Interval between two lines of the same kind in the log, s."""
 
@@ -93,8 +99,8 @@ class NodeStream(ABC):
         Lines in it that would come with every image.
     health : Health
         As given.
-    publish_mode : callable
-        Publishes the one `~/mode` of an image; see `Outputs.publish_mode`.
+    incidents : IncidentRecorder or None
+        Keeps the last seconds; None where that is off.
     frame_id : str or None
         Frame of the last image that was used; None before the first.
     """
@@ -107,9 +113,17 @@ class NodeStream(ABC):
         self.warnings = Notices(lambda words: self.log.warning(words))  # noqa: PLW0108
         self.errors = Notices(lambda words: self.log.error(words))  # noqa: PLW0108
         self._configuration = configuration
-        self.publish_mode = outputs.publish_mode
+        self._publish_mode = outputs.publish_mode
         self.health = health
         self.frame_id: str | None = None
+        own, name = configuration.node, str(node.get_name())
+        memory = own.incident_memory * 10**6
+        self.incidents = IncidentRecorder(name, memory) if memory else None
+        self._kept = KeptTarget(node.get_fully_qualified_name()) if own.keep_target else None
+        box = self._kept.load() if self._kept else None
+        if box is not None:
+            self.log.info(f"going on with the target {box} of before")
+            self.start_on(box)
 
     @property
     @abstractmethod
@@ -124,6 +138,24 @@ class NodeStream(ABC):
     @abstractmethod
     def size(self) -> tuple[int, int] | None:
         """Width and height of the stream's images, px; None before the first."""
+
+    @property
+    @abstractmethod
+    def followed(self) -> Box | None:
+        """Box of the target while it is visible; None where there is none."""
+
+    def judge(self) -> str:
+        """Name what is not as usual, empty where all is; called once a second."""
+        return ""
+
+    @property
+    @abstractmethod
+    def period(self) -> float:
+        """Nominal period of the images, s."""
+
+    @abstractmethod
+    def start_on(self, box: Box) -> None:
+        """Start on `box` with the next image."""
 
     @abstractmethod
     def reset(self) -> str:
@@ -178,7 +210,11 @@ class NodeStream(ABC):
 
     def process(self, message: Image | CompressedImage, extra: Any = None) -> None:
         """Read an image, feed it and publish the answer; `extra` is passed on to `feed`."""
-        header = message.header
+        header, began = message.header, time.monotonic()
+        if self.incidents is not None:
+            self.incidents.keep(message)
+        patience = max(_PATIENCE * self.period, _LEAST_PATIENCE)
+        faulthandler.dump_traceback_later(patience, file=_STDERR)
         try:
             image = read_image(message)
             self.feed(image, stamp_ns(header), extra)
@@ -190,6 +226,44 @@ class NodeStream(ABC):
         else:
             self.frame_id = header.frame_id
             self.answer(header, frame)
+            if self._kept is not None:
+                self._kept.save(self.followed)
+        finally:
+            faulthandler.cancel_dump_traceback_later()
+        seconds = time.monotonic() - began
+        if seconds > patience:
+            words = f"an image took {seconds:.1f} s, more than ten periods"
+            self.warnings.say("slow", f"{words}; stderr shows where it was by then")
+
+    def publish_mode(
+        self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None = None
+    ) -> None:
+        """Publish the one `~/mode` of an image; see `Outputs.publish_mode`."""
+        answer = self._publish_mode(header, mode, values, level)
+        if self.incidents is not None:
+            self.incidents.keep(answer)
+            if (box := self.followed) is not None:
+                self.incidents.keep_box(stamp_ns(header), box)
+
+    def write_incident(self) -> str:
+        """Write the last seconds to a recording; return words about that.
+
+        Raises
+        ------
+        InputError
+            If nothing was kept, or it cannot be written.
+        """
+        assert self.incidents is not None
+        return f"written to {self.incidents.write(self._configuration)}"
+
+    def note_restart(self) -> None:
+        """Count that the session started anew, and write what led to it."""
+        self.health.restarts += 1
+        if self.incidents is not None:
+            try:
+                self.log.warning(f"the last seconds are {self.write_incident()}")
+            except (InputError, OSError) as error:
+                self.log.error(f"the last seconds cannot be written: {error}")
 
     def refuse(self, what: str, reason: str) -> None:
         """Report that a target or a selection cannot be used; all vehicles are kept."""

@@ -129,10 +129,12 @@ class Outputs:
 
     def publish_mode(
         self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None = None
-    ) -> None:
+    ) -> DiagnosticArray:
         """Publish the one `~/mode` of an image; `level` is that of the mode unless it is higher."""
         name = f"{self.node_name}: target"
-        self.send("mode", mode_message, header, name, self.hardware_id, mode, values, level)
+        message = mode_message(header, name, self.hardware_id, mode, values, level)
+        self.send("mode", lambda: message)
+        return message
 
 
 def in_frame(header: Header, frame_id: str) -> Header:

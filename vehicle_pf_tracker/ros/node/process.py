@@ -32,7 +32,7 @@ import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 
-from vehicle_pf_tracker.ros.node.stream import is_loading
+from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
 from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_node
 
 _LARGEST_BLOCK = 32 * 2**20

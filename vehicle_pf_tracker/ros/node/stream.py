@@ -19,7 +19,6 @@ Kernels may be loaded meanwhile: until then every image is answered with the rea
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping
 from typing import Any
 
@@ -29,19 +28,20 @@ from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
-from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
 from vehicle_pf_tracker.image.stillness import PATIENCE, Stillness
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import NOT_READY, WAITING, stamp_ns
+from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
 from vehicle_pf_tracker.ros.node.diagnostics import Health
+from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
-from vehicle_pf_tracker.trackers.estimate import START, Estimate
+from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TargetError
 
@@ -49,63 +49,6 @@ _STILL = (
     f"the target has not moved for {PATIENCE:g} s while other things did: it stands, or it is "
     "no vehicle"
 )
-_THREAD = "loading kernels"
-_REASON = f"{NOT_READY}; the first start compiles them, for up to a minute"
-
-
-class KernelLoading:
-    """Loads kernels in a thread of its own where that takes long, else at once.
-
-    Numba leaves the interpreter to others while LLVM works, and most of the time goes there: the
-    node answers its services and obeys signals meanwhile.
-
-    Parameters
-    ----------
-    choice : str
-        As for `load_kernels`.
-
-    Raises
-    ------
-    InputError
-        If numba's kernels are asked for where numba is not installed.
-    """
-
-    def __init__(self, choice: str) -> None:
-        self.choice = choice
-        self._problem = ""
-        self._thread: threading.Thread | None = None
-        if takes_long(choice):
-            self._thread = threading.Thread(target=self._load, name=_THREAD, daemon=True)
-            self._thread.start()
-        else:
-            load_kernels(choice)
-
-    @property
-    def is_done(self) -> bool:
-        """True once the kernels are loaded."""
-        return not self._problem and not self._is_running
-
-    @property
-    def reason(self) -> str:
-        """Reason why there are no kernels (yet), in one sentence."""
-        return self._problem or _REASON
-
-    @property
-    def _is_running(self) -> bool:
-        return self._thread is not None and self._thread.is_alive()
-
-    def _load(self) -> None:
-        try:
-            load_kernels(self.choice)
-        except InputError as error:
-            self._problem = str(error)
-        except Exception as error:  # as numba raises it; the node lives and says so
-            self._problem = f"the kernels cannot be loaded: {type(error).__name__}: {error}"
-
-
-def is_loading() -> bool:
-    """Return whether a thread of this process still loads kernels; it cannot be ended."""
-    return any(thread.name == _THREAD for thread in threading.enumerate())
 
 
 class Stream(NodeStream):
@@ -145,13 +88,13 @@ class Stream(NodeStream):
         health: Health,
         cameras: CameraInputs,
     ) -> None:
+        self.asked: Box | None = None
         super().__init__(node, configuration, outputs, health)
         self._outputs = outputs
         self._variant = variant
         self._applied = configuration
         self._session: Session | None = None
         self._loading = KernelLoading(configuration.tracker.kernels)
-        self.asked: Box | None = None
         self._target_problem = ""
         self._stillness = Stillness()
         self.localisation = StreamLocalisation(variant.name, configuration.session.road, cameras)
@@ -216,7 +159,18 @@ class Stream(NodeStream):
         else:
             super().decline(header, error)
 
-    def set_target(self, box: Box) -> None:
+    @property
+    def followed(self) -> Box | None:
+        """Box of the target while it is visible; None where there is none."""
+        estimate = self.estimate
+        return estimate.box if estimate and estimate.mode is Mode.TRACKING else None
+
+    @property
+    def period(self) -> float:
+        """Nominal period of the images, s."""
+        return self._session.tracker.frame_period if self._session else DEFAULT_PERIOD
+
+    def start_on(self, box: Box) -> None:
         """Start on `box` with the next image, if it fits into that.
 
         Raises
@@ -337,6 +291,7 @@ class Stream(NodeStream):
         words = "; ".join(session.events)
         if not words:
             return {}
-        self.health.restarts += session.recovered
+        if session.recovered:
+            self.note_restart()
         (self.errors if session.recovered else self.warnings).say("event", words)
         return {"event": words}

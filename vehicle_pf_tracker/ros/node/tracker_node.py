@@ -121,7 +121,7 @@ class TrackerNode(ImageNode):
         def start(stream: Stream) -> None:
             if message is not None:
                 stream.check_frame_id(topic, message.header)
-            stream.set_target(read(stream))
+            stream.start_on(read(stream))
 
         self.ask("target", start)
 

@@ -16,21 +16,15 @@
 
 from __future__ import annotations
 
-import signal
-import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from threading import Event
-from typing import Any, NamedTuple
+from typing import Any
 
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.processes import wait_or_kill
-from vehicle_pf_tracker.parameters.table import Value
 from vehicle_pf_tracker.recordings.topics import DIAGNOSTIC_ARRAY, IMAGE_TYPES
 
 _SLICE = 0.05
@@ -199,55 +193,3 @@ class Lookout:
 
 def _owner(endpoint: Any) -> str:
     return full_name(f"{endpoint.node_namespace}/{endpoint.node_name}")
-
-
-_SCRIPT = "import sys; from vehicle_pf_tracker.ros.executables import main; sys.exit(main({!r}))"
-
-
-class TrackerProcess(NamedTuple):
-    """Process of a node."""
-
-    variant: str
-    process: subprocess.Popen[bytes]
-
-    def check(self) -> None:
-        """Raise `InputError` once the node has ended; while it has not, a wait may be long."""
-        if self.process.poll() is not None:
-            raise InputError(f"the node {self.variant}_tracker has ended; see its log above")
-
-
-@contextmanager
-def tracker_process(
-    variant: str, parameters: Mapping[str, Value], image_topic: str
-) -> Iterator[TrackerProcess]:
-    """Run the node of `variant` until the block ends.
-
-    Parameters
-    ----------
-    variant : str
-        Name in the registry.
-    parameters : mapping
-        Parameters over the defaults, by dotted name.
-    image_topic : str
-        Topic that its `image` input is remapped to.
-
-    Raises
-    ------
-    InputError
-        If the node ended by itself with an error.
-    """
-    words = ["--ros-args", "--log-level", "warn", "-r", f"image:={image_topic}"]
-    for name, value in parameters.items():
-        words += ["-p", f"{name}:={str(value).lower() if isinstance(value, bool) else value}"]
-    # The very same interpreter: another one's libraries would be looked up in this one's place.
-    process = subprocess.Popen([sys.executable, "-c", _SCRIPT.format(variant), *words])
-    try:
-        yield TrackerProcess(variant, process)
-    finally:
-        # Not SIGINT, which a process begun in a shell's background inherits as ignored.
-        process.terminate()
-        status = wait_or_kill(process)
-    if status not in {0, -signal.SIGTERM}:
-        raise InputError(
-            f"the node {variant}_tracker ended with status {status}; see its log above"
-        )

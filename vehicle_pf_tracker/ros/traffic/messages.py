@@ -129,7 +129,7 @@ def modes_message(
     statuses = [
         status(
             LEVELS[one.mode.value],
-            f"{node}: vehicle {one.identity}",
+            f"{node}: vehicle {one.identity or one.mode.value.lower()}",
             one.mode.value,
             hardware_id,
             scalars(one),
@@ -167,7 +167,7 @@ def _number(header: Header, estimate: TrackEstimate) -> Marker:
 
 
 def _marker(header: Header, estimate: TrackEstimate, namespace: str, kind: int) -> Marker:
-    marker = Marker(header=header, ns=namespace, id=estimate.identity, type=kind, action=Marker.ADD)
+    marker = Marker(header=header, ns=namespace, id=estimate.serial, type=kind, action=Marker.ADD)
     is_sure = estimate.mode is not TrackMode.TENTATIVE
     colour = identity_colour(estimate.identity) if is_sure else NEUTRAL
     marker.color.r, marker.color.g, marker.color.b = (part / 255 for part in colour)

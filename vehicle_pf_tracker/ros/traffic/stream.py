@@ -17,15 +17,13 @@
 from __future__ import annotations
 
 import time
-from collections import deque
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import Generic, TypeVar
+from collections.abc import Mapping, Sequence
 
 from rclpy.node import Node
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.compressed_image import CodedImage
@@ -36,129 +34,16 @@ from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import in_pixels
 from vehicle_pf_tracker.ros.traffic.messages import read_serialized_detections, read_stamp, scalars
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
+from vehicle_pf_tracker.ros.traffic.rates import Rates, TimedDetector
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
+from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
-MOST_WAITING = 16
-"""Images that may wait: half a second at 30 Hz; of 1080p they are 100 MB."""
-_REMEMBERED = 100
-"""Images passed on whose detections are recognised as late; detections kept whose image has not
-come."""
-
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
-
-ImageT = TypeVar("ImageT")
-
-
-@dataclass(slots=True)
-class _Waiting(Generic[ImageT]):
-    """An image with its number in the stream, and when it has waited for long enough, s."""
-
-    image: ImageT
-    stamp_ns: int
-    number: int
-    until: float
-    is_answered: bool = False
-    detections: Detections | None = None
-
-
-class WaitingImages(Generic[ImageT]):
-    """Passes on images in their order, each with its detections or without.
-
-    An image waits for detections of exactly its stamp: until they come, those of a later image come
-    (a detector answers in order), or it has waited for too long. A detector may answer every k-th
-    image; the others do not wait.
-
-    Parameters
-    ----------
-    clock : callable
-        Steady time in s.
-
-    Attributes
-    ----------
-    matched, missed, late, unmatched : int
-        Images with detections, images that waited in vain, detections that came after their image
-        was passed on, and detections of stamps that no image has.
-    """
-
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self.matched = self.missed = self.late = self.unmatched = 0
-        self._clock = clock
-        self._images: deque[_Waiting[ImageT]] = deque()
-        self._early: dict[int, Detections | None] = {}
-        self._passed: dict[int, int] = {}
-        self._number = 0
-        self._awaited = 0
-
-    def __len__(self) -> int:
-        return len(self._images)
-
-    @property
-    def remembered(self) -> int:
-        """Number of stamps that are kept without an image: of early and of late detections."""
-        return len(self._early) + len(self._passed)
-
-    def add_image(self, image: ImageT, stamp_ns: int, max_wait: float) -> None:
-        """Take the next image, which may wait for `max_wait` s."""
-        waiting = _Waiting(image, stamp_ns, self._number, self._clock() + max_wait)
-        if stamp_ns in self._early:
-            waiting.is_answered, waiting.detections = True, self._early.pop(stamp_ns)
-        self._number += 1
-        self._images.append(waiting)
-
-    def add_detections(self, stamp_ns: int, detections: Detections | None, every: int = 1) -> None:
-        """Take the detections of an image; None: the answer cannot be used.
-
-        The detector answers every `every`-th image.
-        """
-        for waiting in self._images:
-            if waiting.stamp_ns == stamp_ns and not waiting.is_answered:
-                waiting.is_answered, waiting.detections = True, detections
-                return
-        if stamp_ns in self._passed:
-            self.late += 1
-            self._awaited = self._passed.pop(stamp_ns) + every
-            return
-        self._early[stamp_ns] = detections
-        if len(self._early) > _REMEMBERED:
-            del self._early[next(iter(self._early))]
-            self.unmatched += 1
-
-    def ready(self, every: int = 1) -> Iterator[tuple[ImageT, Detections | None]]:
-        """Pass on the images that need not wait any longer."""
-        while self._images:
-            first = self._images[0]
-            if not first.is_answered and self._waits(first):
-                return
-            self._images.popleft()
-            if first.is_answered:
-                self.matched += 1
-                self._awaited = first.number + every
-            else:
-                self.missed += first.number >= self._awaited
-                self._remember(first)
-            yield first.image, first.detections
-
-    def clear(self) -> None:
-        """Forget all images and detections."""
-        self._images.clear()
-        self._early.clear()
-        self._passed.clear()
-
-    def _waits(self, first: _Waiting[ImageT]) -> bool:
-        return (
-            first.number >= self._awaited
-            and self._clock() < first.until
-            and len(self._images) <= MOST_WAITING
-            and not any(one.is_answered for one in self._images)
-        )
-
-    def _remember(self, passed: _Waiting[ImageT]) -> None:
-        self._passed[passed.stamp_ns] = passed.number
-        if len(self._passed) > _REMEMBERED:
-            del self._passed[next(iter(self._passed))]
 
 
 class TrafficStream(NodeStream):
@@ -189,13 +74,14 @@ class TrafficStream(NodeStream):
     def __init__(
         self, node: Node, configuration: Configuration, outputs: TrafficOutputs, health: Health
     ) -> None:
+        self.vehicles = Vehicles(configuration)
         super().__init__(node, configuration, outputs, health)
         self._outputs = outputs
         self._waiting: WaitingImages[Image | CompressedImage] | None = None
         if configuration.tracker.detector.kind == TOPIC:
             self._waiting = WaitingImages()
-        self.vehicles = Vehicles(configuration)
         self._began = 0.0
+        self._rates = Rates()
         self._detections: Detections | None = None
         self._events: list[str] = []
         self.tell_drawn_seed(self.vehicles.session.tracker.seed)
@@ -215,6 +101,7 @@ class TrafficStream(NodeStream):
             "seed": self.vehicles.session.tracker.seed,
             "detector": self._configuration.tracker.detector.kind,
             **self.vehicles.summary(),
+            **{name: round(value, 2) for name, value in self._rates.values.items()},
             **detections,
         }
 
@@ -284,6 +171,21 @@ class TrafficStream(NodeStream):
         """Width and height of the stream's images, px; None before the first."""
         return self.vehicles.session.size
 
+    @property
+    def followed(self) -> Box | None:
+        """Box of the selected vehicle while it is visible; None where there is none."""
+        one = self.vehicles.selected
+        return one.box if one is not None and one.mode is TrackMode.TRACKING else None
+
+    @property
+    def period(self) -> float:
+        """Nominal period of the images, s."""
+        return self.vehicles.session.tracker.frame_period
+
+    def start_on(self, box: Box) -> None:
+        """Follow and select the vehicle in `box` of the first image."""
+        self.vehicles.select_first(box)
+
     def reset(self) -> str:
         """Forget all vehicles and counts; begin on the configured target."""
         self.vehicles.reset()
@@ -331,13 +233,29 @@ class TrafficStream(NodeStream):
         mode = WAITING if selected is None else selected.mode.value
         values = {"reason": self._reason} if selected is None else scalars(selected)
         values |= {**vehicles.summary(), "step_ms": step_ms}
-        self.health.restarts += vehicles.session.recovered
+        if vehicles.session.recovered:
+            self.note_restart()
         for event in events:
             self.warnings.say(" ".join(event.split()[:3]), event)  # without numbers
         if events:
             values["event"] = "; ".join(events)
         self.health.answered(mode, step_ms)
+        self._note_rates(estimates)
         self.publish_mode(header, mode, values)
+
+    def judge(self) -> str:
+        """Name the rates that are not as usual; called once a second."""
+        return self._rates.judge()
+
+    def _note_rates(self, estimates: Sequence[TrackEstimate]) -> None:
+        detector, found, seconds = self.vehicles.session.detector, len(self._detections or ()), 0.0
+        if self._waiting is not None:
+            seconds = self._waiting.latency
+        elif isinstance(detector, TimedDetector):
+            found, seconds = detector.found, detector.seconds
+        known = [one.identity for one in estimates if one.mode in CONFIRMED]
+        visible = sum(one.mode is TrackMode.TRACKING for one in estimates)
+        self._rates.note(known, found, visible, seconds)
 
     @property
     def _reason(self) -> str:

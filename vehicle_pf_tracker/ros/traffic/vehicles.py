@@ -33,6 +33,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.ros.traffic.rates import TimedDetector
 from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
@@ -66,7 +67,7 @@ class Selection:
         InputError
             If no vehicle has it.
         """
-        numbers = [one.identity for one in estimates]
+        numbers = [one.identity for one in estimates if one.identity]
         if identity != NONE and identity not in numbers:
             known = ", ".join(map(str, numbers[:_SHOWN])) + (", …" if numbers[_SHOWN:] else "")
             there = f"there are {known}" if numbers else "there is none"
@@ -81,7 +82,7 @@ class Selection:
         InputError
             If there is none, within the size of a vehicle.
         """
-        shown = [one for one in estimates if one.mode is not TrackMode.LOST]
+        shown = [one for one in estimates if one.identity and one.mode is not TrackMode.LOST]
         inside = [one for one in shown if _contains(one.box, point)]
         if inside:
             self.identity = min(inside, key=lambda one: (one.box.area, one.identity)).identity
@@ -97,7 +98,8 @@ class Selection:
 
     def of(self, estimates: Sequence[TrackEstimate]) -> TrackEstimate | None:
         """Return the estimate of the selected vehicle, where there is one."""
-        return next((one for one in estimates if one.identity == self.identity), None)
+        chosen = self.identity
+        return next((one for one in estimates if chosen and one.identity == chosen), None)
 
 
 def _contains(box: Box, point: Position) -> bool:
@@ -146,10 +148,11 @@ class Vehicles:
     def __init__(self, configuration: Configuration) -> None:
         check_library()
         parameters = configuration.tracker
+        make = detector_maker(parameters.detector)
         self._configuration = configuration
         self.session = TrafficSession(
             TrafficTracker(parameters, plane_of(configuration.session.road)),
-            detector_maker(parameters.detector),
+            (lambda: TimedDetector(make())) if make else None,
             frame_rate=parameters.frame_rate,
             reset_on_time_jump=configuration.session.reset_on_time_jump,
         )
@@ -212,6 +215,10 @@ class Vehicles:
         check_target(box, MAX_SIDE, MAX_SIDE)
         self.waiting.append(box)
         return None
+
+    def select_first(self, box: Box) -> None:
+        """Follow the vehicle in `box` of the next image, and select it."""
+        self._configured = box
 
     def remove_selected(self) -> int:
         """Forget the selected vehicle, and return its number.

@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """A vehicle that has left: by a border of the image, or too far away to be seen.
 
 From then on whatever looks like it may as well be a stranger, and on a road strangers come by all

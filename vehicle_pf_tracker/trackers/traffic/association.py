@@ -27,6 +27,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
@@ -149,6 +150,8 @@ class FrameDetections:
         For learning what becomes of them.
     log_odds : (N,) array
         Log odds that each is a vehicle.
+    clutter : (N,) array
+        Logarithm of the false alarms per image as often as where each is.
     free : list of int
         Indices of those that no track has taken.
     """
@@ -169,6 +172,7 @@ class FrameDetections:
             for edges, score in zip(self.edges, self.scores.tolist(), strict=True)
         ]
         self.log_odds = evidence.log_odds(self.samples)
+        self.clutter = evidence.clutter(self.samples)
         self.free = list(range(len(boxes)))
         self._colours = colours
         self._histograms: dict[int, Array] = {}
@@ -199,6 +203,55 @@ def pair_costs(
     return costs
 
 
+_BORDER = 1.0
+"""Distance in px from the border of the image up to which an edge counts as cut."""
+_NEAR_BORDER = 0.05
+"""The same, of the side: the usual error of an edge."""
+_SIZES = 2.0
+"""Logarithm of the ratio of the largest and the smallest false alarms, by which they are spread."""
+
+
+def cut_edges(edges: Array, size: tuple[int, int]) -> npt.NDArray[np.bool_]:
+    """Find the edges of boxes (..., 4) that lie on or beyond the borders of the image."""
+    margin = np.maximum(_NEAR_BORDER * (edges[..., 2:] - edges[..., :2]), _BORDER)
+    return np.concatenate([edges[..., :2] <= margin, edges[..., 2:] >= size - margin], axis=-1)
+
+
+def fits(
+    tracks: Sequence[Track], found: FrameDetections, indices: Sequence[int], noise: float
+) -> Array:
+    """Log odds (tracks, detections) that a detection is a new track's and no false alarm.
+
+    The density of the prediction against that of false alarms there, which have any size. An edge
+    that is cut in both tells nothing. Only where it is says so, neither scores nor colours.
+
+    Parameters
+    ----------
+    tracks : sequence of Track
+        Tracks, predicted into this frame.
+    found : FrameDetections
+        Detections of the frame.
+    indices : sequence of int
+        Those to compare with.
+    noise : float
+        Standard deviation of an edge, fraction of the size.
+    """
+    detected = found.edges[indices]
+    sides = np.tile(detected[:, 2:] - detected[:, :2], 2)
+    false = found.clutter[indices] - math.log(found.size[0] * found.size[1])
+    false -= np.log(sides[:, :2] * _SIZES).sum(axis=1)
+    spread = deviations(detected, noise) ** 2
+    odds = np.empty((len(tracks), len(detected)))
+    for row, track in enumerate(tracks):
+        cut = cut_edges(track.state.edges, found.size) & cut_edges(detected, found.size)
+        variances = np.where(cut, spread + (_SIZES * sides) ** 2 / (2 * np.pi), spread)
+        covariance = track.state.edge_covariance + variances[:, np.newaxis] * np.eye(4)
+        residual = (detected - track.state.edges)[..., np.newaxis]
+        costs = (residual * np.linalg.solve(covariance, residual)).sum(axis=(1, 2))
+        odds[row] = -(costs + np.linalg.slogdet(2 * np.pi * covariance)[1]) / 2 - false
+    return odds
+
+
 _MISSED_FOR = 5.0
 """Nominal periods without a detection after which a vehicle may be hidden."""
 _IN_SIGHT = 0.5
@@ -227,14 +280,17 @@ def former(track: Track, others: Sequence[Track]) -> Track | None:
     others : sequence of Track
         All tracks.
     """
-    costs = [(cost, one.identity, one) for one in others if (cost := _cost(track, one)) is not None]
+    costs = [(cost, one.serial, one) for one in others if (cost := _cost(track, one)) is not None]
     return min(costs)[2] if costs else None
 
 
 def resume(hidden: Track, track: Track) -> None:
     """Go on with a hidden vehicle where the new track that it turned out to be is."""
     hidden.state, hidden.before = track.state, track.before
-    hidden.score, hidden.label = track.score, track.label or hidden.label
+    hidden.score = track.score
+    for label, votes in track.votes.items():
+        hidden.vote(label, votes)
+    hidden.has_driven = hidden.has_driven or track.has_driven
     hidden.unseen = hidden.undetected = 0.0
     hidden.log_odds = max(hidden.log_odds, track.log_odds)
     hidden.visible, hidden.covers, hidden.hidden_by = track.visible, track.covers, None

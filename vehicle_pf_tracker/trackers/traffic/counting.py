@@ -116,7 +116,7 @@ class Counter:
         self.plan = plan
         self.totals: Tally[tuple[str, str, str]] = Tally()
         self._plane = plane
-        self.vehicles: dict[int, _Vehicle] = {}
+        self.vehicles: dict[int, _Vehicle] = {}  # by their tracks
         self._occupancy = {zone.name: 0 for zone in plan.zones}
         self._last_ns: int | None = None
         self._before_ns: int | None = None
@@ -172,9 +172,9 @@ class Counter:
         mode: TrackMode = estimate.mode
         if mode is TrackMode.LOST:
             return []
-        vehicle = self.vehicles.get(estimate.identity)
+        vehicle = self.vehicles.get(estimate.serial)
         if vehicle is None:
-            vehicle = self.vehicles[estimate.identity] = self._made(stamp_ns)
+            vehicle = self.vehicles[estimate.serial] = self._made(stamp_ns)
         elif vehicle.last_ns != self._before_ns:  # back after it was lost
             vehicle.speed.clear()
             mode = TrackMode.LOST
@@ -188,7 +188,10 @@ class Counter:
         for zone in vehicle.zones:
             self._occupancy[zone.zone.name] += zone.is_inside
         counted, vehicle.waiting = vehicle.waiting, []
-        return [replace(one, label=estimate.label or one.label) for one in counted]
+        return [
+            replace(one, identity=estimate.identity, label=estimate.label or one.label)
+            for one in counted
+        ]
 
     def _passed(self, vehicle: _Vehicle, place: Place, estimate: TrackEstimate) -> list[Crossing]:
         """Return what the vehicle passed with the step to `place`."""

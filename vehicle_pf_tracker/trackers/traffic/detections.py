@@ -142,6 +142,11 @@ _GRID = 16
 """Places along each side of the image."""
 _OLD = 200.0
 """Outcomes at a place above which they are halved: light and wind change."""
+_MEMORY = 1500.0
+"""Images after which the number of false alarms of a place is halved."""
+_FALSE_ALARMS, _IMAGES = 1.0, 50.0
+"""False alarms per image that are expected before any is seen, and the images that this, and the
+mean of all places for the number of one, are worth."""
 _LARGEST_LOG_ODDS = 6.0
 
 
@@ -154,7 +159,7 @@ class Sample:
 
 
 class DetectionEvidence:
-    """Outcomes of detections by score and place."""
+    """Outcomes of detections by score, and false alarms by place."""
 
     def __init__(self) -> None:
         self._scores = np.empty(_REMEMBERED)
@@ -163,7 +168,16 @@ class DetectionEvidence:
         self._fresh = 0
         self._sorted = np.empty(0)
         self._sums = np.zeros(1)
+        self._images = 0.0
+        self._false = np.zeros((_GRID, _GRID))
         self._places = np.full((2, _GRID, _GRID), _PRIOR)
+
+    def look(self) -> None:
+        """Note that the detector has looked at another image."""
+        self._images += 1
+        if self._images > _MEMORY:
+            self._images /= 2
+            self._false /= 2
 
     def sample(self, edges: Array, score: float, size: tuple[int, int]) -> Sample:
         """Describe a detection by its edges (px) and its score."""
@@ -171,8 +185,8 @@ class DetectionEvidence:
         column, row = np.clip(centre / size * _GRID, 0, _GRID - 1).astype(int).tolist()
         return Sample(score, (row, column))
 
-    def learn(self, sample: Sample, genuine: bool) -> None:
-        """Add the outcome of a detection."""
+    def learn(self, sample: Sample, genuine: bool, *, alone: bool = True) -> None:
+        """Add the outcome of a detection; one beside a vehicle is no false alarm of its place."""
         index = self._count % _REMEMBERED
         self._scores[index], self._genuine[index] = sample.score, genuine
         self._count += 1
@@ -180,12 +194,17 @@ class DetectionEvidence:
         if self._fresh >= min(_REFRESHED_EVERY, self._count):
             self._refresh()
         row, column = sample.place
+        self._false[row, column] += alone and not genuine
         self._places[int(genuine), row, column] += 1
         if self._places[:, row, column].sum() > _OLD:
             self._places[:, row, column] /= 2
 
     def log_odds(self, samples: list[Sample]) -> Array:
-        """Logarithm of the odds that detections are vehicles, (N,); 0 where nothing is known."""
+        """Logarithm of the odds that detections are vehicles, (N,); 0 where nothing is known.
+
+        A place only speaks against a detection: where many vehicles pass, parts of vehicles are
+        detected as well.
+        """
         if not samples:
             return np.zeros(0)
         by_score = self._by_score(np.array([one.score for one in samples]))
@@ -195,6 +214,32 @@ class DetectionEvidence:
         by_place = np.log(here[1] / here[0]) - np.log(totals[1] / totals[0])
         both = by_score + np.minimum(by_place, 0.0)
         return np.asarray(np.clip(both, -_LARGEST_LOG_ODDS, _LARGEST_LOG_ODDS))
+
+    def score_gain(self, score: float) -> float:
+        """Logarithm of how much more often vehicles have this score than false alarms have it."""
+        genuine, total = self._sums[-1], len(self._sorted)
+        usual = np.log((genuine + _PRIOR) / (total - genuine + _PRIOR))
+        return float(self._by_score(np.array([score]))[0] - usual)
+
+    def rank(self, score: float) -> float:
+        """Share of the vehicles' detections that had a lower score; 0 before enough are known."""
+        below = self._sums[np.searchsorted(self._sorted, score)]
+        return float(below / max(self._sums[-1], _NEIGHBOURS))
+
+    def clutter(self, samples: list[Sample]) -> Array:
+        """Logarithm of the false alarms per image, (N,), in a place as large as the image.
+
+        The number in one place is that of a Poisson process, its prior the mean of all places.
+        """
+        if not samples:
+            return np.zeros(0)
+        rows, columns = np.array([one.place for one in samples]).T
+        seen = self._false[rows, columns] * _GRID**2 + _IMAGES * np.exp(self._usual())
+        return np.asarray(np.log(seen / (self._images + _IMAGES)))
+
+    def _usual(self) -> float:
+        total = float(self._false.sum()) + _FALSE_ALARMS * _IMAGES
+        return float(np.log(total / (self._images + _IMAGES)))
 
     def _by_score(self, scores: Array) -> Array:
         left = np.searchsorted(self._sorted, scores, "left")

@@ -45,7 +45,8 @@ class TrackEstimate:
     Attributes
     ----------
     identity : int
-        Number of the vehicle, from 1; never used for another one.
+        Number of the vehicle, from 1, in the order in which they are confirmed; never used for
+        another one. 0 while it is `TENTATIVE`.
     box : Box
         Box of the vehicle in px, predicted while it is hidden; it may extend beyond the image.
     velocity : (float, float)
@@ -62,6 +63,8 @@ class TrackEstimate:
         Time since it was first seen, in nominal frame periods.
     hidden_by : int or "scene" or None
         Identity of the vehicle that hides it, `SCENE`, or None where it is in sight.
+    serial : int
+        Number of its track, the same before and after it is confirmed.
     """
 
     identity: int
@@ -73,6 +76,12 @@ class TrackEstimate:
     score: float
     age: float
     hidden_by: int | str | None
+    serial: int = 0
+
+    @property
+    def id(self) -> int:
+        """Number of the vehicle, as other libraries call it."""
+        return self.identity
 
     @property
     def position(self) -> Position:

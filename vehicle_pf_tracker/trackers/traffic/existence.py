@@ -16,37 +16,62 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
+from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
 from vehicle_pf_tracker.trackers.traffic.detections import (
     SHIPPED,
     DetectionEvidence,
-    Sample,
     TrafficNumbers,
     areas,
     inside_image,
     overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import MOST_EVIDENCE, Track, edges_of
+from vehicle_pf_tracker.trackers.traffic.track import Track, edges_of
 
 _LEAST, _MOST = -0.6, 2.0
-"""Bounds of the log odds that one detection adds: a few good scores are no proof, and a detector
-that knows little about a vehicle must not hide it for ever."""
+"""Bounds of the log odds that the score of one detection adds: a few good scores are no proof, and
+a detector that knows little about a vehicle must not hide it for ever."""
 _SCORE_DOUBT = 0.5
 """Log odds per detection that are taken off, in confirming by scores alone."""
-_STRAIGHT = 0.8
-"""Straightness of the way of a vehicle; of flickering leaves it is below one half."""
-_STRAIGHT_MATCHES = 15
-"""Fewest detections that a straightness is judged by."""
+_SCORE_MEMORY = 0.75
+"""Weight of the detections before in this: a spot that looks like a vehicle does so each time, so
+that the latest four are worth as much as all."""
+_NEW_VEHICLES = 0.05
+"""Vehicles that come into view per image: one in two thirds of a second at 30 Hz."""
+_MOST_FIT = 3.0
+"""Most log odds by where a detection is: no single one proves a vehicle."""
+_STRAIGHT, _DRIVES = 0.8, 7.0
+"""Straightness of a drive, which a leap between two places that flicker cannot reach (0.75), and
+least evidence for it: one in a thousand that flicker in one place have as much."""
+_MOVING = 4.0
+"""Standard deviations of its speed from zero above which a vehicle does not stand."""
+_DOUBTED = 2.0
+"""Log odds against a track, by the scores of its detections, for which it has to drive twice as
+far: false alarms side by side look like a short drive."""
+_STANDING_MATCHES = 30
+"""Detections after which what still stands is taken for a part of the scene."""
+_STANDING = 0.2
+"""Way, of the size, below which it stands: boxes shake by less."""
+_USUAL = 0.5
+"""Share of the vehicles' detections with lower scores from which on scores prove what stands."""
 _MOVED_MATCHES = 5
 """Fewest detections by which what ended unconfirmed is known to have driven: it may have been a
 vehicle, and tells nothing about its detections. Taken for false alarms, vehicles that reach the
 next bridge too soon kept those after them from being confirmed, too: of forty, six."""
-_MISSED_TENTATIVE = 1.0
-"""Log odds that a detection missed in plain sight takes off a new vehicle."""
+_DETECTED, _DETECTED_WEIGHT = 0.5, 20.0
+"""Share of the vehicles in plain sight that is detected, to start from, and its weight in images of
+one vehicle."""
+_DETECTED_MEMORY = 500.0
+"""Images of one vehicle that the share is taken from."""
+_LEAST_DETECTED, _MOST_DETECTED = 0.2, 0.9
+"""Bounds of this share: vehicles differ."""
+_WAITS = 4.0
+"""Detections that a tentative vehicle may miss by expectation before it is given up."""
 _ONE_PERIOD = 1.5
 """Nominal periods since pixels held a vehicle in the frame before, at most: stamps jitter."""
 _DOUBLE = 0.3
@@ -64,9 +89,7 @@ _BLIND_FOR = 150.0
 """Nominal periods after which a vehicle that no detector sees is doubted even so: 5 s at 30 Hz."""
 _PLAIN_SIGHT = 0.5
 """Share of a vehicle in sight, and in the image, in which it ought to be detected."""
-_TENTATIVE_PERIODS = 5.0
-"""Nominal periods without a detection after which a tentative vehicle is given up."""
-_IMPLAUSIBLE = -2.0
+_IMPLAUSIBLE = -7.0
 _REFUTED = -3.0
 """Log odds below which a tentative, and a confirmed, vehicle is given up."""
 _LEFT, _LEFT_UNSEEN = 0.1, 0.35
@@ -95,37 +118,73 @@ class Existence:
         self.parameters = parameters
         self._numbers = numbers
         self._evidence = evidence
+        self._detected, self._asked = _DETECTED * _DETECTED_WEIGHT, _DETECTED_WEIGHT
 
-    def detected(self, track: Track, edges: Array, sample: Sample, log_odds: float) -> None:
-        """Add the evidence of a detection (edges in px) to its track."""
-        track.unseen = track.undetected = 0.0
-        track.hidden_by = None
-        track.matches += 1
-        agreement = self._numbers.agreement if track.matches > 1 else 0.0
-        gain = min(max(log_odds, _LEAST), _MOST) + agreement
-        track.log_odds = min(track.log_odds + gain, MOST_EVIDENCE)
-        track.strength += min(max(log_odds - _SCORE_DOUBT, _LEAST), _MOST)
+    @property
+    def detection_rate(self) -> float:
+        """Share of the vehicles in plain sight that the detector finds."""
+        return min(max(self._detected / self._asked, _LEAST_DETECTED), _MOST_DETECTED)
+
+    def begun(self, track: Track, found: FrameDetections, index: int) -> bool:
+        """Take the first detection of a new track; True if that is already enough."""
+        fit = math.log(_NEW_VEHICLES) - float(found.clutter[index])
+        return self._add(track, found, index, fit)
+
+    def detected(self, track: Track, found: FrameDetections, index: int, fit: float) -> bool:
+        """Add the evidence of a detection to its track; True if that proves a tentative one.
+
+        Parameters
+        ----------
+        track : Track
+            Track, measured already.
+        found : FrameDetections
+            Detections of the frame.
+        index : int
+            Which of them is the track's.
+        fit : float
+            Log odds by where it is, of `fits`; not used for a confirmed one.
+        """
         if track.confirmed:
-            self._evidence.learn(sample, True)
-            return
+            drives = track.state.speed_ratio > _MOVING or not track.has_driven
+            fit = self._numbers.agreement if drives else 0.0
+        return self._add(track, found, index, min(fit, _MOST_FIT))
+
+    def _add(self, track: Track, found: FrameDetections, index: int, fit: float) -> bool:
+        sample, log_odds = found.samples[index], float(found.log_odds[index])
+        gain = log_odds if track.confirmed else self._evidence.score_gain(sample.score)
+        track.add_evidence(found.edges[index], min(max(gain, _LEAST), _MOST), fit)
+        doubted = min(max(log_odds - _SCORE_DOUBT, _LEAST), _MOST)
+        if track.way < _STANDING and self._evidence.rank(sample.score) < _USUAL:
+            doubted = _LEAST
+        track.strength = _SCORE_MEMORY * track.strength + doubted
+        if track.has_driven or track.given:
+            if track.given or track.state.speed_ratio > _MOVING:
+                self._evidence.learn(sample, True)
+            return False
         track.samples.append(sample)
-        track.note_place((edges[:2] + edges[2:]) / 2)
-        if self._is_vehicle(track):
-            track.confirmed = True
+        known = track.confirmed or track.log_odds >= self.parameters.birth.evidence
+        track.has_driven = known and self._drives(track)
+        self._teach(track)
+        proven = track.has_driven or track.strength > self._numbers.proven_by_scores
+        return not track.confirmed and known and proven
+
+    def _teach(self, track: Track) -> None:
+        """Learn from the detections of what has driven, or stands for long."""
+        if track.has_driven:
             for one in track.samples:
                 self._evidence.learn(one, True)
             track.samples.clear()
-
-    def _is_vehicle(self, track: Track) -> bool:
-        birth = self.parameters.birth
-        if track.matches < birth.matches or track.log_odds < birth.evidence:
-            return False
-        if track.strength > self._numbers.proven_by_scores:
-            return True
-        return track.matches >= _STRAIGHT_MATCHES and self._drives(track)
+        elif len(track.samples) > _STANDING_MATCHES:
+            oldest = track.samples.pop(0)
+            if not track.confirmed and track.way < _STANDING:
+                self._evidence.learn(oldest, False)
 
     def _drives(self, track: Track) -> bool:
-        return track.straightness > _STRAIGHT and track.way > self.parameters.birth.displacement
+        if track.matches < self.parameters.birth.matches:
+            return False
+        needed = self.parameters.birth.displacement * (1 + track.doubt / _DOUBTED)
+        straightness, evidence = track.drive()
+        return track.way > needed and straightness > _STRAIGHT and evidence > _DRIVES
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
         """Take off evidence from tracks that a detector has not seen.
@@ -142,16 +201,24 @@ class Existence:
             return
         boxes = edges_of(detected)
         for track in tracks:
+            in_sight = min(track.visible, track.inside) > _PLAIN_SIGHT
+            if track.has_driven and in_sight and track.unseen <= _ONE_PERIOD:
+                self._note(track.undetected == 0)
             if track.undetected == 0 or (track.given and track.unseen <= _ONE_PERIOD):
                 continue
             if track.confirmed and _is_double(track, boxes):
                 track.log_odds -= _DOUBLE * elapsed
-            if min(track.visible, track.inside) > _PLAIN_SIGHT:
+            if in_sight:
                 track.log_odds -= elapsed * self._missed(track)
+
+    def _note(self, detected: bool) -> None:
+        """Note that a vehicle in plain sight was detected, or was not."""
+        kept = 1 - 1 / _DETECTED_MEMORY
+        self._detected, self._asked = kept * self._detected + detected, kept * self._asked + 1
 
     def _missed(self, track: Track) -> float:
         if not track.confirmed:
-            return _MISSED_TENTATIVE
+            return -math.log(1 - self.detection_rate)
         # Pixels are asked later in the frame: they held it if they did in the frame before.
         numbers = self._numbers
         return numbers.missed_held if track.unseen <= _ONE_PERIOD else numbers.missed_hidden
@@ -186,7 +253,7 @@ class Existence:
 
     def _goes_on(self, track: Track, unseen: float, inside: float) -> bool:
         if not track.confirmed:
-            waiting = track.undetected <= _TENTATIVE_PERIODS
+            waiting = track.undetected <= _WAITS / self.detection_rate
             return waiting and track.log_odds >= _IMPLAUSIBLE and inside > 0
         if inside < (_LEFT if track.unseen == 0 else _LEFT_UNSEEN):
             return False

@@ -24,13 +24,11 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
-from vehicle_pf_tracker.trackers.traffic.association import INWARD, deviations
+from vehicle_pf_tracker.trackers.traffic.association import INWARD, cut_edges, deviations
 from vehicle_pf_tracker.trackers.traffic.detections import areas
 from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
-_BORDER = 1.0
-"""Distance in px from the border of the image up to which an edge counts as cut."""
 _PUSHED = 1.0
 """Standard deviations that the opposite edge may at most be pushed out by, where an edge is drawn
 in because it is covered. A vehicle that brakes pushes it out."""
@@ -87,7 +85,7 @@ def first_state(
         Width and height of the image.
     """
     edges, spread = edges.copy(), deviations(edges, noise)
-    cut = _cut(edges, size)
+    cut = cut_edges(edges, size)
     width, height = (edges[2:] - edges[:2]).tolist()
     for low, high, side, usual in (
         (Edge.TOP, Edge.BOTTOM, height, _ASPECT * width),
@@ -136,7 +134,7 @@ def measure(
     spread = deviations(predicted, noise)
     uncertainty = np.sqrt(np.diag(state.edge_covariance) + spread**2)
     normal = ((edges - predicted) * INWARD / uncertainty).tolist()
-    cut, beyond = _cut(edges, size), _cut(predicted, size)
+    cut, beyond = cut_edges(edges, size), cut_edges(predicted, size)
     sides = edges[2:] - edges[:2]
     track.sides = np.maximum(sides, _FADED * track.sides)
     shrunk = sides < _WHOLE * np.minimum(predicted[2:] - predicted[:2], track.sides)
@@ -191,11 +189,4 @@ def _is_one_of_several(track: Track, edges: Array, others: Array) -> bool:
 
 def is_cut(edges: Array, size: tuple[int, int]) -> bool:
     """Tell whether a border of the image cuts a box (4,)."""
-    return any(_cut(edges, size))
-
-
-def _cut(edges: Array, size: tuple[int, int]) -> list[bool]:
-    """Find the edges that lie on or beyond the border."""
-    left, top, right, bottom = edges.tolist()
-    width, height = size
-    return [left <= _BORDER, top <= _BORDER, right >= width - _BORDER, bottom >= height - _BORDER]
+    return bool(cut_edges(edges, size).any())

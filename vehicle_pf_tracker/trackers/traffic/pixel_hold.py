@@ -31,7 +31,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.flow import PointFlow
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, TrafficNumbers, areas
 from vehicle_pf_tracker.trackers.traffic.track import ColourBins, Track, similarity
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import V, X
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge, V, X
 
 Grey: TypeAlias = npt.NDArray[np.uint8]
 
@@ -61,6 +61,11 @@ _STANDS = 0.4
 """Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
 _SLIP, _SLIP_PX = 0.02, 0.3
 """Standard deviation by which a box slips on its vehicle in a frame, of its size and in px."""
+_HELD_WITHIN = 4.0
+"""Nominal periods since it was seen, up to which pixels can hold a vehicle: later the points lie on
+what hides it."""
+_HELD_SHARE = 0.3
+"""Least visible share of a vehicle, and share in the image, for pixels to hold it."""
 _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
 
@@ -89,6 +94,23 @@ class PixelHold:
     def show(self, grey: Grey) -> None:
         """Take the next frame."""
         self._before, self._present = self._present, grey
+
+    def hold(self, tracks: Sequence[Track], colours: ColourBins, normals: Array) -> None:
+        """Measure the vehicles among `tracks` that were not detected; see `measure`."""
+        held = [
+            track
+            for track in tracks
+            if track.confirmed
+            and track.undetected > 0
+            and track.unseen < _HELD_WITHIN
+            and min(track.visible, track.inside) > _HELD_SHARE
+        ]
+        for track, hold in zip(held, self.measure(held, colours, normals), strict=True):
+            if hold is not None:
+                track.unseen = 0.0
+                for edge in Edge:
+                    value, deviation = hold.edges[edge], hold.deviations[edge]
+                    track.state.measure(edge, float(value), float(deviation))
 
     def measure(
         self, tracks: Sequence[Track], colours: ColourBins, normals: Array

@@ -99,8 +99,12 @@ SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
 _COLOUR_RATE = 0.1
 """Rate per detection at which colours and their usual similarity are learnt."""
+_LEAST_VOTE = 0.01
+"""Vote for its class by a detection of no score; others vote by their scores."""
 _FIRST_SIMILARITY = 0.9
 """Similarity of a vehicle's colours from frame to frame before it is known."""
+_STRAIGHTEST = 1e-4
+"""Share of the scatter that is left of the straightest drive: boxes have whole pixels."""
 _HIDDEN_CONFIDENCE = 0.5
 """Share of the confidence that is left while a vehicle is predicted only."""
 
@@ -111,24 +115,30 @@ class Track:
 
     Attributes
     ----------
-    identity : int
-        Number of the vehicle.
+    serial : int
+        Number of the track.
     state : VehicleState
         Place, size and velocity.
-    label : str
-        Class as its detections say it.
+    identity : int
+        Number of the vehicle; 0 until it is confirmed.
+    votes : dict of str to float
+        Summed scores of its detections by their class.
     log_odds : float
         Evidence that the vehicle exists.
     strength : float
         Evidence by the scores of its detections alone.
+    doubt : float
+        Log odds against a vehicle by these scores; never below zero.
     matches, partial : int
         Number of its detections, and of the latest in a row that showed only a part of it.
     crowded : int
         Number of its latest detections in a row that had another one beside them in its box.
     sides : (2,) array
         Largest width and height of its latest detections, px.
-    confirmed, lost : bool
-        It is reported; it has been hidden for too long to be predicted.
+    lost : bool
+        It has been hidden for too long to be predicted.
+    has_driven : bool
+        Its way shows that it is no part of the scene.
     given : bool
         It was given by hand: that no detector finds it does not refute it.
     score : float
@@ -151,18 +161,20 @@ class Track:
         Regression of the width on the lower edge.
     """
 
-    identity: int
+    serial: int
     state: VehicleState
+    identity: int = 0
     colours: Array = field(default_factory=lambda: np.zeros(BINS))
-    label: str = ""
+    votes: dict[str, float] = field(default_factory=dict)
     log_odds: float = 0.0
     strength: float = 0.0
+    doubt: float = 0.0
     matches: int = 0
     partial: int = 0
     crowded: int = 0
     sides: Array = field(default_factory=lambda: np.zeros(2))
-    confirmed: bool = False
     lost: bool = False
+    has_driven: bool = False
     given: bool = False
     score: float = math.nan
     age: float = 0.0
@@ -179,6 +191,16 @@ class Track:
     _first: Array = field(default_factory=lambda: np.zeros(2))
     _drive: Array = field(default_factory=lambda: np.zeros(8))
 
+    @property
+    def confirmed(self) -> bool:
+        """True once it is known to be a vehicle."""
+        return self.identity > 0
+
+    @property
+    def label(self) -> str:
+        """Class that most of its detections say, by their scores."""
+        return max(self.votes, key=self.votes.__getitem__, default="")
+
     def predict(self, elapsed: float) -> None:
         """Go on by `elapsed` nominal periods."""
         self.before = self.state.edges
@@ -187,6 +209,11 @@ class Track:
         self.unseen += elapsed
         self.undetected += elapsed
         self.score = math.nan
+
+    def vote(self, label: str, weight: float) -> None:
+        """Take the class that a detection says."""
+        if label:
+            self.votes[label] = self.votes.get(label, 0.0) + max(weight, _LEAST_VOTE)
 
     def learn_colours(self, colours: Array) -> None:
         """Let the colours follow those of a box in plain sight."""
@@ -197,34 +224,53 @@ class Track:
         """Let the usual similarity of the colours follow that of a detected vehicle."""
         self.usual_similarity += _COLOUR_RATE * (similarity - self.usual_similarity)
 
-    def note_place(self, centre: Array) -> None:
-        """Note the centre (px) of a detection, from which the straightness of its way is known."""
-        x, y = centre.tolist()
-        if not self._drive[0]:
-            self._first = centre
+    def add_evidence(self, edges: Array, score: float, fit: float) -> None:
+        """Take the evidence of a detection.
+
+        Parameters
+        ----------
+        edges : (4,) array
+            Edges of the detection, px.
+        score, fit : float
+            Log odds by its score, and by where it is.
+        """
+        self.unseen = self.undetected = 0.0
+        self.hidden_by = None
+        self.matches += 1
+        self.doubt = max(self.doubt - score, 0.0)
+        self.log_odds = min(self.log_odds + score + fit, MOST_EVIDENCE)
+        x, y = ((edges[:2] + edges[2:]) / 2).tolist()
+        if self.matches == 1:
+            self._first = np.array([x, y])
         time = self.age
         self._drive += (1, time, time**2, x, y, time * x, time * y, x * x + y * y)
 
-    @property
-    def straightness(self) -> float:
-        """Share of its detections' scatter that a straight drive at constant speed explains.
+    def drive(self) -> tuple[float, float]:
+        """Tell how much its detections look like a straight drive at constant speed.
 
-        A vehicle comes close to one; what flickers in one place, a tree in the wind, to zero; so
-        does a vehicle whose detections are not noted, because it was given by hand.
+        Returns
+        -------
+        straightness, evidence : float
+            Share of their scatter that the drive explains; and the logarithm of how rarely
+            detections that shake independently in one place are as straight.
         """
         count, time, squared, x, y, time_x, time_y, places = self._drive.tolist()
         if not count:
-            return 0.0
+            return 0.0, 0.0
         scatter = places - (x * x + y * y) / count
         duration = squared - time * time / count
         if scatter <= 0 or duration <= 0:
-            return 0.0
+            return 0.0, 0.0
         along_x, along_y = time_x - time * x / count, time_y - time * y / count
-        return float((along_x**2 + along_y**2) / duration / scatter)
+        straightness = min((along_x**2 + along_y**2) / duration / scatter, 1.0)
+        # The share is distributed as Beta(1, count - 2): two slopes, of twice as many coordinates.
+        return straightness, -(count - 2) * math.log(max(1 - straightness, _STRAIGHTEST))
 
     @property
     def way(self) -> float:
-        """Distance from its first detection, in its present widths."""
+        """Distance from its first detection, in its present widths; 0 before it."""
+        if not self.matches:
+            return 0.0
         left, top, right, bottom = self.state.edges.tolist()
         x, y = self._first.tolist()
         moved = math.hypot((left + right) / 2 - x, (top + bottom) / 2 - y)
@@ -246,6 +292,7 @@ class Track:
         hidden = mode in (TrackMode.OCCLUDED, TrackMode.LOST)
         return TrackEstimate(
             identity=self.identity,
+            serial=self.serial,
             box=self.state.box,
             velocity=self.state.velocity,
             mode=mode,
@@ -283,7 +330,7 @@ def nearest_first(tracks: Sequence[Track], road: RoadPlane | None) -> list[Track
     nearness = feet[:, 1] if road is None else road.homography.nearness(road.ideal(feet))
     # What a lens cannot show is out of the image, and last.
     distances = np.nan_to_num(-nearness, nan=np.inf).tolist()
-    order = sorted(range(len(tracks)), key=lambda index: (distances[index], tracks[index].identity))
+    order = sorted(range(len(tracks)), key=lambda index: (distances[index], tracks[index].serial))
     return [tracks[index] for index in order]
 
 

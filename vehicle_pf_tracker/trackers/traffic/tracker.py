@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import cv2
@@ -28,8 +29,10 @@ from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.base import drawn_seed
 from vehicle_pf_tracker.trackers.traffic.association import (
+    GATE,
     FrameDetections,
     assign,
+    fits,
     former,
     pair_costs,
     resume,
@@ -68,11 +71,6 @@ _STRONG = -0.4
 """Least log odds of a detection that is offered to the tracks in the first round."""
 _NESTED = 0.7
 """Share of a detection inside a detected vehicle above which it is a part of that vehicle."""
-_HELD_WITHIN = 4.0
-"""Nominal periods since it was seen, up to which pixels can hold a vehicle: later the points lie on
-what hides it."""
-_HELD_SHARE = 0.3
-"""Least visible share of a vehicle, and share in the image, for pixels to hold it."""
 _LEARNING_SHARE = 0.8
 """Least visible share of a vehicle for its colours to be learnt."""
 
@@ -115,6 +113,7 @@ class TrafficTracker:
         self.frame_period = DEFAULT_PERIOD
         self.bad_states = 0
         self.last_identity = 0
+        self._serial = 0
         self._numbers = numbers
         self._seed = drawn_seed(self.parameters.seed)
         self._frame: Frame | None = None
@@ -143,7 +142,7 @@ class TrafficTracker:
         Returns
         -------
         tuple of TrackEstimate
-            One for every vehicle that is followed, by identity.
+            One for every vehicle that is followed, by identity, tentative ones last.
         """
         self._look(frame)
         for track in self._tracks:
@@ -155,10 +154,10 @@ class TrafficTracker:
         if detections is not None:
             self._take(detections.usable(*self._size), elapsed)
         if self.parameters.pixels:
-            self._hold(normals)
+            self._pixels.hold(self._tracks, self._colours, normals)
         self._end()
         self._learn_similarity()
-        ordered = sorted(self._tracks, key=lambda track: track.identity)
+        ordered = sorted(self._tracks, key=lambda one: (one.identity or math.inf, one.serial))
         return tuple(track.estimate() for track in ordered)
 
     def add(self, box: Box, label: str = "") -> int:
@@ -174,8 +173,10 @@ class TrafficTracker:
         if self._frame is None:
             raise RuntimeError("show the tracker a frame before adding a vehicle")
         check_target(box, *self._size)
-        track = self._begin(np.array([*box.corners[0], *box.corners[2]]), label)
-        track.confirmed = track.given = True
+        track = self._begin(np.array([*box.corners[0], *box.corners[2]]))
+        track.vote(label, 1.0)
+        track.given = True
+        self._confirm(track)
         track.log_odds = MOST_EVIDENCE
         track.learn_colours(self._colours.histogram(track.state.edges, track.covers))
         return track.identity
@@ -230,6 +231,7 @@ class TrafficTracker:
 
     def _take(self, detections: Detections, elapsed: float) -> None:
         """Give the detections to the tracks; what is left over may be new vehicles."""
+        self._evidence.look()
         found = FrameDetections(detections, self._evidence, self._colours, self._size)
         recent = [one for one in self._tracks if one.confirmed and one.unseen < _RECENT]
         strong = np.flatnonzero(found.log_odds >= _STRONG).tolist()
@@ -237,11 +239,11 @@ class TrafficTracker:
         self._drop_parts(found)
         self._match([one for one in self._tracks if one.confirmed], found, found.free)
         self._drop_parts(found)
-        self._match([one for one in self._tracks if not one.confirmed], found, found.free)
+        self._match_tentative([one for one in self._tracks if not one.confirmed], found)
         self._existence.fade(self._tracks, elapsed)
         for index in found.free:
             if self._is_taken(found.edges[index]):
-                self._evidence.learn(found.samples[index], False)
+                self._evidence.learn(found.samples[index], False, alone=False)
             else:
                 self._begin_from(found, index)
 
@@ -260,25 +262,40 @@ class TrafficTracker:
         for row, column in pairs:
             self._correct(tracks[row], found, indices[column])
 
-    def _correct(self, track: Track, found: FrameDetections, index: int) -> None:
+    def _match_tentative(self, tracks: Sequence[Track], found: FrameDetections) -> None:
+        """Pair new tracks with free detections that are rather theirs than false alarms."""
+        if not tracks or not found.free:
+            return
+        indices = found.free.copy()
+        odds = fits(tracks, found, indices, self.parameters.detections.edge_noise)
+        for row, column in assign(GATE - odds):
+            found.free.remove(indices[column])
+            self._correct(tracks[row], found, indices[column], float(odds[row, column]))
+
+    def _correct(self, track: Track, found: FrameDetections, index: int, fit: float = 0.0) -> None:
         """Correct a track by its detection."""
         settings = self.parameters.detections
         edges = found.edges[index]
         others = np.delete(found.edges, index, axis=0)
         whole = measure(track, edges, settings.edge_noise, settings.covered, self._size, others)
         track.score = float(found.scores[index])
-        track.label = found.labels[index] or track.label
+        track.vote(found.labels[index], track.score)
         if whole and track.visible > _LEARNING_SHARE:
             track.learn_colours(found.histogram(index))
             if not is_cut(edges, self._size):
                 track.growth.add(edges)
-        known = track.confirmed
-        self._existence.detected(track, edges, found.samples[index], float(found.log_odds[index]))
-        if track.confirmed and not known and self.parameters.returning:
-            hidden = former(track, self._tracks)
-            if hidden is not None:
-                resume(hidden, track)
-                self._tracks.remove(track)
+        if self._existence.detected(track, found, index, fit):
+            self._confirm(track)
+
+    def _confirm(self, track: Track) -> None:
+        """Give a new vehicle its number, unless it is one that was hidden."""
+        may_return = self.parameters.returning and not track.given
+        if may_return and (hidden := former(track, self._tracks)) is not None:
+            resume(hidden, track)
+            self._tracks.remove(track)
+            return
+        self.last_identity += 1
+        track.identity = self.last_identity
 
     def _drop_parts(self, found: FrameDetections) -> None:
         """Drop detections inside vehicles that have one: their bonnets, or second boxes."""
@@ -288,7 +305,7 @@ class TrafficTracker:
             edges = found.edges[index]
             if (intersections(edges, boxes) > _NESTED * areas(edges)).any():
                 found.free.remove(index)
-                self._evidence.learn(found.samples[index], False)
+                self._evidence.learn(found.samples[index], False, alone=False)
 
     def _is_taken(self, edges: Array) -> bool:
         """Test whether a tracked vehicle is where a new one would begin."""
@@ -300,13 +317,15 @@ class TrafficTracker:
     def _begin_from(self, found: FrameDetections, index: int) -> None:
         """Take a detection for a new vehicle, as yet without evidence."""
         edges = found.edges[index]
-        track = self._begin(edges, found.labels[index])
+        track = self._begin(edges)
         track.score = float(found.scores[index])
+        track.vote(found.labels[index], track.score)
         track.learn_colours(found.histogram(index))
-        self._existence.detected(track, edges, found.samples[index], float(found.log_odds[index]))
+        if self._existence.begun(track, found, index):
+            self._confirm(track)
 
-    def _begin(self, edges: Array, label: str) -> Track:
-        """Begin a track in a box, with the next identity."""
+    def _begin(self, edges: Array) -> Track:
+        """Begin a track in a box."""
         parameters, period = self.parameters, self.frame_period
         drive = Drive(
             acceleration=parameters.motion.acceleration * period**2 / _VEHICLE_WIDTH,
@@ -315,30 +334,11 @@ class TrafficTracker:
         )
         # A horizon below the box would have it drive on the sky.
         horizon = min(self._row, float(edges[Edge.BOTTOM]) - 1)
-        self.last_identity += 1
+        self._serial += 1
         state = first_state(edges, parameters.detections.edge_noise, horizon, drive, self._size)
-        track = Track(self.last_identity, state, label=label)
+        track = Track(self._serial, state)
         self._tracks.append(track)
         return track
-
-    def _hold(self, normals: Array) -> None:
-        """Measure by their pixels the vehicles that were not detected."""
-        held = [
-            track
-            for track in self._tracks
-            if track.confirmed
-            and track.undetected > 0
-            and track.unseen < _HELD_WITHIN
-            and min(track.visible, track.inside) > _HELD_SHARE
-        ]
-        for track, hold in zip(
-            held, self._pixels.measure(held, self._colours, normals), strict=True
-        ):
-            if hold is not None:
-                track.unseen = 0.0
-                for edge in Edge:
-                    value, deviation = hold.edges[edge], hold.deviations[edge]
-                    track.state.measure(edge, float(value), float(deviation))
 
     def _drop_bad_states(self) -> None:
         """Drop vehicles of an unsound state: association with them would fail for all."""

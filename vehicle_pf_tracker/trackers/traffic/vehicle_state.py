@@ -174,6 +174,12 @@ class VehicleState:
         growth = -along * v
         return x * growth + across * v, (v - h / 2) * growth
 
+    @property
+    def speed_ratio(self) -> float:
+        """Distance of the velocity on the road from zero, in standard deviations."""
+        velocity = self.mean[ACROSS:]
+        return math.sqrt(velocity @ np.linalg.solve(self.covariance[ACROSS:, ACROSS:], velocity))
+
     def predict(self, elapsed: float) -> None:
         """Drive on for `elapsed` nominal periods."""
         x, v, w, h, across, along = self.mean.tolist()

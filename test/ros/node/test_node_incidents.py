@@ -1,0 +1,157 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What a node keeps of its last seconds, and what it says of a step that takes too long."""
+
+from __future__ import annotations
+
+import signal
+import time
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+
+from diagnostic_msgs.msg import DiagnosticArray
+from failing import failing
+from sensor_msgs.msg import Image
+from std_srvs.srv import Trigger
+from tracker_rig import (
+    HEIGHT,
+    QUEUE,
+    TARGET,
+    WIDTH,
+    Rig,
+    header,
+    on_target,
+    overrides,
+    road,
+    values_of,
+)
+from traffic_rig import WARM_UP, TrafficRig, boxes, lanes
+
+from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.offline.estimates import read_estimates
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder
+from vehicle_pf_tracker.trackers.base import BaseTracker
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_HOME", str(tmp_path))
+    return tmp_path / "vehicle_pf_tracker"
+
+
+def test_a_snapshot_can_be_run_again_bit_for_bit(bench, tmp_path):
+    rig = Rig(bench, on_target(incident_memory=100, seed=3))
+    answers = [values_of(rig.show_frame(frame, i)) for i, frame in enumerate(road(12))]
+    told = bench.call(Trigger, f"{rig.name}/snapshot", Trigger.Request())
+    assert told.success
+    found = told.message.removeprefix("written to ")
+    assert Recording(found).frame_count == 12
+    words = ["run", found, "--variant", "apf", "--params", f"{found}/parameters.yaml"]
+    assert main([*words, "-o", str(tmp_path / "out")]) == 0
+    rows = read_estimates(tmp_path / "out" / "estimates.csv")
+    assert [(repr(row.x), repr(row.y)) for row in rows] == [(a["x"], a["y"]) for a in answers]
+
+
+def test_a_session_that_starts_anew_writes_what_led_to_it(bench, folder, monkeypatch):
+    rig = Rig(bench, on_target(incident_memory=100))
+    rig.play(road(4))
+    monkeypatch.setattr(BaseTracker, "step", failing(BaseTracker.step, {0, 1}))
+    rig.play(road(4), 4)
+    (written,) = folder.glob("apf_tracker_*")
+    assert Recording(written).frame_count == 6
+
+
+def test_without_memory_there_is_no_such_service(bench):
+    rig = Rig(bench)
+    assert not [name for name, _ in rig.node.get_service_names_and_types() if "snapshot" in name]
+
+
+def test_what_is_kept_is_bounded_by_memory_and_by_time():
+    now, size = [0.0], 3 * WIDTH * HEIGHT
+    frame = road(1)[0]
+    kept = IncidentRecorder("node", 3 * size, lambda: now[0])
+    for index in range(10):
+        kept.keep(image_message(header(index), frame))
+    assert kept.count == 2  # a header is some bytes more
+    now[0] = 20.0
+    kept.keep(image_message(header(10), frame))
+    assert kept.count == 1
+
+
+def test_a_killed_node_goes_on_with_its_target(bench, start_node, folder):
+    camera = bench.publisher(Image, "image", QUEUE, count=0)
+    frame = road(1)[0]
+    names = ("x", "y", "width", "height")
+    target = [w for n, v in zip(names, TARGET, strict=True) for w in ("-p", f"target.{n}:={v}.0")]
+    keep = ["-p", "keep_target:=true"]
+    first = start_node("pf", *keep, *target)
+    first.wait_for_output("ready")
+    index = iter(range(10_000))
+
+    def shown():
+        camera.publish(image_message(header(next(index)), frame))
+        return list(folder.glob("*.json"))
+
+    bench.publish_until(shown, camera, image_message(header(0), frame))
+    first.send(signal.SIGKILL)
+    first.wait()
+    second = start_node("pf", *keep)
+    second.wait_for_output("going on with the target")
+    modes = bench.collect(DiagnosticArray, "/pf_tracker/mode")
+    bench.publish_until(
+        lambda: modes and modes[-1].status[0].message == "TRACKING", camera,
+        image_message(header(0), frame),
+    )  # fmt: skip
+    x = TARGET[0] + TARGET[2] / 2
+    assert float(values_of(modes[-1])["x"]) == pytest.approx(x, abs=4)
+
+
+def test_the_selection_of_a_killed_node_comes_back(bench, folder):
+    parameters = overrides(keep_target=True, detector__kind="none")
+    frames = lanes(WARM_UP + 14)[WARM_UP + 10 :]
+    for turn in ("first", "second"):
+        rig = TrafficRig(bench, parameters)
+        if turn == "first":
+            x, y, width, height = boxes(WARM_UP + 10)[0]
+            rig.node.stream.start_on(Box(*map(float, (x, y, width, height))))
+        rig.play(frames)
+        assert rig.vehicles.selected is not None, turn
+        bench.remove(rig.node)
+
+
+def test_a_step_that_takes_too_long_is_reported_with_where_it_was(bench, monkeypatch, capfd):
+    rig = Rig(bench, on_target())
+    frames = road(3)
+    rig.play(frames[:2])
+    monkeypatch.setattr(BaseTracker, "step", slow(BaseTracker.step))
+    rig.play(frames[2:], 2)
+    said = capfd.readouterr().err
+    assert "more than ten periods" in said
+    assert "in slow_step" in said
+
+
+def slow(step):
+    def slow_step(*given):
+        time.sleep(1.0)
+        return step(*given)
+
+    return slow_step

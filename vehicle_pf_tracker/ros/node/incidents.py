@@ -1,0 +1,154 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What a node keeps of its last seconds: a recording for a bug report, a target for a respawn."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from collections import deque
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import CompressedImage, Image
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.files import to_yaml
+from vehicle_pf_tracker.ros.messages import stamp_ns
+
+_LENGTH = 10.0
+"""Seconds that are kept: an occlusion and what led to it."""
+_TOPICS = {
+    Image: ("/camera/image_raw", "sensor_msgs/msg/Image"),
+    CompressedImage: ("/camera/image_raw/compressed", "sensor_msgs/msg/CompressedImage"),
+    DiagnosticArray: ("/{}/mode", "diagnostic_msgs/msg/DiagnosticArray"),
+}
+_SAVE_EVERY = 1.0
+_FRESH = 30.0
+"""Age in s up to which a target is taken up again: a respawn takes seconds, an operator longer."""
+
+
+def ros_folder() -> Path:
+    """Return our folder in that of ROS."""
+    return Path(os.environ.get("ROS_HOME") or Path.home() / ".ros", "vehicle_pf_tracker")
+
+
+class IncidentRecorder:
+    """Keeps the messages of the last seconds, and writes them where they are asked for.
+
+    Parameters
+    ----------
+    name : str
+        Name of the node.
+    most_bytes : int
+        Bytes of messages to keep at most.
+    clock : callable
+        Steady time in s.
+    """
+
+    def __init__(
+        self, name: str, most_bytes: int, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._name, self._most, self._clock = name, most_bytes, clock
+        self._kept: deque[tuple[float, int, type[Any], bytes]] = deque()
+        self._boxes: deque[tuple[int, Box]] = deque()
+        self._bytes = 0
+
+    @property
+    def count(self) -> int:
+        """Number of messages that are kept."""
+        return len(self._kept)
+
+    def keep(self, message: Image | CompressedImage | DiagnosticArray) -> None:
+        """Keep a message, and let go of old ones."""
+        now, data = self._clock(), serialize_message(message)
+        self._kept.append((now, stamp_ns(message.header), type(message), data))
+        self._bytes += len(data)
+        while self._kept and (self._bytes > self._most or now - self._kept[0][0] > _LENGTH):
+            self._bytes -= len(self._kept.popleft()[3])
+        first_ns = self._kept[0][1] if self._kept else 0
+        while self._boxes and self._boxes[0][0] < first_ns:
+            self._boxes.popleft()
+
+    def keep_box(self, stamp: int, box: Box) -> None:
+        """Keep where the target was, for a run to start on."""
+        self._boxes.append((stamp, box))
+
+    def write(self, configuration: Configuration) -> Path:
+        """Write a recording, with the parameters beside it, and return its folder.
+
+        Raises
+        ------
+        InputError
+            If nothing was kept, or it cannot be written.
+        """
+        if not self._kept:
+            raise InputError("no image has come yet")
+        try:  # the one thing of a node that needs more than a robot has from apt
+            recordings = import_module("vehicle_pf_tracker.recordings.writer")
+        except ModuleNotFoundError as error:
+            raise InputError(f"writing a recording needs {error.name} (pip)") from None
+        ros_folder().mkdir(parents=True, exist_ok=True)
+        folder = ros_folder() / f"{self._name}_{time.strftime('%Y%m%d_%H%M%S')}"
+        with recordings.RecordingWriter(folder, overwrite=True) as writer:
+            for _, stamp, kind, data in self._kept:
+                topic, type_name = _TOPICS[kind]
+                writer.write_serialized(topic.format(self._name), type_name, stamp, data)
+            if self._boxes:
+                writer.write_truth(Truth(*self._boxes[0], Occlusion.NONE))
+        text = to_yaml(configuration.specs(), configuration.to_mapping(), f"{self._name}'s.")
+        (folder / "parameters.yaml").write_text(text, encoding="utf-8")
+        return folder
+
+
+class KeptTarget:
+    """Box of a node's target in a file, from which a node that was killed takes it up again.
+
+    Parameters
+    ----------
+    name : str
+        Full name of the node.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._path = ros_folder() / f"{name.strip('/').replace('/', '.')}.target.json"
+        self._saved = 0.0
+
+    def save(self, box: Box | None) -> None:
+        """Write the box, once a second at most."""
+        if box is None or time.monotonic() - self._saved < _SAVE_EVERY:
+            return
+        self._saved = time.monotonic()
+        partial = self._path.with_suffix(".partial")
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        partial.write_text(json.dumps([box.x, box.y, box.width, box.height]), encoding="utf-8")
+        partial.replace(self._path)
+
+    def load(self) -> Box | None:
+        """Return the box that was written a moment ago; None where there is none."""
+        try:
+            if time.time() - self._path.stat().st_mtime > _FRESH:
+                return None
+            return Box(*map(float, json.loads(self._path.read_text(encoding="utf-8"))))
+        except (OSError, ValueError, TypeError):
+            return None

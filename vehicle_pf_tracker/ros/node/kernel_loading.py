@@ -1,0 +1,81 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Loading of kernels in a thread of its own, as it may take a minute."""
+
+from __future__ import annotations
+
+import threading
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
+from vehicle_pf_tracker.ros.messages import NOT_READY
+
+_THREAD = "loading kernels"
+_REASON = f"{NOT_READY}; the first start compiles them, for up to a minute"
+
+
+class KernelLoading:
+    """Loads kernels in a thread of its own where that takes long, else at once.
+
+    Numba leaves the interpreter to others while LLVM works, and most of the time goes there: the
+    node answers its services and obeys signals meanwhile.
+
+    Parameters
+    ----------
+    choice : str
+        As for `load_kernels`.
+
+    Raises
+    ------
+    InputError
+        If numba's kernels are asked for where numba is not installed.
+    """
+
+    def __init__(self, choice: str) -> None:
+        self.choice = choice
+        self._problem = ""
+        self._thread: threading.Thread | None = None
+        if takes_long(choice):
+            self._thread = threading.Thread(target=self._load, name=_THREAD, daemon=True)
+            self._thread.start()
+        else:
+            load_kernels(choice)
+
+    @property
+    def is_done(self) -> bool:
+        """True once the kernels are loaded."""
+        return not self._problem and not self._is_running
+
+    @property
+    def reason(self) -> str:
+        """Reason why there are no kernels (yet), in one sentence."""
+        return self._problem or _REASON
+
+    @property
+    def _is_running(self) -> bool:
+        return self._thread is not None and self._thread.is_alive()
+
+    def _load(self) -> None:
+        try:
+            load_kernels(self.choice)
+        except InputError as error:
+            self._problem = str(error)
+        except Exception as error:  # as numba raises it; the node lives and says so
+            self._problem = f"the kernels cannot be loaded: {type(error).__name__}: {error}"
+
+
+def is_loading() -> bool:
+    """Return whether a thread of this process still loads kernels; it cannot be ended."""
+    return any(thread.name == _THREAD for thread in threading.enumerate())
