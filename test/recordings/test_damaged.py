@@ -17,6 +17,7 @@
 import struct
 
 import pytest
+import zstandard
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType, IndexType
@@ -24,6 +25,7 @@ from recording_samples import BareMcap, frame_of, stamp_of, truth_of
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import messages, topics
+from vehicle_pf_tracker.recordings.mcap_index import MAGIC, read_index
 from vehicle_pf_tracker.recordings.reader import Recording
 
 COUNT = 12
@@ -150,6 +152,18 @@ def test_an_absurd_chunk_size_is_not_believed(wholes, tmp_path):
     recording = Recording(path)
     assert len(stamps(recording)) < COUNT
     assert "claims to hold" in recording.notices[0]
+
+
+def test_a_chunk_of_zeros_ends_with_its_first_record(tmp_path):
+    """Each nine of its 250 million bytes were taken for an empty record before it was refused."""
+    packed = zstandard.ZstdCompressor().compress(bytes(250 * 10**6))
+    head = struct.pack("<QQQII4sQ", 0, 10, 250 * 10**6, 0, 4, b"zstd", len(packed))
+    path = tmp_path / "zeros.mcap"
+    records = (0x06, head + packed), (0x0F, bytes(4)), (0x02, bytes(20))
+    parts = [struct.pack("<BQ", opcode, len(body)) + body for opcode, body in records]
+    path.write_bytes(MAGIC + b"".join(parts) + MAGIC)
+    index = read_index(path)
+    assert "it holds a record of kind 0" in index.damages[0]
 
 
 @pytest.mark.parametrize("layout", [1, 2])
