@@ -29,6 +29,7 @@ from vehicle_pf_tracker.recordings.mcap_index import MAGIC, read_index
 from vehicle_pf_tracker.recordings.reader import Recording
 
 COUNT = 12
+ZEROS = zstandard.ZstdCompressor().compress(bytes(250 * 10**6))
 COMPRESSIONS = list(CompressionType)
 LAYOUTS = [
     *({"compression": compression, "chunk_size": 8000} for compression in COMPRESSIONS),
@@ -154,16 +155,30 @@ def test_an_absurd_chunk_size_is_not_believed(wholes, tmp_path):
     assert "claims to hold" in recording.notices[0]
 
 
-def test_a_chunk_of_zeros_ends_with_its_first_record(tmp_path):
-    """Each nine of its 250 million bytes were taken for an empty record before it was refused."""
-    packed = zstandard.ZstdCompressor().compress(bytes(250 * 10**6))
-    head = struct.pack("<QQQII4sQ", 0, 10, 250 * 10**6, 0, 4, b"zstd", len(packed))
-    path = tmp_path / "zeros.mcap"
-    records = (0x06, head + packed), (0x0F, bytes(4)), (0x02, bytes(20))
+def chunk(compression, records, size=None):
+    """Content of a chunk without a checksum."""
+    head = struct.pack("<QQQII", 0, 10, len(records) if size is None else size, 0, len(compression))
+    return head + compression + struct.pack("<Q", len(records)) + records
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"no head", "its head is broken"),
+        (chunk(b"rar", b"records"), "its compression 'rar' is unknown"),
+        (chunk(b"zstd", b"rubbish"), "it cannot be decompressed"),
+        (chunk(b"", b"\5\3\0\0\0\0\0\0\0abc"), "a message is too short"),
+        # Each nine of its 250 million bytes were taken for an empty record.
+        (chunk(b"zstd", ZEROS, 250 * 10**6), "it holds a record of kind 0"),
+    ],
+)
+def test_a_chunk_that_cannot_be_unpacked_says_why(tmp_path, content, said):
+    path = tmp_path / "damaged.mcap"
+    records = (0x06, content), (0x0F, bytes(4)), (0x02, bytes(20))
     parts = [struct.pack("<BQ", opcode, len(body)) + body for opcode, body in records]
     path.write_bytes(MAGIC + b"".join(parts) + MAGIC)
-    index = read_index(path)
-    assert "it holds a record of kind 0" in index.damages[0]
+    (damage,) = read_index(path).damages
+    assert said in damage
 
 
 @pytest.mark.parametrize("layout", [1, 2])
