@@ -49,7 +49,6 @@ CHANGES: Mapping[str, Mapping[str, Value]] = {
     "no dated filters": {"filter.memory": 0},
     "no points": {"visibility.points_slope": 0.0},
     "no partial state": {"visibility.partial_slope": 0.0},
-    "no second look": {"visibility.second_look": False},
     "no outlines in turns": {"motion.turns": False},
     "first size kept": {"size.step": 0.0},
     "first aspect kept": {"size.aspect_gain": 0.0},

@@ -26,6 +26,7 @@ import os
 import re
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.console import PROGRAM
@@ -64,10 +65,10 @@ def first_page() -> str:
 
 def commands() -> str:
     """Return what every verb says with ``--help``."""
-    os.environ["COLUMNS"] = "100"
+    wide = mock.patch.dict(os.environ, COLUMNS="100")
     parts = ["# Commands", f"What `{PROGRAM} VERB --help` prints."]
     for verb in VERBS:
-        with contextlib.redirect_stdout(io.StringIO()) as printed:
+        with wide, contextlib.redirect_stdout(io.StringIO()) as printed:
             main([verb, "--help"])
         parts += [f"## {verb}", f"```text\n{printed.getvalue().strip()}\n```"]
     return "\n\n".join(parts) + "\n"

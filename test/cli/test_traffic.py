@@ -31,7 +31,6 @@ from vehicle_pf_tracker.cli import traffic
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 COUNT = 20
@@ -333,12 +332,11 @@ def test_the_lines_of_the_page_are_counted_at(run, tmp_path):
     assert [(row["place"], row["direction"], row["id"]) for row in counts] == [("exit", "in", "2")]
 
 
-def test_the_example_of_the_page_runs(monkeypatch, capsys):
-    monkeypatch.setattr("vehicle_pf_tracker.trackers.traffic.tracker.TrafficTracker", Follower)
-    frame = np.zeros((240, 320, 3), np.uint8)
-    camera = [
-        (index * 40_000_000, frame, Detections.make([[60, 5.0 * index, 30, 20]]))
-        for index in range(40)
-    ]
+def test_the_example_of_the_page_runs(capsys):
+    rng = np.random.default_rng(0)
+    frame = rng.integers(90, 120, (240, 320, 3), np.uint8)
+    camera = [(frame, [[60, 3.0 * index, 30, 20]], [0.9], ["car"]) for index in range(40)]
     exec(compile(block("py"), "traffic.md", "exec"), {"camera": camera})
-    assert capsys.readouterr().out == "2 in car\n"
+    identity, box, mode, _, label = capsys.readouterr().out.splitlines()[-1].split()
+    assert (identity, mode, label) == ("1", "TRACKING", "car")
+    assert list(map(float, box.split(","))) == pytest.approx([60, 117, 30, 20], abs=2)

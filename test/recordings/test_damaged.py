@@ -17,6 +17,7 @@
 import struct
 
 import pytest
+import zstandard
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType, IndexType
@@ -24,9 +25,11 @@ from recording_samples import BareMcap, frame_of, stamp_of, truth_of
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import messages, topics
+from vehicle_pf_tracker.recordings.mcap_index import MAGIC, read_index
 from vehicle_pf_tracker.recordings.reader import Recording
 
 COUNT = 12
+ZEROS = zstandard.ZstdCompressor().compress(bytes(250 * 10**6))
 COMPRESSIONS = list(CompressionType)
 LAYOUTS = [
     *({"compression": compression, "chunk_size": 8000} for compression in COMPRESSIONS),
@@ -150,6 +153,32 @@ def test_an_absurd_chunk_size_is_not_believed(wholes, tmp_path):
     recording = Recording(path)
     assert len(stamps(recording)) < COUNT
     assert "claims to hold" in recording.notices[0]
+
+
+def chunk(compression, records, size=None):
+    """Content of a chunk without a checksum."""
+    head = struct.pack("<QQQII", 0, 10, len(records) if size is None else size, 0, len(compression))
+    return head + compression + struct.pack("<Q", len(records)) + records
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"no head", "its head is broken"),
+        (chunk(b"rar", b"records"), "its compression 'rar' is unknown"),
+        (chunk(b"zstd", b"rubbish"), "it cannot be decompressed"),
+        (chunk(b"", b"\5\3\0\0\0\0\0\0\0abc"), "a message is too short"),
+        # Each nine of its 250 million bytes were taken for an empty record.
+        (chunk(b"zstd", ZEROS, 250 * 10**6), "it holds a record of kind 0"),
+    ],
+)
+def test_a_chunk_that_cannot_be_unpacked_says_why(tmp_path, content, said):
+    path = tmp_path / "damaged.mcap"
+    records = (0x06, content), (0x0F, bytes(4)), (0x02, bytes(20))
+    parts = [struct.pack("<BQ", opcode, len(body)) + body for opcode, body in records]
+    path.write_bytes(MAGIC + b"".join(parts) + MAGIC)
+    (damage,) = read_index(path).damages
+    assert said in damage
 
 
 @pytest.mark.parametrize("layout", [1, 2])

@@ -37,6 +37,10 @@ PERIOD_NS = 40_000_000
 BEGIN_NS = 5_000_000_000
 COUNT = 10
 IMAGE_TOPIC = "/camera/image_raw"
+COMMAND = (
+    "-c",
+    "import sys; from vehicle_pf_tracker.cli.main import bag_replay; sys.exit(bag_replay())",
+)
 
 
 def stamps(count=COUNT):

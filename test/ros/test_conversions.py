@@ -51,7 +51,6 @@ from vehicle_pf_tracker.ros.node.input_messages import (
     box_of_point,
     box_of_polygon,
     box_of_region,
-    check_frame_id,
 )
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
@@ -186,17 +185,8 @@ def test_a_detection_names_a_target():
 
 
 @pytest.mark.parametrize(
-    ("frame_id", "image_frame"),
-    [("", "camera"), ("camera", "camera"), ("camera_px", "camera"), ("map", None)],
-)
-def test_any_frame_will_do_before_the_first_image_and_then_the_images(frame_id, image_frame):
-    check_frame_id("~/set_box", Header(frame_id=frame_id), image_frame, "_px")
-
-
-@pytest.mark.parametrize(
     "make",
     [
-        lambda: check_frame_id("~/set_box", Header(frame_id="map"), "camera", ""),
         lambda: box_of_polygon(polygon((1, 1))),
         lambda: box_of_polygon(polygon((1, math.nan), (2, 2))),
         lambda: box_of_point(point(-math.inf, 1), Box(0, 0, 2, 2)),

@@ -126,6 +126,11 @@ class Rig:
             one.get_subscription_count() for one in self.node.publishers if one.topic_name == topic
         )
 
+    def wait_until_heard(self):
+        """Wait until the node, active again, hears the camera and is heard."""
+        self.bench.wait_until_matched(self.camera)
+        self.bench.wait_for(lambda: self.listeners("mode") == 1)
+
     def show(self, message) -> DiagnosticArray:
         """Publish one image and return its one answer."""
         before = len(self.modes)

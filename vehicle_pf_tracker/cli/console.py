@@ -23,8 +23,6 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, TextIO, TypeAlias
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from vehicle_pf_tracker.evaluation.tables import Comparison
     from vehicle_pf_tracker.offline.processes import OnProgress
     from vehicle_pf_tracker.offline.processes import Progress as WorkProgress
@@ -64,7 +62,11 @@ def show(table: Comparison) -> None:
 
 
 def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: str = "") -> None:
-    """Print cells as a table on stdout; nothing in them is markup."""
+    """Print cells as a table on stdout; nothing in them is markup.
+
+    It is not wrapped where that is not a terminal.
+    """
+    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
@@ -73,13 +75,6 @@ def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: st
         table.add_column(Text(heading), justify="right" if number else "left")
     for row in rows:
         table.add_row(*map(Text, row))
-    print_table(table)
-
-
-def print_table(table: Table) -> None:
-    """Print a table on stdout; not wrapped where that is not a terminal."""
-    from rich.console import Console
-
     console = Console()
     if not console.is_terminal:
         console = Console(width=_WIDE)

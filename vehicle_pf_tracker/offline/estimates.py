@@ -151,7 +151,7 @@ def _write_table(
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)
-    writer.writerows(map(_text, row) for row in rows)
+    writer.writerows(rows)  # numbers with every digit, None as an empty cell
     write_text(path, text.getvalue())
 
 
@@ -190,12 +190,6 @@ def _number(name: str, value: float | str) -> float | None:
         return float(value)
     except ValueError:
         raise InputError(f"{name} is not a number: {value!r}") from None
-
-
-def _text(value: float | str | None) -> str:
-    if value is None:
-        return ""
-    return value if isinstance(value, str) else repr(value)
 
 
 _MOST_SPANS = 12

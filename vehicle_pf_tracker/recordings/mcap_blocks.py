@@ -37,8 +37,12 @@ RECORD_HEAD = 9
 
 _MESSAGE_HEAD = struct.Struct("<HIQQ")
 _CHUNK_HEAD = struct.Struct("<QQQII")
-_MAX_CHUNK = 2**30
-"""Bytes that a chunk is believed to hold: a thousand times what recorders make."""
+_MAX_CHUNK = 2**28
+"""Bytes that a chunk is believed to hold: an image of 30 megapixels, 16 bits and three colours has
+180 MB, and recorders close a chunk after about 1 MB."""
+_IN_CHUNKS = {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE}
+_FOREIGN = 0x80
+"""First opcode of records that the MCAP format leaves to applications."""
 
 
 class DamageError(Exception):
@@ -118,6 +122,8 @@ def block_records(opcode: int, content: memoryview) -> Iterator[tuple[int, memor
     while position + RECORD_HEAD <= len(records):
         opcode, length = struct.unpack_from("<BQ", records, position)
         position += RECORD_HEAD
+        if opcode not in _IN_CHUNKS and opcode < _FOREIGN:
+            raise DamageError(f"it holds a record of kind {opcode}")  # a gigabyte of zeros, too
         if position + length > len(records):
             break
         yield opcode, records[position : position + length]

@@ -96,30 +96,18 @@ def test_an_image_taken_just_before_is_left_alone(bench, manager, transitions):
     assert len(rig.modes) == 3
 
 
-def test_cleanup_forgets_the_track(bench, manager):
+def test_cleanup_forgets_the_track_and_parameters_set_meanwhile_count(bench, manager):
     rig = Rig(bench, on_target())
     rig.play(road(3))
     for transition in ("deactivate", "cleanup"):
         assert manager.change(transition)
     bench.wait_for(lambda: rig.node.count_publishers("/apf_tracker/mode") == 0)
-    for transition in ("configure", "activate"):
-        assert manager.change(transition)
-    bench.wait_until_matched(rig.camera)
-    bench.wait_for(lambda: rig.listeners("mode") == 1)
-    answer = rig.show_frame(road(1)[0], 0)
-    assert values_of(answer)["regime"] == "start"
-
-
-def test_parameters_set_while_unconfigured_count(bench, manager):
-    rig = Rig(bench, on_target())
-    for transition in ("deactivate", "cleanup"):
-        assert manager.change(transition)
     rig.node.set_parameters_atomically(overrides(num_particles=33))
     for transition in ("configure", "activate"):
         assert manager.change(transition)
-    bench.wait_until_matched(rig.camera)
-    bench.wait_for(lambda: rig.listeners("mode") == 1)
-    assert values_of(rig.show_frame(road(1)[0], 0))["num_particles"] == "33"
+    rig.wait_until_heard()
+    values = values_of(rig.show_frame(road(1)[0], 0))
+    assert (values["regime"], values["num_particles"]) == ("start", "33")
 
 
 @pytest.mark.parametrize("transition", ["configure", "activate", "cleanup", "nonsense", ""])
@@ -139,8 +127,7 @@ def test_a_failing_transition_says_why_and_the_node_lives(bench, manager, monkey
     assert manager.state == "unconfigured"
     assert manager.change("configure")
     assert manager.change("activate")
-    bench.wait_until_matched(rig.camera)
-    bench.wait_for(lambda: rig.listeners("mode") == 1)
+    rig.wait_until_heard()
     assert rig.show_frame(road(1)[0], 0).status[0].message == "WAITING"
 
 
@@ -181,8 +168,7 @@ def test_many_transitions_at_any_moment(bench, images):
     while state_label(rig.node) != "active":
         state = state_label(rig.node)
         (rig.node.trigger_configure if state == "unconfigured" else rig.node.trigger_activate)()
-    bench.wait_until_matched(rig.camera)
-    bench.wait_for(lambda: rig.listeners("mode") == 1)
+    rig.wait_until_heard()
     rig.camera.publish(image_message(header(1000), frame))
     bench.wait_for(lambda: rig.modes and rig.modes[-1].header == header(1000))
     assert rig.node.count_subscribers("/image") == 1

@@ -68,13 +68,6 @@ def test_a_hangup_that_nohup_ignores_does_not_end_the_node(start_process, bench)
     assert state.current_state.label == "active"
 
 
-def test_the_log_names_the_kernels_when_it_is_ready(start_node):
-    node = start_node("pf", "-p", "kernels:=opencv")
-    node.wait_for_output("opencv kernels")
-    assert "ready: " in node.output
-    assert "loading kernels" not in node.output
-
-
 def test_a_second_ctrl_c_does_not_reach_the_clean_up(start_process):
     code = (
         "import os, signal, sys\n"
@@ -234,9 +227,3 @@ def test_a_node_has_room_for_its_overlays(start_node):
     node = start_node("apf")
     node.wait_for_output("ready")
     assert max(segments(node)) >= 4 * 1280 * 720 * 3
-
-
-def test_a_users_choice_of_transport_is_left_alone(start_node):
-    node = start_node("apf", FASTDDS_BUILTIN_TRANSPORTS="DEFAULT")
-    node.wait_for_output("ready")
-    assert max(segments(node)) < 2**20

@@ -21,7 +21,7 @@ import pytest
 pytest.importorskip("rclpy")
 
 import cv2
-from replay_rig import IMAGE_TOPIC, StubTracker, record, spinning
+from replay_rig import COMMAND, IMAGE_TOPIC, StubTracker, record, spinning
 from tracker_rig import FIRST_NS, PERIOD_NS, SPEED, TARGET, road
 
 from vehicle_pf_tracker.core.box import Box
@@ -35,10 +35,6 @@ from vehicle_pf_tracker.trackers.registry import find_variant
 
 pytestmark = pytest.mark.ros
 
-COMMAND = (
-    "-c",
-    "import sys; from vehicle_pf_tracker.cli.main import bag_replay; sys.exit(bag_replay())",
-)
 FRAMES = 40
 
 

@@ -27,8 +27,8 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from replay_rig import COMMAND
 from sensor_msgs.msg import Image
-from test_traffic_lockstep import COMMAND
 from tracker_rig import FIRST_NS, PERIOD_NS, QUEUE, header, overrides, values_of
 from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, hear_notices, lanes
 

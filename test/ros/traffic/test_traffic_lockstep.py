@@ -27,7 +27,7 @@ pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 from diagnostic_msgs.msg import DiagnosticArray
 from lifecycle_msgs.srv import GetState
 from rclpy.qos import QoSProfile
-from replay_rig import IMAGE_TOPIC
+from replay_rig import COMMAND, IMAGE_TOPIC
 from tracker_rig import FIRST_NS, PERIOD_NS
 from traffic_rig import NODE, WARM_UP, boxes, lanes
 
@@ -38,10 +38,6 @@ from vehicle_pf_tracker.ros.messages import stamp_ns
 
 pytestmark = pytest.mark.ros
 
-COMMAND = (
-    "-c",
-    "import sys; from vehicle_pf_tracker.cli.main import bag_replay; sys.exit(bag_replay())",
-)
 FRAMES = WARM_UP + 30
 COLUMNS = ("id", "x", "y", "width", "height", "mode", "confidence")
 

@@ -222,10 +222,3 @@ def test_the_first_and_the_latest_filters_are_kept(count, kept):
         appearance.usual_response = 1.0 + number
         appearance.remember(count)
     assert [each.usual_response - 1 for each in appearance.dated] == kept
-
-
-def test_a_twin_remembers_by_itself():
-    appearance = turned_into_another()
-    twin = appearance.twin()
-    twin.remember(3)
-    assert (len(appearance.dated), len(twin.dated)) == (1, 2)

@@ -94,7 +94,6 @@ def test_reconfigured_while_hidden_it_still_recovers():
         {"filter.colour": False}, {"motion.camera": False}, {"motion.perspective": False},
         {"size.step": 0.0}, {"size.aspect_gain": 0.0}, {"size.points_gain": 0.0},
         {"visibility.points_slope": 0.0}, {"num_particles": 1}, {"motion.turns": False},
-        {"visibility.second_look": False},
     ],
     ids=str,
 )  # fmt: skip
@@ -133,15 +132,6 @@ def test_follows_a_turn_by_the_outline_before_a_standing_camera():
         pairs = run("turn", seed)
         assert max(distance(*pair) for pair in pairs) < 0.4
         assert np.mean([e.mode is Mode.TRACKING for e, _ in pairs]) > 0.9
-
-
-def test_relearning_just_after_a_return_discards_what_was_learnt_before():
-    street, tracker = Street(speed=2.0, hidden=(20, 30), seed=0), fusion()
-    follow(tracker, street, range(36))
-    tracker.reconfigure(from_mapping(FusionParameters, {"filter.colour": False}))
-    for time in range(36, 44):
-        estimate = tracker.step(street.frame(time))
-    assert error(estimate, street, 43) < 4
 
 
 def fast_start(frames):

@@ -22,7 +22,6 @@ from typing import Any
 
 from geometry_msgs.msg import PointStamped, PolygonStamped, Transform
 from sensor_msgs.msg import CameraInfo, RegionOfInterest
-from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -32,32 +31,6 @@ _COEFFICIENTS = {"rational_polynomial": 8, "equidistant": 4}
 """Numbers of coefficients of a model; what a driver writes after them must be zero."""
 _UPRIGHT = 1e-3
 """Angle of a box that counts as upright, rad: over 1000 px it moves a corner by a pixel."""
-
-
-def check_frame_id(topic: str, header: Header, image_frame: str | None, suffix: str) -> None:
-    """Refuse a position in another frame than that of the images, or of the node's own outputs.
-
-    Parameters
-    ----------
-    topic : str
-        Topic that it came on.
-    header : Header
-        Its header.
-    image_frame : str or None
-        The images' `frame_id`; None if none has come yet.
-    suffix : str
-        Suffix of the `frame_id` in the node's own outputs, accepted too.
-
-    Raises
-    ------
-    InputError
-        If it is.
-    """
-    if image_frame is not None and header.frame_id not in ("", image_frame, image_frame + suffix):
-        raise InputError(
-            f"{topic} got a target in the frame {header.frame_id!r}; give it in pixels of the "
-            f"image, with the image's frame_id {image_frame!r} or none"
-        )
 
 
 def finite(topic: str, *numbers: float) -> tuple[float, ...]:

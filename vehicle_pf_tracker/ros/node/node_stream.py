@@ -37,7 +37,6 @@ from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.image_input import read_image
 from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder, KeptTarget
-from vehicle_pf_tracker.ros.node.input_messages import check_frame_id
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
 
@@ -191,8 +190,13 @@ class NodeStream(ABC):
         InputError
             If it is.
         """
+        own, found = self.frame_id, header.frame_id
         suffix = self._configuration.node.output_frame_suffix
-        check_frame_id(topic, header, self.frame_id, suffix)
+        if own is not None and found not in ("", own, own + suffix):
+            raise InputError(
+                f"{topic} got a target in the frame {found!r}; give it in pixels of the image, "
+                f"with the image's frame_id {own!r} or none"
+            )
 
     @abstractmethod
     def feed(self, image: Frame | CodedImage, stamp_ns: int, extra: Any) -> None:

@@ -19,31 +19,109 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
-from sensor_msgs.msg import CompressedImage, Image
+from sensor_msgs.msg import CompressedImage, Image, PointCloud2
 from std_msgs.msg import Header
+from visualization_msgs.msg import MarkerArray
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.compressed_image import CodedImage
-from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
+from vehicle_pf_tracker.offline.drawing import Colour, draw_box, line_width
+from vehicle_pf_tracker.offline.traffic_drawing import annotated
+from vehicle_pf_tracker.parameters.configuration import Configuration, NodeParameters
+from vehicle_pf_tracker.ros.messages import WAITING, detections_type, image_message, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
-from vehicle_pf_tracker.ros.node.outputs import in_pixels
-from vehicle_pf_tracker.ros.traffic.messages import read_serialized_detections, read_stamp, scalars
-from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
+from vehicle_pf_tracker.ros.node.outputs import RELIABLE, Outputs, in_pixels
+from vehicle_pf_tracker.ros.traffic.messages import (
+    counts_message,
+    detections_message,
+    markers_message,
+    modes_message,
+    read_serialized_detections,
+    read_stamp,
+    scalars,
+    tracks_message,
+)
 from vehicle_pf_tracker.ros.traffic.rates import Rates, TimedDetector
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
+
+
+_SELECTED: Colour = (255, 255, 255)
+
+
+class TrafficOutputs(Outputs):
+    """Everything that a configured node of many vehicles publishes.
+
+    Parameters
+    ----------
+    node : LifecycleNode
+        Its publishers are silent unless it is active.
+    hardware_id : str
+        Topic of the images, for the statuses.
+    """
+
+    def __init__(self, node: LifecycleNode, hardware_id: str) -> None:
+        more = {
+            "tracks": (PointCloud2, RELIABLE),
+            "modes": (DiagnosticArray, RELIABLE),
+            "counts": (DiagnosticArray, RELIABLE),
+            "detections": (detections_type(), RELIABLE),
+            "markers": (MarkerArray, RELIABLE),
+        }
+        super().__init__(node, hardware_id, more)
+
+    def publish_vehicles(
+        self,
+        header: Header,
+        estimates: Sequence[TrackEstimate],
+        own: NodeParameters,
+        frame_period: float,
+    ) -> None:
+        """Publish all vehicles; `frame_period` in s makes px/frame to px/s."""
+        name, there = self.node_name, in_pixels(header, own)
+        self.send("tracks", tracks_message, there, estimates, frame_period)
+        self.send("modes", modes_message, header, name, self.hardware_id, estimates)
+        self.send("detections", detections_message, there, estimates)
+        self.send("markers", markers_message, there, estimates)
+
+    def publish_counts(
+        self, header: Header, counter: Counter, latest: Mapping[str, Crossing]
+    ) -> None:
+        """Publish what was counted, and the last crossing of each place."""
+        name = self.node_name
+        self.send("counts", counts_message, header, name, self.hardware_id, counter, latest)
+
+    def publish_overlay(
+        self,
+        header: Header,
+        frame: Frame,
+        estimates: Sequence[TrackEstimate],
+        counter: Counter | None,
+        selected: TrackEstimate | None,
+    ) -> None:
+        """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
+        if not self.is_heard("overlay"):
+            return
+        if selected is not None:
+            frame = np.array(frame, order="C")
+            draw_box(frame, selected.box, _SELECTED, 3 * line_width(frame))
+        confirmed = sum(one.mode in CONFIRMED for one in estimates)
+        picture = annotated(frame, f"{confirmed} vehicles", estimates, counter)
+        self.send("overlay", image_message, header, picture)
 
 
 class TrafficStream(NodeStream):

@@ -30,8 +30,7 @@ from vehicle_pf_tracker.ros.messages import detections_type
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.input_messages import box_of_region, finite
-from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
-from vehicle_pf_tracker.ros.traffic.stream import TrafficStream
+from vehicle_pf_tracker.ros.traffic.stream import TrafficOutputs, TrafficStream
 from vehicle_pf_tracker.ros.traffic.vehicles import plane_of
 from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
 from vehicle_pf_tracker.trackers.registry import TRAFFIC

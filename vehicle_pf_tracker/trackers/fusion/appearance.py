@@ -19,7 +19,6 @@ Width and height of the box follow the response to sizes a step larger and small
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -178,12 +177,6 @@ class Appearance:
     @kernels.setter
     def kernels(self, kernels: Kernels) -> None:
         self._kernels = self._filter.kernels = kernels
-
-    def twin(self) -> Appearance:
-        """Copy with what is learnt up to now; the two learn separately from then on."""
-        twin = copy.copy(self)
-        twin._filter = copy.copy(self._filter)
-        return twin
 
     def patch(self, frame: Frame, position: Array, size: Array, *, wide: bool = False) -> Patch:
         """Cut the surroundings of a box of this centre and size (px) out of a frame."""

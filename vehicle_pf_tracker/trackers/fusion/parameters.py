@@ -160,9 +160,6 @@ class VisibilityParameters:
         unit="per frame",
         tuned=(0.01, 0.2),
     )
-    second_look: bool = parameter(
-        True, "Off: a return is final, though the vehicle may appear at a likelier place after."
-    )
     partial_slope: float = parameter(
         8.0,
         "Higher: a vehicle is taken as partly hidden sooner; 0: never, and walls are learnt.",

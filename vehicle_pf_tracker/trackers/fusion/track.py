@@ -30,14 +30,14 @@ from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View, searched_size
-from vehicle_pf_tracker.trackers.fusion.departure import Departure
+from vehicle_pf_tracker.trackers.fusion.departure import Departure, Strangers
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, FASTEST_GROWTH, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, Sightings
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.turning import Turned, TurningBranch
-from vehicle_pf_tracker.trackers.fusion.visibility import Wholeness
+from vehicle_pf_tracker.trackers.fusion.visibility import Visibility, Wholeness
 
 _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
@@ -101,7 +101,6 @@ class Track(ParticleTracker[FusionParameters]):
     """Position, size, motion and appearance; the algorithm is in `tracker.py`."""
 
     _particles: Hypotheses
-    _departure: Departure | None
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `BaseTracker.start`."""
@@ -109,8 +108,13 @@ class Track(ParticleTracker[FusionParameters]):
         self._position = np.array(box.centre, float)
         self._velocity = np.zeros(2)
         self._frames = self._searches = self._next_dated = 0
-        self._visible, self._calm = True, False
+        self._visibility, self._calm = Visibility.VISIBLE, False
+        self._set_off = False
+        self._turned: Turned | None = None
+        self._departure: Departure | None = None
+        self._largest_hidden = self._size
         self._growth = self._grown = 0.0
+        self._strangers = Strangers()
         self._wholeness = Wholeness()
         self._sightings = Sightings()
         self._points = SurfacePoints()
@@ -179,7 +183,7 @@ class Track(ParticleTracker[FusionParameters]):
 
     def _is_calm(self, response: float) -> bool:
         """Test whether a vehicle is surely in view, and looks and moves as it did."""
-        known = self._visible and self._surface.tells and self._frames > _SETTLED
+        known = self._visibility.is_seen and self._surface.tells and self._frames > _SETTLED
         return known and response > _CALM_RESPONSE and self._surface.share > _CALM_SHARE
 
     @property
@@ -192,29 +196,7 @@ class Track(ParticleTracker[FusionParameters]):
         """True in frames in which flow is judged and appearance learnt: the others, if calm."""
         return not self._calm or self._frames % 2 == 0
 
-    # A sighting
-
-    def _take_sighting(self, frame: Frame, seen: Observation, elapsed: float) -> None:
-        """Follow position, velocity and, of a vehicle seen whole, size to the peak, and learn."""
-        self._judge_wholeness(frame, elapsed, again=seen.again)
-        self._gather(frame, seen.position, elapsed, again=seen.again)
-        surely = self._wholeness.is_likely and self._particles.probability_visible > _STRONG
-        if self._measures_size and surely and seen.response > _WEAK_RESPONSE:
-            self._follow_size(frame, again=seen.again)
-        self._sightings.add(self._position, self._size, seen.response)
-        if seen.again:
-            self._points.restart()
-        if surely and seen.response > CLEAR_RESPONSE:
-            self._surface.learn_usual()
-        if self._measures_size and self.parameters.visibility.points_slope:
-            whole = self._wholeness.is_likely
-            self._points.renew(self._position, self._size, whole=whole)
-        self._learn_appearance(frame, seen.view, seen.response)
-        if self._calm and self._frames >= self._next_dated:
-            self._appearance.remember(self.parameters.filter.memory)
-            self._next_dated = self._frames + _DATED_EVERY
-        if seen.again:  # what was kept shows an occluder; until now its share bounds the learning
-            self._surface.restart()
+    # Judge
 
     def _judge_wholeness(self, frame: Frame, elapsed: float, *, again: bool) -> None:
         """Judge whether all of the vehicle is seen; predict the size of one that is partly hidden.
@@ -234,6 +216,20 @@ class Track(ParticleTracker[FusionParameters]):
         bound = math.log(_LARGEST_PARTIAL)
         self._grown = min(max(before + self._growth * elapsed, -bound), bound)
         self._size = self._bounded(frame, self._size * math.exp(self._grown - before))
+
+    # Follow
+
+    def _follow_sighting(self, frame: Frame, seen: Observation, elapsed: float) -> None:
+        """Take position, velocity and, of a vehicle seen whole, size from the peak."""
+        self._gather(frame, seen.position, elapsed, again=seen.again)
+        if self._measures_size and self._is_sure and seen.response > _WEAK_RESPONSE:
+            self._follow_size(frame, again=seen.again)
+        self._sightings.add(self._position, self._size, seen.response)
+
+    @property
+    def _is_sure(self) -> bool:
+        """True of a vehicle that is surely visible, and as a whole."""
+        return self._wholeness.is_likely and self._particles.probability_visible > _STRONG
 
     def _gather(self, frame: Frame, position: Array, elapsed: float, *, again: bool) -> None:
         """Centre the hypotheses on the sighting; their velocities take on the displacement."""
@@ -271,6 +267,48 @@ class Track(ParticleTracker[FusionParameters]):
             size = size * np.exp(options.points_gain * self._points.stretch)
         self._size = self._bounded(frame, searched_size(size, self._searches, peak, options))
 
+    def _follow_outline(self, frame: Frame, turned: Turned) -> None:
+        """Take position, size and velocity from the outline of a vehicle that turns."""
+        self._calm = False
+        self._position = self._kept_inside(frame, turned.position)
+        self._size = self._bounded(frame, turned.size)
+        gathered = self._gathered(self._position, turned.velocity, 1 - DOUBT)
+        inside = keep_inside(frame, gathered.positions)
+        self._particles = replace(gathered, positions=inside)
+        self._velocity = turned.velocity
+        self._sightings.add(self._position, self._size, 1.0)
+
+    # Learn
+
+    def _learn_sighting(self, frame: Frame, seen: Observation) -> None:
+        """Learn the usual values, new points, and what the vehicle and strangers look like."""
+        whole = self._wholeness.is_likely
+        if seen.again:
+            self._points.restart()
+        if self._is_sure and seen.response > CLEAR_RESPONSE:
+            self._surface.learn_usual()
+        if self._measures_size and self.parameters.visibility.points_slope:
+            self._points.renew(self._position, self._size, whole=whole)
+        self._learn_appearance(frame, seen.view, seen.response)
+        if self._calm and self._frames >= self._next_dated:
+            self._appearance.remember(self.parameters.filter.memory)
+            self._next_dated = self._frames + _DATED_EVERY
+        if whole:
+            self._strangers.measure(seen.view, self._position, self._size)
+        if seen.again:  # what was kept shows an occluder; until now its share bounds the learning
+            self._surface.restart()
+
+    def _learn_turn(self, frame: Frame, view: View, position: Array) -> None:
+        """Learn fast what a vehicle that turns looks like now."""
+        response = view.at(position)
+        self._points.restart()
+        if self.parameters.visibility.points_slope:
+            self._points.renew(self._position, self._size)
+        self._appearance.learn_usual(min(max(response, _LEAST_LEVEL), 1.0), _TURNING_LEVEL_RATE)
+        # Without a spectrum the cells are measured again, at the size that the outline tells.
+        bare = replace(view, spectrum=None)
+        self._appearance.learn(frame, bare, self._position, self._learnt_size, _TURNING_STIFFNESS)
+
     def _learn_appearance(self, frame: Frame, view: View, response: float) -> None:
         """Train the filter on a whole or turning vehicle, the less the less surely it shows."""
         options = self.parameters.filter
@@ -289,25 +327,6 @@ class Track(ParticleTracker[FusionParameters]):
             stiffness *= max(response, _LEAST_PLIANT)
         self._appearance.learn(frame, view, self._position, self._learnt_size, stiffness)
 
-    def _take_turn(self, frame: Frame, view: View, turned: Turned) -> None:
-        """Follow a vehicle that turns by its outline, and learn fast what it looks like now."""
-        self._calm = False
-        response = view.at(turned.position)
-        self._position = self._kept_inside(frame, turned.position)
-        self._size = self._bounded(frame, turned.size)
-        gathered = self._gathered(self._position, turned.velocity, 1 - DOUBT)
-        inside = keep_inside(frame, gathered.positions)
-        self._particles = replace(gathered, positions=inside)
-        self._velocity = turned.velocity
-        self._sightings.add(self._position, self._size, 1.0)
-        self._points.restart()
-        if self.parameters.visibility.points_slope:
-            self._points.renew(self._position, self._size)
-        self._appearance.learn_usual(min(max(response, _LEAST_LEVEL), 1.0), _TURNING_LEVEL_RATE)
-        # Without a spectrum the cells are measured again, at the size that the outline tells.
-        bare = replace(view, spectrum=None)
-        self._appearance.learn(frame, bare, self._position, self._learnt_size, _TURNING_STIFFNESS)
-
     # Report
 
     def _bounded(self, frame: Frame, size: Array) -> Array:
@@ -321,9 +340,9 @@ class Track(ParticleTracker[FusionParameters]):
         """Branch of the algorithm: visible, occluded, or how the vehicle has left."""
         if self._departure is not None:
             return self._departure.reason
-        return "visible" if self._visible else "occluded"
+        return "visible" if self._visibility.is_seen else "occluded"
 
-    def _outcome(self, frame: Frame, response: float, left_image: bool) -> Outcome:
+    def _outcome(self, frame: Frame, response: float, *, left_image: bool) -> Outcome:
         particles = self._particles
         positions = keep_inside(frame, particles.positions)
         (x, y), (vx, vy) = self._position.tolist(), self._velocity.tolist()
@@ -334,7 +353,7 @@ class Track(ParticleTracker[FusionParameters]):
                 "response": min(max(response, 0.0), 1.0), "points": self._surface.share,
                 "whole": self._wholeness.probability,
             },
-            left_image=left_image,
+            left_image=left_image or self._visibility is Visibility.GONE,
         )  # fmt: skip
 
     def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:

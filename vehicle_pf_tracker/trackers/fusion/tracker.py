@@ -14,11 +14,12 @@
 
 """`fusion`: a correlation particle filter with a posterior over visibility.
 
-Per frame: move with the camera, predict, observe, judge visibility, and then either
+Per frame: predict, observe, judge how much of the vehicle is seen, follow, and learn.
 
-- visible: climb to the peak, follow the size, learn; or
-- turning: follow the outline of what moves, learn fast; or
-- hidden: predict along the road, learn nothing, and wait until hypotheses gather evidence.
+- Visible or partly hidden: climb to the peak, follow the size, learn.
+- Turning: follow the outline of what moves, learn fast.
+- Hidden: predict along the road, learn nothing, and wait until hypotheses gather evidence.
+- Gone: learn nothing, and wait until something comes back from where the vehicle left.
 
 The filter response at each hypothesis is a calibrated log-likelihood ratio of visible against
 hidden; flow on the surface gives a second one for all of them. docs/fusion.md has the model.
@@ -38,10 +39,8 @@ from vehicle_pf_tracker.image.camera_motion import CameraMotion, small_grey
 from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.window import is_outside, keep_inside
 from vehicle_pf_tracker.trackers.base import Outcome
-from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.fusion.appearance import View
-from vehicle_pf_tracker.trackers.fusion.departure import Departure, Strangers, is_too_far
-from vehicle_pf_tracker.trackers.fusion.frozen_track import LOOKS_EVERY, FrozenTrack
+from vehicle_pf_tracker.trackers.fusion.departure import Departure, is_too_far
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
     DOUBT,
@@ -56,10 +55,13 @@ from vehicle_pf_tracker.trackers.fusion.visibility import (
     CLIMB_ON_PATH,
     STAY,
     WIDE_FROM,
+    Visibility,
     likeliest_peak,
     points_evidence,
     response_evidence,
 )
+
+__all__ = ["FusionParameters", "FusionTracker"]
 
 _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step."""
@@ -79,46 +81,27 @@ class _Look(NamedTuple):
 class FusionTracker(Track):
     """The flagship."""
 
-    def start(self, frame: Frame, box: Box) -> Estimate:
-        """Learn the target; see `BaseTracker.start`."""
-        self._set_off = False
-        self._frozen: FrozenTrack | None = None
-        self._strangers = Strangers()
-        self._departure: Departure | None = None
-        return super().start(frame, box)
-
-    def reconfigure(self, parameters: FusionParameters) -> None:
-        """Take new parameters; see `BaseTracker.reconfigure`."""
-        before = self._appearance if self._target is not None else None
-        super().reconfigure(parameters)
-        if before is not None and self._appearance is not before:
-            self._frozen = None  # what it had learnt is of another kind now
-
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         _ = self.target  # says what is wrong before the start
         elapsed = min(elapsed, _LONGEST_STEP)
         self._frames += 1
-        self._move_with_camera(frame, elapsed)
-        self._set_off = self._frames == 1 and self._take_first_motion(frame)
         left_image = self._predict(frame, elapsed)
-        if self._departure is not None:
-            return self._await_return(frame, self._departure, elapsed)
-        view = self._observe(frame)
-        position, response = self._locate(frame, view)
-        self._calm = self._is_calm(response)
-        if self._visible:
-            self._judge_points(self._appearance.usual_patch(view.patch), position)
-        left_image |= self._decide(frame, view, position, response, elapsed, left_image)
-        patch = self._appearance.usual_patch(view.patch)
-        if self._measures_size:
-            self._points.keep(patch, self._position)
-        self._surface.keep(patch, self._position, self._size)
-        outcome = self._outcome(frame, response, left_image)
+        seen = self._observe(frame, elapsed)
+        self._visibility = self._judge_visibility(frame, seen, elapsed, left_image=left_image)
+        self._follow(frame, seen, elapsed)
+        self._learn_from(frame, seen)
+        outcome = self._outcome(frame, seen.response, left_image=left_image)
         count = self.parameters.num_particles
         self._particles = self._particles.resampled(self._rng, count)
         return outcome
 
     # Predict
+
+    def _predict(self, frame: Frame, elapsed: float) -> bool:
+        """Move with the camera, and drive all hypotheses on; tell whether their mean left."""
+        self._move_with_camera(frame, elapsed)
+        self._set_off = self._frames == 1 and self._take_first_motion(frame)
+        return self._drive(frame, elapsed)
 
     def _move_with_camera(self, frame: Frame, elapsed: float) -> None:
         """Move everything that is known with the background; its zoom never changes the size."""
@@ -134,8 +117,6 @@ class FusionTracker(Track):
         if not camera.still:
             self._position = camera.apply(self._position)
             self._particles = self._particles.moved(camera)
-        if self._frozen is not None:
-            self._frozen.pass_time(elapsed, camera)
 
     def _take_first_motion(self, frame: Frame) -> bool:
         """Give the hypotheses the velocity of what moves in the first box; tell if it is known."""
@@ -147,21 +128,19 @@ class FusionTracker(Track):
         self._particles = replace(known, velocities=known.velocities + move)
         return True
 
-    def _predict(self, frame: Frame, elapsed: float) -> bool:
+    def _drive(self, frame: Frame, elapsed: float) -> bool:
         """Drive all hypotheses on; tell whether their mean left the image."""
         motion, extent = self.parameters.motion, self._extent
-        if self._visible:
+        seen = self._visibility.is_seen
+        if seen:
             sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
         else:
             sigmas = motion.hidden_position_sigma * extent, self._hidden_velocity_sigma * extent
             growth = float(self._particles.weights @ self._particles.growths)
             grown = np.minimum(self._size * np.exp(growth * elapsed), self._largest_hidden)
             self._size = self._bounded(frame, grown)
-        across = 1.0 if self._visible else ACROSS_LANES
+        across = 1.0 if seen else ACROSS_LANES
         driven = self._particles.driven(self._rng, elapsed, sigmas, across=across)
-        if self._frozen is not None:
-            hidden = motion.hidden_position_sigma, self._hidden_velocity_sigma
-            self._frozen.drive(self._rng, elapsed, hidden)
         rates = self.parameters.visibility
         driven = driven.passed(elapsed, rates.hiding_rate, rates.return_rate)
         left_image = is_outside(frame, *driven.mean.tolist())
@@ -170,13 +149,26 @@ class FusionTracker(Track):
 
     # Observe
 
-    def _observe(self, frame: Frame) -> View:
-        """Weigh the hypotheses by the filter's response where they are, or close by.
+    def _observe(self, frame: Frame, elapsed: float) -> Observation:
+        """Weigh the hypotheses by the filter's response, and find its peak at the best of them."""
+        if self._departure is not None:
+            return self._observe_return(frame, self._departure, elapsed)
+        view = self._weigh(frame)
+        if self._set_off:
+            position = self._kept_inside(frame, self._particles.positions.mean(axis=0))
+            response = view.at(position)
+        else:
+            position, response = likeliest_peak(view, self._particles, self._extent)
+            position = self._kept_inside(frame, position)
+        return Observation(view, position, response, again=not self._visibility.is_seen)
+
+    def _weigh(self, frame: Frame) -> View:
+        """Weigh the hypotheses by the response where they are, or close by.
 
         A hidden vehicle is looked for at other sizes too; the likeliest of them is taken over once
         it is visible.
         """
-        if self._visible:
+        if self._visibility.is_seen:
             look = self._look(frame, 1.0)
         else:
             looks = [self._look(frame, scale) for scale in HIDDEN_SCALES]
@@ -189,7 +181,7 @@ class FusionTracker(Track):
 
     def _look(self, frame: Frame, scale: float) -> _Look:
         """Judge the hypotheses by the response to a vehicle `scale` times as large as believed."""
-        particles, hidden = self._particles, not self._visible
+        particles, hidden = self._particles, not self._visibility.is_seen
         wide = hidden and particles.spread > WIDE_FROM * self._extent
         size = scale * self._learnt_size
         patch = self._appearance.patch(frame, particles.mean, size, wide=wide)
@@ -199,13 +191,43 @@ class FusionTracker(Track):
         evidence = response_evidence(view, particles.positions, climb, self.parameters.visibility)
         return _Look(view, *evidence, scale)
 
-    def _locate(self, frame: Frame, view: View) -> tuple[Array, float]:
-        """Peak of the response at the best of the visible hypotheses, and its height."""
-        if self._set_off:
-            position = self._kept_inside(frame, self._particles.positions.mean(axis=0))
-            return position, view.at(position)
-        position, response = likeliest_peak(view, self._particles, self._extent)
-        return self._kept_inside(frame, position), response
+    def _observe_return(
+        self, frame: Frame, departure: Departure, elapsed: float
+    ) -> Observation:  # fmt: skip
+        """Look for a vehicle that has left where it left; it is visible once that is proven."""
+        learnt = departure.size * self._padding
+        patch = self._appearance.patch(frame, departure.position, learnt, wide=True)
+        view = self._appearance.view(patch)
+        returned = departure.returned(view, elapsed)
+        if returned is None:
+            self._particles = self._particles.never_visible()
+            return Observation(view, departure.position, 0.0, again=True)
+        position, velocity = returned
+        self._particles = self._gathered(position, velocity, 1 - DOUBT)
+        return Observation(view, position, view.at(position), again=True)
+
+    # Judge
+
+    def _judge_visibility(
+        self, frame: Frame, seen: Observation, elapsed: float, *, left_image: bool
+    ) -> Visibility:
+        """Decide how much of the vehicle is seen."""
+        self._calm = self._is_calm(seen.response)
+        if not seen.again:
+            self._judge_points(self._appearance.usual_patch(seen.view.patch), seen.position)
+        visible = self._particles.probability_visible > 0.5
+        self._departure = self._judge_departure(frame, left=left_image, visible=visible)
+        if self._departure is not None:
+            self._turning.end()
+            return Visibility.GONE
+        self._turned = self._turning.follow(elapsed, seen.view)
+        if self._turned is not None:
+            return Visibility.TURNING
+        if not visible:
+            return Visibility.HIDDEN
+        self._turning.end()
+        self._judge_wholeness(frame, elapsed, again=seen.again)
+        return Visibility.VISIBLE if self._wholeness.is_likely else Visibility.PARTLY_HIDDEN
 
     def _judge_points(self, patch: Patch, position: Array) -> None:
         """Take the share of the surface that moves with the vehicle as evidence on visibility."""
@@ -221,62 +243,38 @@ class FusionTracker(Track):
         if share is not None:
             self._particles = self._particles.witnessed(points_evidence(share, evidence))
 
-    def _decide(
-        self, frame: Frame, view: View, position: Array, response: float, elapsed: float,
-        left_image: bool,
-    ) -> bool:  # fmt: skip
-        """Follow what is visible or turns, predict what is hidden, give up what has left."""
-        was_visible = self._visible
-        self._visible = self._particles.probability_visible > 0.5
-        seen = Observation(view, position, response, again=not was_visible)
-        if not was_visible and self._depart(frame, left_image=left_image and not self._visible):
-            return True
-        if self._follow_turn(frame, view, elapsed):
-            self._visible, self._frozen = True, None
-        elif self._visible:
-            self._take_sighting(frame, self._looked_at_again(frame, seen), elapsed)
-            if self._wholeness.is_likely:
-                self._strangers.measure(view, self._position, self._size)
-        elif was_visible:
-            self._enter_occlusion()
-        if not self._visible:
+    def _judge_departure(self, frame: Frame, *, left: bool, visible: bool) -> Departure | None:
+        """Tell how a hidden vehicle has left: by a border, or too far to be seen; None: it has not.
+
+        One that has left stays so until it is visible.
+        """
+        if self._visibility is Visibility.GONE:
+            return None if visible else self._departure
+        if self._visibility is not Visibility.HIDDEN:
+            return None
+        position, size = self._kept_inside(frame, self._particles.mean), self._size
+        if left and not visible:
+            return Departure.by_border(frame, position, size, self._strangers)
+        if is_too_far(size, np.array([self.target.box.width, self.target.box.height])):
+            heading = self._particles.mean_velocity
+            return Departure.far_away(position, size, heading, self._strangers)
+        return None
+
+    # Follow
+
+    def _follow(self, frame: Frame, seen: Observation, elapsed: float) -> None:
+        """Follow a vehicle that is seen, or the prediction of one that is not."""
+        if self._turned is not None:
+            self._follow_outline(frame, self._turned)
+        elif self._visibility.is_seen:
+            self._follow_sighting(frame, seen, elapsed)
+        else:
+            if not seen.again:
+                self._enter_occlusion()
+            elif self._visibility is Visibility.GONE:
+                self._particles = self._particles.never_visible()
             self._position = self._kept_inside(frame, self._particles.mean)
             self._velocity = self._particles.mean_velocity
-        return False
-
-    # Visible
-
-    def _follow_turn(self, frame: Frame, view: View, elapsed: float) -> bool:
-        """Follow a vehicle that was in doubt, and turned; tell whether it did."""
-        turned = self._turning.follow(elapsed, view)
-        if turned is not None:
-            self._take_turn(frame, view, turned)
-        elif self._visible:
-            self._turning.end()
-        return turned is not None
-
-    def _looked_at_again(self, frame: Frame, seen: Observation) -> Observation:
-        """Compare a return with other places for a while; the likelier place."""
-        frozen = self._frozen
-        if frozen is None or not self.parameters.visibility.second_look:
-            self._frozen = None
-            return seen
-        if seen.again:
-            frozen.take_return(self._appearance, self._sightings)
-            return seen
-        if self._frames % LOOKS_EVERY and not frozen.is_over:
-            return seen
-        options = self.parameters.visibility
-        found = frozen.likelier_place(frame, seen.position, self._padding, options)
-        if frozen.is_over or found is not None:
-            self._frozen = None
-        if found is None:
-            return seen
-        view, position = found
-        self._thaw(frozen)
-        return Observation(view, self._kept_inside(frame, position), view.at(position), again=True)
-
-    # Hidden
 
     def _enter_occlusion(self) -> None:
         """Predict from the last clear sightings: the occluder has dragged later ones along."""
@@ -293,50 +291,16 @@ class FusionTracker(Track):
         self._largest_hidden = LARGEST_GROWTH * self._size
         sigma, count = self._hidden_velocity_sigma, self.parameters.num_particles
         self._particles = hidden_hypotheses(self._rng, motion, last.age, count, self._extent, sigma)
-        self._frozen = FrozenTrack(self._appearance, self._sightings, self._particles, self._size)
 
-    def _thaw(self, frozen: FrozenTrack) -> None:
-        """Return to the track of before the occlusion, as it was predicted; it is visible now."""
-        self._size = frozen.size
-        self._appearance, self._sightings = frozen.appearance, frozen.sightings
-        self._appearance.kernels = self.kernels
-        surely = np.full(len(frozen.particles.visible), 1 - DOUBT)
-        self._particles = replace(frozen.particles, visible=surely)
+    # Learn
 
-    # Gone
-
-    def _depart(self, frame: Frame, *, left_image: bool) -> bool:
-        """Give up a hidden vehicle if it has left the image, or is too far to see."""
-        position, size = self._kept_inside(frame, self._particles.mean), self._size
-        if left_image:
-            self._departure = Departure.by_border(frame, position, size, self._strangers)
-        elif is_too_far(size, np.array([self.target.box.width, self.target.box.height])):
-            heading = self._particles.mean_velocity
-            self._departure = Departure.far_away(position, size, heading, self._strangers)
-        else:
-            return False
-        self._position, self._visible, self._frozen = position, False, None
-        self._turning.end()
-        self._particles = self._particles.never_visible()
-        return True
-
-    def _await_return(self, frame: Frame, departure: Departure, elapsed: float) -> Outcome:
-        """Look for a vehicle that has left where it left; it stays lost until that is proven."""
-        learnt = departure.size * self._padding
-        patch = self._appearance.patch(frame, departure.position, learnt, wide=True)
-        view = self._appearance.view(patch)
-        returned = departure.returned(view, elapsed)
-        if returned is None:
-            self._position = self._kept_inside(frame, self._particles.mean)
-            self._velocity = self._particles.mean_velocity
-            self._particles = self._particles.never_visible()
-            return self._outcome(frame, 0.0, left_image=True)
-        position, velocity = returned
-        self._visible, self._departure = True, None
-        self._particles = self._gathered(position, velocity, 1 - DOUBT)
-        response = view.at(position)
-        self._take_sighting(frame, Observation(view, position, response, again=True), elapsed)
-        patch = self._appearance.usual_patch(view.patch)
-        self._points.keep(patch, self._position)
+    def _learn_from(self, frame: Frame, seen: Observation) -> None:
+        """Learn from a vehicle that is seen; keep what the next frame is compared with."""
+        if self._turned is not None:
+            self._learn_turn(frame, seen.view, self._turned.position)
+        elif self._visibility.is_seen:
+            self._learn_sighting(frame, seen)
+        patch = self._appearance.usual_patch(seen.view.patch)
+        if self._measures_size:
+            self._points.keep(patch, self._position)
         self._surface.keep(patch, self._position, self._size)
-        return self._outcome(frame, response, left_image=False)

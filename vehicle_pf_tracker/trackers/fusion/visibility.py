@@ -23,6 +23,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
@@ -67,6 +68,21 @@ CLIMB_FREELY, CLIMB_ON_PATH, STAY = Climb(5, 3.0), Climb(3, 1.0), Climb(0, 1.0)
 """Where the path is known better than the place it has to keep to it: while hidden, else all would
 gather at clutter. A measured first motion is kept to exactly: a standing part of the first box
 answers better than the vehicle, and the filter cannot tell which of them it was shown."""
+
+
+class Visibility(Enum):
+    """How much of the vehicle is seen."""
+
+    VISIBLE = "visible"
+    PARTLY_HIDDEN = "partly hidden"
+    TURNING = "turning"
+    HIDDEN = "hidden"
+    GONE = "gone"
+
+    @property
+    def is_seen(self) -> bool:
+        """True where the vehicle itself tells where it is."""
+        return self not in (Visibility.HIDDEN, Visibility.GONE)
 
 
 @functools.cache

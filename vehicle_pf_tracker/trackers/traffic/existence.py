@@ -19,6 +19,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
@@ -53,6 +55,13 @@ _MOVING = 4.0
 _DOUBTED = 2.0
 """Log odds against a track, by the scores of its detections, for which it has to drive twice as
 far: false alarms side by side look like a short drive."""
+_SURELY_DRIVES = 50.0
+"""Evidence for a drive from which on scores do not count: false alarms side by side reach 35."""
+_SMALLEST = 0.25
+"""Size of the smallest vehicle on the road, of the usual one, by which large ones count more: a
+motorcycle among lorries. Smaller ones that drive are parts of vehicles."""
+_SIZE_MEMORY = 0.998
+"""Weight of the detections before in the usual size: some minutes."""
 _STANDING_MATCHES = 30
 """Detections after which what still stands is taken for a part of the scene."""
 _STANDING = 0.2
@@ -118,6 +127,7 @@ class Existence:
         self.parameters = parameters
         self._numbers = numbers
         self._evidence = evidence
+        self._sizes = np.zeros(2)
         self._detected, self._asked = _DETECTED * _DETECTED_WEIGHT, _DETECTED_WEIGHT
 
     @property
@@ -160,6 +170,8 @@ class Existence:
         if track.has_driven or track.given:
             if track.given or track.state.speed_ratio > _MOVING:
                 self._evidence.learn(sample, True)
+                size = track.state.road_size
+                self._sizes = _SIZE_MEMORY * self._sizes + (size, size**2)
             return False
         track.samples.append(sample)
         known = track.confirmed or track.log_odds >= self.parameters.birth.evidence
@@ -182,8 +194,12 @@ class Existence:
     def _drives(self, track: Track) -> bool:
         if track.matches < self.parameters.birth.matches:
             return False
-        needed = self.parameters.birth.displacement * (1 + track.doubt / _DOUBTED)
+        total, squared = self._sizes.tolist()
+        if total > 0 and track.state.road_size < _SMALLEST * squared / total:
+            return False
         straightness, evidence = track.drive()
+        doubt = track.doubt if evidence < _SURELY_DRIVES else 0.0
+        needed = self.parameters.birth.displacement * (1 + doubt / _DOUBTED)
         return track.way > needed and straightness > _STRAIGHT and evidence > _DRIVES
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:

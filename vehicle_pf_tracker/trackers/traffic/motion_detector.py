@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Detection of moving vehicles before a standing camera.
+"""Detection of moving vehicles before a standing camera, which may shake.
 
 The background is a few earlier colours of every pixel. A pixel is background where two of its
 samples have its colour; samples are renewed at random where the background is seen, and some are
@@ -24,6 +24,7 @@ one colour hides a place for seconds, and would melt in.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import astuple
 
 import cv2
 import numpy as np
@@ -34,6 +35,7 @@ from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, Detections, TrafficNumbers
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.steady import Steadier
 
 Colours = npt.NDArray[np.uint8]
 Pixels = npt.NDArray[np.bool_]
@@ -223,36 +225,41 @@ class MotionDetector:
         if small.shape != self._shape:
             self._shape = small.shape
             self._restart()
+        # Estimates are of the image before, and so is where the camera then was.
+        tracked = [one for one in tracks if one.mode is TrackMode.TRACKING]
+        followed = [one for one in tracks if one.mode in (TrackMode.TRACKING, TrackMode.OCCLUDED)]
+        covered = self._steadier.to_reference(_edges(tracked) * zoom)
+        predicted = self._steadier.to_reference(_predicted(followed) * zoom)
+        small, seen = self._steadier.steady(small)
         self.disturbed = False
         self.is_blind = not self._background.is_known
         if self.is_blind:
             self._background.begin(small)
             return Detections.none()
         changed = self._background.compare(small)
+        if seen is not None:
+            changed &= seen > 0
         if np.count_nonzero(changed) > _ALL_MOVES * changed.size:
             self.disturbed = self.is_blind = True
             self._restart()
             return Detections.none()
         moving = np.asarray(cv2.medianBlur(changed.astype(np.uint8), 3), np.uint8)
         moving = np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED), np.uint8)
-        tracked = [one for one in tracks if one.mode is TrackMode.TRACKING]
-        self._background.learn(small, moving > 0, _covered(tracked, zoom, small))
-        followed = [one for one in tracks if one.mode in (TrackMode.TRACKING, TrackMode.OCCLUDED)]
-        edges, fullness = self._blobs.read(moving, _predicted(followed) * zoom)
+        self._background.learn(small, moving > 0, _covered(covered, small))
+        edges, fullness = self._blobs.read(moving, predicted)
+        edges = self._steadier.from_reference(edges)
         boxes = np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
         return Detections.make(boxes, fullness)
 
     def _restart(self) -> None:
         self._background = Background(self._shape, self._seed, self._numbers)
+        self._steadier = Steadier()
 
 
-def _covered(
-    tracks: Sequence[TrackEstimate], zoom: float, image: npt.NDArray[np.uint8]
-) -> npt.NDArray[np.bool_]:
+def _covered(boxes: Array, image: Colours) -> Pixels:
     """Mark the pixels of vehicles, of which one that stops must not melt in."""
     covered = np.zeros(image.shape[:2], dtype=np.bool_)
-    for track in tracks:
-        left, top, right, bottom = np.maximum(_edges(track) * zoom, -1).astype(int).tolist()
+    for left, top, right, bottom in np.maximum(boxes, -1).astype(int).tolist():
         covered[max(top, 0) : bottom + 1, max(left, 0) : right + 1] = True
     return covered
 
@@ -267,12 +274,13 @@ def _reduced(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:
     return small, zoom
 
 
-def _edges(track: TrackEstimate) -> Array:
-    box = track.box
-    return np.array([box.x, box.y, box.x + box.width, box.y + box.height])
+def _edges(tracks: Sequence[TrackEstimate]) -> Array:
+    """Edges (T, 4) of vehicles in px."""
+    boxes = np.array([astuple(track.box) for track in tracks]).reshape(-1, 4)
+    return np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
 
 
 def _predicted(tracks: Sequence[TrackEstimate]) -> Array:
     """Edges (T, 4) in px where vehicles are about to be."""
-    moved = [_edges(track) + np.tile(track.velocity, 2) for track in tracks]
-    return np.array(moved).reshape(-1, 4)
+    velocities = np.array([track.velocity for track in tracks]).reshape(-1, 2)
+    return np.asarray(_edges(tracks) + np.tile(velocities, 2))

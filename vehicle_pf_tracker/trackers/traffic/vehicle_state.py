@@ -175,6 +175,11 @@ class VehicleState:
         return x * growth + across * v, (v - h / 2) * growth
 
     @property
+    def road_size(self) -> float:
+        """Side of the box over the distance from the horizon: the same all along the road."""
+        return math.sqrt(self.mean[W] * self.mean[H]) / float(self.mean[V])
+
+    @property
     def speed_ratio(self) -> float:
         """Distance of the velocity on the road from zero, in standard deviations."""
         velocity = self.mean[ACROSS:]

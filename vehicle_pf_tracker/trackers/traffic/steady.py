@@ -1,0 +1,120 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Images of a camera that shakes, moved to where the first one was taken."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.flow import PointFlow
+from vehicle_pf_tracker.image.shared_motion import shared_similarity
+
+Image: TypeAlias = npt.NDArray[np.uint8]
+
+_CORNERS, _QUALITY, _APART = 120, 0.01, 10
+"""Most corners that are followed, their least strength, of the strongest one's, and their least
+distance in px: of thirty that are hidden by vehicles, ninety are left."""
+_RETURNS_PX = 0.5
+"""Largest error of a corner that was followed forth and back."""
+_FARTHEST = 0.1
+"""Largest shift that is a shake, of the image's width; beyond it the camera was turned."""
+_STANDS_AFTER, _CHECKED_EVERY = 30, 5
+"""Images without a shake after which only every so many are measured: gusts last longer."""
+_RENEWED_AFTER = 300
+"""Images after which corners are chosen anew: the light changes."""
+_FLOW = PointFlow(window=15, levels=3, steps=10, precision=0.03)
+_STILL = np.eye(2, 3)
+
+
+class Steadier:
+    """Registers each image with a reference."""
+
+    def __init__(self) -> None:
+        self._reference: Image | None = None
+        self._corners = np.empty((0, 2), np.float32)
+        self._map = _STILL
+        self._age = self._still = 0
+
+    def steady(self, image: Image) -> tuple[Image, Image | None]:
+        """Move an image to where the reference was taken.
+
+        Parameters
+        ----------
+        image : (H, W, 3) array
+            RGB image.
+
+        Returns
+        -------
+        image : (H, W, 3) array
+            The image itself, where the camera stands.
+        seen : (H, W) array or None
+            Where it shows something; None where it is not moved.
+        """
+        self._register(np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), np.uint8))
+        if self._map is _STILL:
+            return image, None
+        return self._moved(image), self._moved(
+            np.ones(image.shape[:2], np.uint8), cv2.BORDER_CONSTANT
+        )
+
+    def to_reference(self, edges: Array) -> Array:
+        """Edges (N, 4) in the latest image, as the reference has them; sizes stay."""
+        return self._shifted(edges, self._map)
+
+    def from_reference(self, edges: Array) -> Array:
+        """Edges (N, 4) in the reference, as the latest image has them; sizes stay."""
+        return self._shifted(edges, np.asarray(cv2.invertAffineTransform(self._map)))
+
+    @staticmethod
+    def _shifted(edges: Array, to: Array) -> Array:
+        centres = (edges[:, :2] + edges[:, 2:]) / 2
+        return np.asarray(edges + np.tile(centres @ to[:, :2].T + to[:, 2] - centres, 2))
+
+    def _register(self, grey: Image) -> None:
+        if self._reference is None:
+            self._refer_to(grey)
+            return
+        self._age += 1
+        if self._still >= _STANDS_AFTER and self._age % _CHECKED_EVERY:
+            return
+        found = self._similarity(self._reference, grey)
+        if np.abs(found[:, 2]).max() > _FARTHEST * grey.shape[1] or (found == _STILL).all():
+            found = _STILL
+        self._map = found
+        self._still = self._still + 1 if found is _STILL else 0
+        if self._age >= _RENEWED_AFTER:
+            self._refer_to(grey if found is _STILL else self._moved(grey))
+
+    def _similarity(self, reference: Image, grey: Image) -> Array:
+        """Map from the present image to the reference."""
+        back = np.asarray(cv2.invertAffineTransform(self._map))
+        guess = (self._corners @ back[:, :2].T + back[:, 2]).astype(np.float32)
+        moved, found, error = _FLOW.follow_and_return(reference, grey, self._corners, guess)
+        good = found & (np.abs(error).max(axis=1, initial=0.0) < _RETURNS_PX)
+        return shared_similarity(moved[good].astype(float), self._corners[good].astype(float))
+
+    def _refer_to(self, grey: Image) -> None:
+        corners = cv2.goodFeaturesToTrack(grey, _CORNERS, _QUALITY, _APART)
+        self._corners = np.asarray([] if corners is None else corners, np.float32).reshape(-1, 2)
+        self._reference, self._age = grey, 0
+
+    def _moved(self, image: Image, border: int = cv2.BORDER_REPLICATE) -> Image:
+        size = image.shape[1], image.shape[0]
+        return np.asarray(cv2.warpAffine(image, self._map, size, borderMode=border), np.uint8)
