@@ -128,6 +128,7 @@ def _trackers(
         earliest = first_ns - max_diff_ns(request.max_diff)
         truth = next((one for one in source.truth() if one.stamp_ns >= earliest), None)
         if truth is None:
+            tell_notices(source.notices)  # they say which truth was seen and not read
             raise UsageError(
                 f"{request.source} has no truth to start on; give the vehicle's box in the first "
                 "image with --target x,y,w,h"

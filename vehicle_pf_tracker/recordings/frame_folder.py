@@ -122,7 +122,7 @@ class FrameFolder(Footage):
         ]
 
     def _size(self) -> tuple[int, int]:
-        return frame_size(next(self.frames()).frame)
+        return frame_size(_picture(next(iter(self.images.values())), 0, None).frame)
 
     @property
     def notices(self) -> list[str]:

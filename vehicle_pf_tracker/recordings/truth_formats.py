@@ -284,6 +284,7 @@ def _label_studio(path: Path, text: str, images: Images) -> Iterator[Label]:
 
     Coordinates are in percent of the image (labelstud.io/tags/rectanglelabels).
     """
+    width, height = images.size()
     try:
         for task in json.loads(text):
             done = [one["result"] for one in task["annotations"] if not one.get("was_cancelled")]
@@ -295,11 +296,10 @@ def _label_studio(path: Path, text: str, images: Images) -> Iterator[Label]:
                 for number, place in found(value, images):
                     if place.get("rotation"):
                         raise InputError(f"{where} is rotated; only upright boxes are read")
-                    width, height = images.size()
                     x, w = (place[name] * width / 100 for name in ("x", "width"))
                     y, h = (place[name] * height / 100 for name in ("y", "height"))
                     yield Label(where, number, (x, y, w, h), identity=identity)
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except (json.JSONDecodeError, LookupError, TypeError, AttributeError, RecursionError) as error:
         raise UnreadTruthError(f"{path} is not Label Studio's export as JSON") from error
 
 

@@ -102,6 +102,7 @@ class VideoFile(Footage):
         identity: int | None = None,
     ) -> None:
         self._path = path
+        self._stamps: dict[int, int] = {}
         self._read = self._without_time = 0
         self._ended = False
         self._keeps_times = fps is None
@@ -129,6 +130,8 @@ class VideoFile(Footage):
                 stamp, number = self._stamp(video, last), self._read + 1
                 row = self._truth.get(number)
                 truth = None if row is None else Truth(stamp, row.box, row.occlusion)
+                if truth is not None:
+                    self._stamps[number] = stamp
                 yield Picture(stamp, frame, f"frame {number} of {self._path}", truth=truth)
                 self._read, last = number, stamp
             self._ended = True
@@ -136,6 +139,14 @@ class VideoFile(Footage):
             video.release()
         if not self._read:
             raise InputError(f"no frame of the video {self._path} can be decoded")
+
+    def truth(self) -> list[Truth]:
+        """Return the truth, at even stamps where its frames are not read yet."""
+        return [
+            Truth(self._stamps.get(n, stamp_of(n - 1, self.fps)), row.box, row.occlusion)
+            for n, row in sorted(self._truth.items())
+            if n >= 1
+        ]
 
     def _stamp(self, video: cv2.VideoCapture, last: int) -> int:
         """Return the stamp of the frame just read, in ns, later than the one before."""
