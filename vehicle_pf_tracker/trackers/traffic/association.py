@@ -207,6 +207,8 @@ _BORDER = 1.0
 """Distance in px from the border of the image up to which an edge counts as cut."""
 _NEAR_BORDER = 0.05
 """The same, of the side: the usual error of an edge."""
+_FARTHEST = 4.0
+"""Standard deviations of an edge beyond which a detection is not a track's."""
 _SIZES = 2.0
 """Logarithm of the ratio of the largest and the smallest false alarms, by which they are spread."""
 
@@ -236,19 +238,24 @@ def fits(
     noise : float
         Standard deviation of an edge, fraction of the size.
     """
-    detected = found.edges[indices]
+    predicted, detected = edges_of(tracks), found.edges[indices]
+    covariances = np.array([track.state.edge_covariance for track in tracks])
+    spread = deviations(detected, noise)
+    reach = np.sqrt(covariances.diagonal(axis1=1, axis2=2))[:, np.newaxis] + spread
+    apart = np.abs(detected - predicted[:, np.newaxis])
+    cut = cut_edges(predicted, found.size)[:, np.newaxis] & cut_edges(detected, found.size)
+    rows, columns = np.nonzero((cut | (apart < _FARTHEST * reach)).all(axis=2))
     sides = np.tile(detected[:, 2:] - detected[:, :2], 2)
     false = found.clutter[indices] - math.log(found.size[0] * found.size[1])
     false -= np.log(sides[:, :2] * _SIZES).sum(axis=1)
-    spread = deviations(detected, noise) ** 2
-    odds = np.empty((len(tracks), len(detected)))
-    for row, track in enumerate(tracks):
-        cut = cut_edges(track.state.edges, found.size) & cut_edges(detected, found.size)
-        variances = np.where(cut, spread + (_SIZES * sides) ** 2 / (2 * np.pi), spread)
-        covariance = track.state.edge_covariance + variances[:, np.newaxis] * np.eye(4)
-        residual = (detected - track.state.edges)[..., np.newaxis]
-        costs = (residual * np.linalg.solve(covariance, residual)).sum(axis=(1, 2))
-        odds[row] = -(costs + np.linalg.slogdet(2 * np.pi * covariance)[1]) / 2 - false
+    unknown = (_SIZES * sides[columns]) ** 2 / (2 * np.pi)
+    variances = spread[columns] ** 2 + np.where(cut[rows, columns], unknown, 0.0)
+    covariance = covariances[rows] + variances[:, np.newaxis] * np.eye(4)
+    residual = (detected[columns] - predicted[rows])[..., np.newaxis]
+    costs = (residual * np.linalg.solve(covariance, residual)).sum(axis=(1, 2))
+    odds = np.full((len(tracks), len(detected)), -np.inf)
+    density = -(costs + np.linalg.slogdet(2 * np.pi * covariance)[1]) / 2
+    odds[rows, columns] = density - false[columns]
     return odds
 
 

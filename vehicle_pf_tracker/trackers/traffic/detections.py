@@ -31,7 +31,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 
-MOST_DETECTIONS = 1000
+MOST_DETECTIONS = 300
 """Detections of a frame that are looked at, the highest scores first. No camera shows as many
 vehicles; a detector that reports more is out of order, and association would take seconds."""
 

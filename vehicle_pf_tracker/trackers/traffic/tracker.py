@@ -241,8 +241,9 @@ class TrafficTracker:
         self._drop_parts(found)
         self._match_tentative([one for one in self._tracks if not one.confirmed], found)
         self._existence.fade(self._tracks, elapsed)
+        there = edges_of([one for one in self._tracks if one.confirmed and one.unseen < _RECENT])
         for index in found.free:
-            if self._is_taken(found.edges[index]):
+            if _is_taken(found.edges[index], there):
                 self._evidence.learn(found.samples[index], False, alone=False)
             else:
                 self._begin_from(found, index)
@@ -307,13 +308,6 @@ class TrafficTracker:
                 found.free.remove(index)
                 self._evidence.learn(found.samples[index], False, alone=False)
 
-    def _is_taken(self, edges: Array) -> bool:
-        """Test whether a tracked vehicle is where a new one would begin."""
-        there = [one for one in self._tracks if one.confirmed and one.unseen < _RECENT]
-        boxes = edges_of(there)
-        smaller = np.minimum(areas(boxes), areas(edges))
-        return bool((intersections(edges, boxes) > _NESTED * smaller).any())
-
     def _begin_from(self, found: FrameDetections, index: int) -> None:
         """Take a detection for a new vehicle, as yet without evidence."""
         edges = found.edges[index]
@@ -361,3 +355,9 @@ class TrafficTracker:
             if track.confirmed and track.undetected == 0:
                 now = self._colours.histogram(track.state.edges, track.covers)
                 track.learn_similarity(similarity(track.colours, now))
+
+
+def _is_taken(edges: Array, boxes: Array) -> bool:
+    """Test whether a tracked vehicle is where a new one would begin."""
+    smaller = np.minimum(areas(boxes), areas(edges))
+    return bool((intersections(edges, boxes) > _NESTED * smaller).any())
