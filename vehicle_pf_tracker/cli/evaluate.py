@@ -36,11 +36,7 @@ from vehicle_pf_tracker.cli.console import (
     telling,
 )
 from vehicle_pf_tracker.cli.report import ReportParts
-from vehicle_pf_tracker.cli.requests import (
-    MaxDiffOption,
-    option,
-    switch,
-)
+from vehicle_pf_tracker.cli.requests import MaxDiffOption, option, switch
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -109,10 +105,7 @@ def run_traffic(request: TrafficRequest) -> int:
     cases = cases_of(sequences, _sources(request, sequences))
     parameters = _parameters(request)
     seeds = range(request.first_seed, request.first_seed + (request.seeds or FEW_SEEDS))
-    with (
-        TrafficWorker(request.baselines_python) as worker,
-        counting("compared") as progress,
-    ):
+    with TrafficWorker(request.baselines_python) as worker, counting("compared") as progress:
         results = list(compare(cases, worker, parameters, seeds, on_progress=progress))
         options = {
             "command": list(request.command),
