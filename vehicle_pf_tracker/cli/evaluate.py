@@ -33,7 +33,6 @@ from vehicle_pf_tracker.cli.console import (
     tell_error,
     tell_notice,
     tell_notices,
-    telling,
 )
 from vehicle_pf_tracker.cli.report import ReportParts
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, option, switch
@@ -179,7 +178,7 @@ def run(request: Request) -> int:
 
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
     plan = _plan(request, sources)
-    with telling("evaluate") as on_progress:
+    with counting("evaluated", "runs") as on_progress:
         complete(plan, request.output, on_this_machine(request.workers), on_progress, tell_notice)
     return _judge(report.write(request.output, request), request.max_rmse)
 
