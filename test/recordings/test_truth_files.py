@@ -245,6 +245,7 @@ def test_the_truth_above_the_folder_of_the_images_is_found(lay):
     [
         ("groundtruth.txt", "m4,5,2,3,100", "is in no format that is read"),
         ("car_groundtruth.mat", "MATLAB 5.0", "is in no format that is read"),
+        ("annotations/1.txt", "", "annotations is not a regular file"),
         ("annotations.xml", "<annotations><track", "is not whole XML"),
         ("project-1.json", '[{"image": "1.jpg"}]', "is not Label Studio's export as JSON"),
         ("gt/gt.txt", track(3) + track(8), "has the truth of 2 targets; .* --id: 3, 8"),

@@ -38,6 +38,8 @@ from vehicle_pf_tracker.recordings.truth_formats import (
 _IDS_SHOWN = 20
 """Identities that an error lists: more are hard to read on a terminal."""
 _OWN = "groundtruth.csv"
+_ANYTHING = ("*groundtruth*", "*annotation*")
+"""What may be truth, and is read if it is."""
 _PLACES = (
     _OWN,
     "groundtruth_rect.txt",  # OTB
@@ -53,10 +55,9 @@ _PLACES = (
     "../../*/anno/{name}_gt.txt",  # UAVDT-S: UAV-benchmark-S/NAME, .../anno/NAME_gt.txt
     "../../*/GT/{name}_gt_whole.txt",  # UAVDT-M
     "../../../anno/{parent}/{name}_[0-9].txt",  # UAV123's parts of a video
-    "*groundtruth*",
-    "*annotation*",
+    *_ANYTHING,
 )
-"""Where truth lies, from the folder of the images; the last ones may be anything."""
+"""Where truth lies, from the folder of the images."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +86,7 @@ def truth_beside(
     Raises
     ------
     InputError
-        As `read_truth`, but for an `UnreadTruthError`.
+        As `read_truth`, of a file that is named as truth, but no `UnreadTruthError`.
     """
     folder, notices = folder.resolve(), list[str]()
     names = {"name": folder.name, "parent": folder.parent.name}
@@ -98,7 +99,9 @@ def truth_beside(
                 table, said = read_truth(paths, images, identity)
                 read = [f"the truth is read from {paths[0]}"] if pattern != _OWN else []
                 return table, [*notices, *read, *said]
-        except UnreadTruthError as error:
+        except InputError as error:
+            if not (isinstance(error, UnreadTruthError) or pattern in _ANYTHING):
+                raise
             notices.append(str(error))
     return {}, notices
 
