@@ -28,7 +28,7 @@ export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 .PHONY: help demo test test-all test-offline test-footage test-programs test-ros test-noble kernels lint types format config colcon baselines bench reproduce docs dist clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
-	BIN=$(abspath $(BIN)) .ci/demo results/demo
+	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*  ## \(.*\)/\1|\2/p' $(firstword $(MAKEFILE_LIST)) | \

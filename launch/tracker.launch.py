@@ -19,19 +19,12 @@ from pathlib import Path
 
 from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
-from launch.substitutions import EnvironmentVariable
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import Parameter
 from launch_ros.substitutions import FindPackageShare
 
 from vehicle_pf_tracker.ros.launching import parameter_file
 from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
-
-ALLOCATOR = {
-    "MALLOC_MMAP_THRESHOLD_": "1073741824",
-    "MALLOC_TRIM_THRESHOLD_": "1073741824",
-    "MALLOC_TOP_PAD_": "67108864",
-}
 
 # Defaults are constants: a default made of another argument would stay for the next inclusion.
 ARGUMENTS = {
@@ -90,10 +83,6 @@ def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
             *([("detections", topic)] if (topic := given["detections_topic"]) else []),
         ],
         ros_arguments=["--log-level", given["log_level"]],
-        additional_env={
-            name: EnvironmentVariable(name, default_value=value)
-            for name, value in ALLOCATOR.items()
-        },
         respawn=is_true(given["respawn"]),
         respawn_delay=2.0,
         output="screen",

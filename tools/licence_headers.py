@@ -28,6 +28,7 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = (
     "vehicle_pf_tracker",
     "benchmarks",
+    "laboratory",
     "launch",
     "reproduction",
     "requirements",

@@ -14,7 +14,6 @@
 
 """What the launch files start. `launch` is not on PyPI: these run where ROS comes from apt."""
 
-import os
 from pathlib import Path
 
 import cv2
@@ -166,19 +165,6 @@ def test_the_names_of_traffics_arguments_are_those_of_the_tracker():
         for name in ("tracker", "traffic")
     ]
     assert names[1] == names[0] - {"variant"}
-
-
-@pytest.mark.parametrize(("given", "expected"), [(None, "1073741824"), ("5", "5")])
-def test_the_users_allocator_settings_stay(monkeypatch, given, expected):
-    name = "MALLOC_MMAP_THRESHOLD_"
-    monkeypatch.delenv(name, raising=False)
-    if given:
-        monkeypatch.setenv(name, given)
-    context, (node,) = started("tracker")
-    added = {text(context, list(k)): text(context, list(v)) for k, v in node.additional_env}
-    assert added[name] == expected
-    assert set(added) == {name, "MALLOC_TRIM_THRESHOLD_", "MALLOC_TOP_PAD_"}
-    assert os.environ.get(name) == given
 
 
 @pytest.fixture

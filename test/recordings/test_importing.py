@@ -266,10 +266,6 @@ def test_a_video_takes_its_truth_from_a_table(video, tmp_path):
     assert [first.stamp_ns, third.stamp_ns] == [stamps[0], stamps[2]]
 
 
-def test_a_table_of_truth_is_for_videos_alone(frame_folder, video, tmp_path):
+def test_truth_that_is_not_there_is_named(video, tmp_path):
     with pytest.raises(InputError, match="cannot read the truth"):
         import_recording(video, tmp_path / "bag", truth=tmp_path / "none.csv")
-    with pytest.raises(InputError, match=r"is its groundtruth.csv; --truth is for videos"):
-        import_recording(
-            frame_folder(), tmp_path / "bag", truth=truth_file(tmp_path, "1,2,3,8,6,0")
-        )

@@ -131,16 +131,15 @@ def test_the_command_does_what_its_page_says(rig, start_process, words):
 
 def start(bench, start_process, executable, arguments):
     """Run the executable; a file that the page only names is not there."""
-    function = "video_source" if executable == "video_source" else "main"
-    code = f"import sys; from vehicle_pf_tracker.ros.executables import {function}; "
-    if function == "main":
-        code += f"sys.exit(main({executable.removesuffix('_tracker')!r}))"
+    name = executable.removesuffix("_tracker")
+    code = f"from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main({name!r}))"
+    if name != "video_source":
         start_process("-c", code, *arguments).wait_for_output("ready: images on")
         remapped = next((one[7:] for one in arguments if one.startswith("image:=")), "image")
         camera = bench.publisher(Image, remapped)
         camera.publish(image_message(header(2), road(1, *SIZE)[0]))
     else:
-        process = start_process("-c", code + "sys.exit(video_source())", *arguments)
+        process = start_process("-c", code, *arguments)
         assert process.wait() == 1
         assert process.output.startswith("video_source: there is no file or folder")
         assert process.output.count("\n") == 1

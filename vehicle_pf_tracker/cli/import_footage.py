@@ -20,25 +20,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import counting, tell_notices
-from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional
+from vehicle_pf_tracker.cli.requests import OverwriteOption, TruthOptions, option, positional
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.recordings.importing import FORMATS, import_recording
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(OverwriteOption):
+class Request(OverwriteOption, TruthOptions):
     """Request of `import`."""
 
     source: Path = positional(
         type=Path, metavar="SRC",
-        help="video file, or folder of images, with groundtruth.csv where truth is known",
+        help="video file, or folder of images with the truth that lies beside them",
     )  # fmt: skip
     out: Path = positional(type=Path, metavar="OUT", help="rosbag2 folder to write")
-    truth: Path | None = option(
-        type=Path, metavar="FILE",
-        help="truth of a video: a table frame,x,y,w,h,occ (frames from 1, top-left corner in px, "
-        "0 in view, 1 partly, 2 totally hidden); a frame without a row has none",
-    )  # fmt: skip
     fps: float | None = option(
         type=float, metavar="HZ", help="frame rate, instead of the one that SRC states"
     )
@@ -58,6 +53,7 @@ def run(request: Request) -> int:
             request.source,
             request.out,
             truth=request.truth,
+            identity=request.identity,
             fps=request.fps,
             format=request.format,
             progress=progress,

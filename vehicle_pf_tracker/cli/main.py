@@ -75,6 +75,7 @@ def remedy(module: str) -> str:
 
 VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
+        "demo": ("demo", "run the whole chain on a synthetic scene, scored against truth"),
         "import": ("import_footage", "convert a video file or a frame folder to a recording"),
         "synth": ("synth", "render a synthetic scene to a recording, with exact truth"),
         "params": ("params", "print the commented default parameters of a variant"),

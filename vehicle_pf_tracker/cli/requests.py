@@ -23,6 +23,7 @@ import math
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
+from pathlib import Path
 from typing import Any, TypeVar
 
 from vehicle_pf_tracker.core.clock import MAX_DIFF
@@ -148,6 +149,20 @@ class SourceOptions(VerbRequest):
     topic: str | None = option(help="the image topic, if a recording has several")
     fps: float | None = option(
         type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class TruthOptions(VerbRequest):
+    """Request that reads the truth of videos and folders."""
+
+    truth: Path | None = option(
+        type=Path, metavar="FILE",
+        help="truth of a video or a folder (default: what lies beside a folder's images); "
+        "docs/evaluation.md lists the formats",
+    )  # fmt: skip
+    identity: int | None = option(
+        "--id", type=int, metavar="N", help="number of the target, where the truth has several"
     )
 
 

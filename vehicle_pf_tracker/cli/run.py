@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, show, tell_notices
-from vehicle_pf_tracker.cli.requests import MaxDiffOption, option, switch
+from vehicle_pf_tracker.cli.requests import MaxDiffOption, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import stopping
 from vehicle_pf_tracker.cli.tracking_options import (
@@ -57,7 +57,7 @@ PRODUCTS = (ESTIMATES, METRICS, RUN, SHEET, TRACKS)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(TrackingRequest, MaxDiffOption):
+class Request(TrackingRequest, MaxDiffOption, TruthOptions):
     """Request of `run`."""
 
     variant: str = option(
@@ -79,10 +79,13 @@ class Request(TrackingRequest, MaxDiffOption):
 def run(request: Request) -> int:
     """Track, write the results, and print a summary of each target."""
     variant = find_variant(request.variant)
-    source = open_source(request.source, topic=request.topic, fps=request.fps)
+    source = open_source(
+        request.source, topic=request.topic, fps=request.fps, truth=request.truth,
+        identity=request.identity,
+    )  # fmt: skip
     path = request.output or Path("results", Path(request.source).stem or "run")
     outputs = (Products(path, PRODUCTS), request.video, request.recording)
-    with claimed(outputs, request.inputs, overwrite=request.overwrite):
+    with claimed(outputs, (*request.inputs, request.truth), overwrite=request.overwrite):
         return _track(request, variant, source, RunFolder(path))
 
 
@@ -125,6 +128,7 @@ def _trackers(
         earliest = first_ns - max_diff_ns(request.max_diff)
         truth = next((one for one in source.truth() if one.stamp_ns >= earliest), None)
         if truth is None:
+            tell_notices(source.notices)  # they say which truth was seen and not read
             raise UsageError(
                 f"{request.source} has no truth to start on; give the vehicle's box in the first "
                 "image with --target x,y,w,h"

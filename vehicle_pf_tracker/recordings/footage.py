@@ -16,17 +16,14 @@
 
 from __future__ import annotations
 
-import csv
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.core.truth import Truth
 
 START_NS = 1_000_000_000
 """Stamp of the first image. Not 0, which many ROS programs take for "no time"."""
@@ -137,96 +134,3 @@ def stamp_of(index: int, fps: float) -> int:
             "express, 2^31 s"
         )
     return START_NS + round(index * 1e9 / fps)
-
-
-_REQUIRED = ("frame", "x", "y", "w", "h")
-
-
-@dataclass(frozen=True, slots=True)
-class TruthRow:
-    """True box (px) of the vehicle in a frame, and its occlusion."""
-
-    box: Box
-    occlusion: Occlusion
-
-
-def read_truth_table(path: Path) -> dict[int, TruthRow]:
-    """Read the truth by the number of the frame.
-
-    The columns are ``frame,x,y,w,h`` (top-left corner and size in px) and optionally ``visible``
-    (0: not at all) and ``occ`` (0 none, 1 partial, 2 total). A row with an empty cell, NaN or no
-    area says that the frame has no truth.
-
-    Raises
-    ------
-    InputError
-        If the table cannot be read, lacks a column, holds no box, names a frame twice, or has a
-        cell that is not a number.
-    """
-    if path.exists() and not path.is_file():
-        raise InputError(f"the truth {path} is not a regular file")
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            return _rows(path, csv.DictReader(stream))
-    except OSError as error:
-        raise InputError(f"cannot read the truth {path}: {error.strerror}") from error
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"the truth {path} is not a text table: {error}") from error
-
-
-def _rows(path: Path, reader: csv.DictReader[str]) -> dict[int, TruthRow]:
-    columns = [name.strip() for name in reader.fieldnames or ()]
-    if not columns:
-        raise InputError(f"the truth {path} is empty")
-    lacking = [name for name in _REQUIRED if name not in columns]
-    if lacking:
-        raise InputError(
-            f"the truth {path} lacks the column {lacking[0]}; its first line names them"
-        )
-    reader.fieldnames = columns
-    table: dict[int, TruthRow] = {}
-    seen: set[int] = set()
-    for cells in reader:
-        location = f"line {reader.line_num} of the truth {path}"
-        number, row = _row(location, cells)
-        if number in seen:
-            raise InputError(f"{location} names frame {number} a second time")
-        seen.add(number)
-        if row is not None:
-            table[number] = row
-    if not table:
-        raise InputError(f"the truth {path} holds no box")
-    return table
-
-
-def _row(location: str, cells: dict[str, str]) -> tuple[int, TruthRow | None]:
-    frame, x, y, width, height = (_number(location, name, cells.get(name)) for name in _REQUIRED)
-    if not frame.is_integer():
-        raise InputError(f"{location} has no integer as its frame")
-    values = (x, y, width, height)
-    if any(abs(value) > LARGEST_PX for value in values if math.isfinite(value)):
-        raise InputError(f"{location} has a box beyond {LARGEST_PX:.0f} px")
-    if not all(map(math.isfinite, values)) or width <= 0 or height <= 0:
-        return int(frame), None
-    return int(frame), TruthRow(Box(*values), _occlusion(location, cells))
-
-
-def _occlusion(location: str, cells: dict[str, str]) -> Occlusion:
-    if _number(location, "visible", cells.get("visible")) == 0:
-        return Occlusion.TOTAL
-    occlusion = _number(location, "occ", cells.get("occ"))
-    if math.isnan(occlusion):
-        return Occlusion.NONE
-    if occlusion not in set(Occlusion):
-        raise InputError(f"{location} has occ {occlusion:g}; it must be 0, 1 or 2")
-    return Occlusion(int(occlusion))
-
-
-def _number(location: str, name: str, cell: str | None) -> float:
-    """Read a cell; an empty or missing one is NaN."""
-    if cell is None or not cell.strip():
-        return math.nan
-    try:
-        return float(cell)
-    except ValueError:
-        raise InputError(f"{location} has {cell!r} as {name}, which is not a number") from None

@@ -24,23 +24,25 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.footage import (
     Footage,
     Picture,
-    TruthRow,
     check_fps,
-    read_truth_table,
     stamp_of,
 )
+from vehicle_pf_tracker.recordings.truth_files import TruthRow, read_truth, truth_beside
+from vehicle_pf_tracker.recordings.truth_formats import Images
 
 FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
 """The image files that are read, and what a CompressedImage calls them."""
 
 
-IMAGE_FOLDERS = ("img", "img1", ".")
-"""Places of the images in a folder, the first that has any; ``img1`` is MOTChallenge's."""
+IMAGE_FOLDERS = ("img", "img1", "color", "images", ".")
+"""Places of the images in a folder, the first that has any: OTB's and ours, MOTChallenge's, VOT's,
+CVAT's."""
 
 ASSUMED_FPS = 30.0
 """Frame rate of a folder that states none, 1/s; the commonest of video cameras."""
@@ -60,6 +62,10 @@ class FrameFolder(Footage):
         The folder; images are in one of `IMAGE_FOLDERS` below it.
     fps : float or None
         Frame rate, 1/s; None to look for it.
+    truth : Path or None
+        File of the truth; None to look for it, as `truth_beside` does.
+    identity : int or None
+        Number of the target, where the truth has several.
 
     Attributes
     ----------
@@ -75,7 +81,13 @@ class FrameFolder(Footage):
         faulty or belongs to none of the images.
     """
 
-    def __init__(self, folder: Path, fps: float | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        fps: float | None = None,
+        truth: Path | None = None,
+        identity: int | None = None,
+    ) -> None:
         self._folder = folder
         self.images = _numbered_images(folder)
         self.frame_count = len(self.images)
@@ -83,31 +95,41 @@ class FrameFolder(Footage):
         self._is_assumed = stated is None
         self.fps = ASSUMED_FPS if stated is None else stated
         stamp_of(max(self.images) - min(self.images), self.fps)  # refuses what ROS cannot express
-        truth_path = folder / "groundtruth.csv"
-        self.rows = read_truth_table(truth_path) if truth_path.exists() else {}
+        names = {path.name: number for number, path in self.images.items()}
+        images = Images(list(self.images), self._size, names)
+        if truth is None:
+            beside = folder.parent if folder.name in IMAGE_FOLDERS else folder
+            self.rows, self._notices = truth_beside(beside, images, identity)
+        else:
+            self.rows, self._notices = read_truth([truth], images, identity)
         if self.rows and not self.rows.keys() & self.images.keys():
-            raise InputError(f"no frame of the truth {truth_path} has an image")
+            raise InputError(f"no frame of the truth {truth or 'in ' + str(folder)} has an image")
+
+    @property
+    def stamps(self) -> list[int]:
+        """Stamps of the images in ns; the first is at the start, whatever its number."""
+        first = min(self.images)
+        return [stamp_of(number - first, self.fps) for number in self.images]
 
     def frames(self) -> Iterator[Picture]:
-        """Yield the images by their numbers; the first is at the start, whatever its number."""
-        first = min(self.images)
-        for number, path in self.images.items():
-            stamp = stamp_of(number - first, self.fps)
+        """Yield the images by their numbers."""
+        for (number, path), stamp in zip(self.images.items(), self.stamps, strict=True):
             yield _picture(path, stamp, self.rows.get(number))
 
     def truth(self) -> list[Truth]:
         """Return the truth of all images, in order."""
-        first = min(self.images)
-        return [
-            Truth(stamp_of(number - first, self.fps), row.box, row.occlusion)
-            for number, row in sorted(self.rows.items())
-            if number in self.images
-        ]
+        rows = (
+            (stamp, self.rows.get(n)) for n, stamp in zip(self.images, self.stamps, strict=True)
+        )
+        return [Truth(stamp, row.box, row.occlusion) for stamp, row in rows if row is not None]
+
+    def _size(self) -> tuple[int, int]:
+        return frame_size(_picture(next(iter(self.images.values())), 0, None).frame)
 
     @property
     def notices(self) -> list[str]:
-        """Report an assumed frame rate, and truth without an image."""
-        notices = []
+        """Report an assumed frame rate, truth that was read or not, and truth without an image."""
+        notices = list(self._notices)
         if self._is_assumed:
             notices.append(
                 f"the folder {self._folder} states no frame rate; {ASSUMED_FPS:g} frames/s are "
@@ -117,11 +139,18 @@ class FrameFolder(Footage):
         return notices + ([f"frames of the truth without an image: {lost}"] if lost else [])
 
 
-def _numbered_images(folder: Path) -> dict[int, Path]:
+def image_files(folder: Path) -> list[Path]:
+    """Return the images in a folder or in one of `IMAGE_FOLDERS` below it, by name."""
     for name in IMAGE_FOLDERS:
         paths = sorted(p for p in (folder / name).glob("*") if p.suffix.lower() in FORMATS)
         if paths:
-            return dict(sorted(_by_number(paths).items()))
+            return paths
+    return []
+
+
+def _numbered_images(folder: Path) -> dict[int, Path]:
+    if paths := image_files(folder):
+        return dict(sorted(_by_number(paths).items()))
     raise InputError(f"the folder {folder} has no images img/000001.jpg, ... (jpg or png)")
 
 

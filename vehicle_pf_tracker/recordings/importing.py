@@ -24,7 +24,7 @@ import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.recordings.footage import Footage, Picture
+from vehicle_pf_tracker.recordings.footage import Picture
 from vehicle_pf_tracker.recordings.video import is_recording, open_footage
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
@@ -56,11 +56,12 @@ class ImportSummary:
     notices: tuple[str, ...]
 
 
-def import_recording(
+def import_recording(  # noqa: PLR0913 - one for each option of the command
     source: Path,
     out: Path,
     *,
     truth: Path | None = None,
+    identity: int | None = None,
     fps: float | None = None,
     format: str | None = None,  # noqa: A002 (named as the option of the command)
     progress: Callable[[int, int | None], None] | None = None,
@@ -75,7 +76,9 @@ def import_recording(
     out : Path
         The rosbag2 folder to write.
     truth : Path or None
-        The truth of a video, a table like a frame folder's ``groundtruth.csv``.
+        File of the truth; None takes what lies beside the images of a folder.
+    identity : int or None
+        Number of the target, where the truth has several.
     fps : float or None
         Frame rate, 1/s; None takes what the source states.
     format : str or None
@@ -93,7 +96,8 @@ def import_recording(
     """
     if format is not None and format not in FORMATS:
         raise InputError(f"the format {format!r} is unknown; choose from {', '.join(FORMATS)}")
-    footage = _open(source, truth, fps)
+    _refuse(source)
+    footage = open_footage(source, truth=truth, fps=fps, identity=identity)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
         for picture in footage.frames():
@@ -111,12 +115,11 @@ def import_recording(
     return ImportSummary(frames, truths, footage.fps, *size, tuple(footage.notices))
 
 
-def _open(source: Path, truth: Path | None, fps: float | None) -> Footage:
+def _refuse(source: Path) -> None:
     if not source.exists():
         raise InputError(f"there is no file or folder {source} to import")
     if is_recording(source):
         raise InputError(f"{source} is a recording already")
-    return open_footage(source, truth=truth, fps=fps)
 
 
 def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:

@@ -55,7 +55,12 @@ class Source(Protocol):
 
 
 def open_source(
-    source: str | Path, *, topic: str | None = None, fps: float | None = None
+    source: str | Path,
+    *,
+    topic: str | None = None,
+    fps: float | None = None,
+    truth: Path | None = None,
+    identity: int | None = None,
 ) -> Recording | Footage:
     """Open a recording, a video file, a folder of images, a camera or a stream.
 
@@ -67,6 +72,10 @@ def open_source(
         The image topic, where a recording has several.
     fps : float or None
         Frame rate of a folder or a video, 1/s; None takes what it states.
+    truth : Path or None
+        File of the truth of a folder or a video; None takes what lies beside a folder's images.
+    identity : int or None
+        Number of the target, where the truth has several.
 
     Raises
     ------
@@ -77,8 +86,10 @@ def open_source(
     if is_recording(path):
         if fps is not None:
             raise InputError(f"{path} is a recording, whose images have stamps; leave --fps out")
+        if truth is not None or identity is not None:
+            raise InputError(f"{path} is a recording, with its own truth; leave --truth, --id out")
         return Recording(path, topic)
-    footage = open_footage(source, fps=fps)
+    footage = open_footage(source, truth=truth, fps=fps, identity=identity)
     if topic is not None:
         raise InputError(f"{source} is not a recording and has no topics; leave --topic out")
     return footage

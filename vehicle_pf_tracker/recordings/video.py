@@ -38,10 +38,11 @@ from vehicle_pf_tracker.recordings.footage import (
     Footage,
     Picture,
     check_fps,
-    read_truth_table,
     stamp_of,
 )
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
+from vehicle_pf_tracker.recordings.truth_files import read_truth
+from vehicle_pf_tracker.recordings.truth_formats import Images
 
 _SILENT = 0
 """OpenCV's level at which it logs nothing."""
@@ -64,6 +65,8 @@ def quiet_opencv() -> Iterator[None]:
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
 
 
+_MOST_FRAMES = 10_000_000
+"""Frames that truth may name in a video that states no number: four days of 30 frames/s."""
 _ROUNDING_NS = 1_000_000
 """Largest difference of a stated time from an even rate that is rounding: containers keep ms."""
 
@@ -79,9 +82,11 @@ class VideoFile(Footage):
     path : Path or str
         The file, or a URL of one.
     truth : Path or None
-        A table as `read_truth_table` reads it, frames counted from 1.
+        File of the truth, as `read_truth` reads it; frames count from 1.
     fps : float or None
         Frame rate, 1/s, that takes the place of all stated times.
+    identity : int or None
+        Number of the target, where the truth has several.
 
     Raises
     ------
@@ -90,10 +95,14 @@ class VideoFile(Footage):
     """
 
     def __init__(
-        self, path: Path | str, truth: Path | None = None, fps: float | None = None
+        self,
+        path: Path | str,
+        truth: Path | None = None,
+        fps: float | None = None,
+        identity: int | None = None,
     ) -> None:
         self._path = path
-        self._truth = {} if truth is None else read_truth_table(truth)
+        self._stamps: dict[int, int] = {}
         self._read = self._without_time = 0
         self._ended = False
         self._keeps_times = fps is None
@@ -101,10 +110,15 @@ class VideoFile(Footage):
         self.fps = float(video.get(cv2.CAP_PROP_FPS)) if fps is None else check_fps(fps, "--fps")
         stated = video.get(cv2.CAP_PROP_FRAME_COUNT)
         self.frame_count = int(stated) if math.isfinite(stated) and stated > 0 else None
+        size = (int(video.get(cv2.CAP_PROP_FRAME_WIDTH)), int(video.get(cv2.CAP_PROP_FRAME_HEIGHT)))
         video.release()
         if not math.isfinite(self.fps) or self.fps <= 0:
             raise InputError(f"the video {path} states no frame rate; give it with --fps")
         check_fps(self.fps, path)
+        images = Images(range(1, (self.frame_count or _MOST_FRAMES) + 1), lambda: size, {})
+        self._truth, self._notices = (
+            ({}, []) if truth is None else read_truth([truth], images, identity)
+        )
 
     def frames(self) -> Iterator[Picture]:
         """Yield the frames with their stamps."""
@@ -116,6 +130,8 @@ class VideoFile(Footage):
                 stamp, number = self._stamp(video, last), self._read + 1
                 row = self._truth.get(number)
                 truth = None if row is None else Truth(stamp, row.box, row.occlusion)
+                if truth is not None:
+                    self._stamps[number] = stamp
                 yield Picture(stamp, frame, f"frame {number} of {self._path}", truth=truth)
                 self._read, last = number, stamp
             self._ended = True
@@ -123,6 +139,14 @@ class VideoFile(Footage):
             video.release()
         if not self._read:
             raise InputError(f"no frame of the video {self._path} can be decoded")
+
+    def truth(self) -> list[Truth]:
+        """Return the truth, at even stamps where its frames are not read yet."""
+        return [
+            Truth(self._stamps.get(n, stamp_of(n - 1, self.fps)), row.box, row.occlusion)
+            for n, row in sorted(self._truth.items())
+            if n >= 1
+        ]
 
     def _stamp(self, video: cv2.VideoCapture, last: int) -> int:
         """Return the stamp of the frame just read, in ns, later than the one before."""
@@ -140,7 +164,7 @@ class VideoFile(Footage):
     @property
     def notices(self) -> list[str]:
         """Report fewer frames than the file states, and truth without a frame."""
-        notices = []
+        notices = list(self._notices)
         if self._ended and self.frame_count is not None and self._read < self.frame_count:
             notices.append(
                 f"the video {self._path} states {self.frame_count} frames, {self._read} could be "
@@ -223,7 +247,11 @@ _CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
 
 
 def open_footage(
-    source: str | Path, *, truth: Path | None = None, fps: float | None = None
+    source: str | Path,
+    *,
+    truth: Path | None = None,
+    fps: float | None = None,
+    identity: int | None = None,
 ) -> Footage:
     """Open a video file, a folder of images, a camera or a stream.
 
@@ -232,34 +260,35 @@ def open_footage(
     source : str or Path
         Path; index of a camera, as ``0``; or URL, as ``rtsp://...`` or ``https://...``.
     truth : Path or None
-        Truth of a video, a table as `read_truth_table` reads it.
+        File of the truth, as `read_truth` reads it; None takes what lies beside a folder's images.
     fps : float or None
         Frame rate of a folder or a video, 1/s; None takes what it states.
+    identity : int or None
+        Number of the target, where the truth has several.
 
     Raises
     ------
     InputError
-        If there is no such source, it is a bag, or it is not a video but a truth is given.
+        If there is no such source, it is a bag, or a truth is given for a live source.
     """
     text = str(source)
-    if text.isdecimal() and not Path(text).exists():
-        return Camera(int(text))
-    if "://" in text:
-        camera = Camera(text)
-        return camera if camera.is_endless else VideoFile(text, fps=fps)
+    is_index = text.isdecimal() and not Path(text).exists()
+    if is_index or "://" in text:
+        camera = Camera(int(text) if is_index else text)
+        if not is_index and not camera.is_endless:
+            return VideoFile(text, truth, fps, identity)
+        if truth is not None:
+            raise InputError(f"{source} is live and has no truth; leave --truth out")
+        return camera
     path = Path(text)
     _refuse_other_bags(path)
     if not path.exists():
         raise InputError(f"there is no file or folder {path}")
-    if path.is_dir() and truth is not None:
-        raise InputError(
-            f"the truth of the frame folder {path} is its groundtruth.csv; --truth is for videos"
-        )
     if path.is_dir():
-        return FrameFolder(path, fps)
+        return FrameFolder(path, fps, truth, identity)
     if not path.is_file():
         raise InputError(f"{path} is not a regular file or a folder")
-    return VideoFile(path, truth, fps)
+    return VideoFile(path, truth, fps, identity)
 
 
 def is_live(footage: Footage) -> bool:

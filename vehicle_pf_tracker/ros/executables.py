@@ -18,12 +18,13 @@ from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
 
+_VIDEO = "video_source"
 _NO_ROS = (
     "ROS 2 was not found (no module {}): source its setup.bash, or install this package with the "
     "extra [ros]"
@@ -31,12 +32,14 @@ _NO_ROS = (
 
 
 def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
-    """Run the node of a variant, or of `traffic`.
+    """Run the node of a variant, of `traffic`, or `video_source`.
+
+    It imports late, so that a signal while libraries load ends the program without a traceback.
 
     Parameters
     ----------
     variant : str, optional
-        Name in the registry; that of the running executable if left out.
+        Name in the registry, or ``video_source``; that of the running executable if left out.
     args : sequence of str, optional
         Command line without the program's name; that of the process if left out.
 
@@ -46,54 +49,10 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
         Exit status; see `vehicle_pf_tracker.ros.node.process.run_node`.
     """
     name = variant or Path(sys.argv[0]).stem.removesuffix("_tracker")
-
-    def run() -> int:
-        from vehicle_pf_tracker.trackers.registry import TRAFFIC, find_node  # noqa: PLC0415
-
-        found, words = find_node(name), sys.argv[1:] if args is None else args
-        from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
-
-        if found is TRAFFIC:
-            from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode  # noqa: PLC0415
-
-            return run_node(found.executable, TrafficNode, words)
-        from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode  # noqa: PLC0415
-
-        return run_node(found.executable, partial(TrackerNode, found), words)
-
-    return _status(f"{name}_tracker", run)
-
-
-def video_source(args: Sequence[str] | None = None) -> int:
-    """Run the node that publishes a video, a folder of images, a camera or a stream.
-
-    Parameters
-    ----------
-    args : sequence of str, optional
-        Command line without the program's name; that of the process if left out.
-
-    Returns
-    -------
-    int
-        Exit status; see `vehicle_pf_tracker.ros.video_source.source_node.run_video_source`.
-    """
-
-    def run() -> int:
-        from vehicle_pf_tracker.ros.video_source.source_node import run_video_source  # noqa: PLC0415
-
-        return run_video_source(sys.argv[1:] if args is None else args)
-
-    return _status("video_source", run)
-
-
-def _status(program: str, run: Callable[[], int]) -> int:
-    """Return the status of `run`, which imports what it needs.
-
-    It imports late, so that a signal while libraries load ends the program without a traceback.
-    """
+    program = name if name == _VIDEO else f"{name}_tracker"
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        return run()
+        return _run(name, sys.argv[1:] if args is None else args)
     except InputError as error:
         print(f"{program}: {error}", file=sys.stderr)
         return 1
@@ -105,3 +64,26 @@ def _status(program: str, run: Callable[[], int]) -> int:
         return 1
     except KeyboardInterrupt:
         return 0
+
+
+video_source = main
+"""Entry point of the executable of that name."""
+
+
+def _run(name: str, words: Sequence[str]) -> int:
+    if name == _VIDEO:
+        from vehicle_pf_tracker.ros.video_source.source_node import run_video_source  # noqa: PLC0415
+
+        return run_video_source(words)
+    from vehicle_pf_tracker.trackers.registry import TRAFFIC, find_node  # noqa: PLC0415
+
+    found = find_node(name)
+    from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
+
+    if found is TRAFFIC:
+        from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode  # noqa: PLC0415
+
+        return run_node(found.executable, TrafficNode, words)
+    from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode  # noqa: PLC0415
+
+    return run_node(found.executable, partial(TrackerNode, found), words)

@@ -68,7 +68,7 @@ def start(start_process):
     def start(source, **parameters):
         code = (
             "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler);"
-            "from vehicle_pf_tracker.ros.executables import video_source; sys.exit(video_source())"
+            "from vehicle_pf_tracker.ros.executables import main; sys.exit(main('video_source'))"
         )
         given = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
         return start_process("-c", code, str(source), "--ros-args", *given)

@@ -1,0 +1,108 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`demo`: the other verbs on a synthetic scene, in the order in which a user would type them."""
+
+from __future__ import annotations
+
+import csv
+import importlib.util
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from vehicle_pf_tracker.cli.console import PROGRAM, tell_notice
+from vehicle_pf_tracker.cli.main import EVALUATION_MODULES
+from vehicle_pf_tracker.cli.requests import OverwriteOption, option
+from vehicle_pf_tracker.core.errors import InputError
+
+_VERB = "from vehicle_pf_tracker.cli.main import main; raise SystemExit(main())"
+_NODE = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('fusion'))"
+_PATIENCE = "600"
+"""Patience with a busy machine that compiles kernels, s; a quiet one needs a few."""
+_STEP_TIME = "step_ms"
+"""The one column of estimates.csv that depends on the machine's speed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request(OverwriteOption):
+    """Request of `demo`."""
+
+    output: Path = option(
+        "-o", type=Path, default=Path("results/demo"), metavar="DIR",
+        help="folder for recording, estimates, video and scores (default: results/demo)",
+    )  # fmt: skip
+
+
+def run(request: Request) -> int:
+    """Run the whole chain; return 1 if the node's numbers differ from those of `run`."""
+    replaced = ["--overwrite"] if request.overwrite else []
+    folder = request.output
+    recording, offline, ros = (str(folder / name) for name in ("recording", "offline", "ros"))
+    video = str(folder / "demo.mp4")
+    _verb("synth", "highway", recording, *replaced)
+    _verb("run", recording, "--seed", "0", "-o", offline, "--video", video, *replaced)
+    same = True
+    if importlib.util.find_spec("rclpy") is None:
+        tell_notice("ROS is not installed or not sourced, so no node is run")
+    else:
+        with _node():
+            _verb(
+                "replay", recording, "--lockstep", "--node", "fusion_tracker",
+                "--timeout", _PATIENCE, "-o", ros, *replaced,
+            )  # fmt: skip
+        same = _numbers(Path(ros)) == _numbers(Path(offline))
+        print(f"the node's numbers are {'' if same else 'NOT '}those of `run`")
+    if all(importlib.util.find_spec(name) for name in EVALUATION_MODULES):
+        scores = str(folder / "evaluation")
+        _verb("evaluate", recording, "--variants", "fusion,apf,pf", "--seeds", "3", "-o", scores)
+    else:
+        tell_notice("nothing is scored without the extra [evaluation]")
+    print(f"the video is {video}")
+    return 0 if same else 1
+
+
+def _verb(*words: str) -> None:
+    """Run a verb as a process of its own, and show what one would type."""
+    print(f"+ {PROGRAM} {' '.join(words)}", flush=True)
+    status = subprocess.run([sys.executable, "-c", _VERB, *words], check=False).returncode
+    if status:
+        raise InputError(f"the demo ends here: {words[0]} ended with status {status}")
+
+
+@contextmanager
+def _node() -> Iterator[None]:
+    """Run the node of `fusion`, in a ROS domain away from robots unless the user has chosen one."""
+    os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 101))
+    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    words = ["--ros-args", "--log-level", "warn", "-r", "image:=/camera/image_raw", "-p", "seed:=0"]
+    print(f"+ fusion_tracker {' '.join(words)} &", flush=True)
+    node = subprocess.Popen([sys.executable, "-c", _NODE, *words])
+    try:
+        yield
+    finally:
+        node.terminate()
+        node.wait()
+
+
+def _numbers(folder: Path) -> Sequence[dict[str, str]]:
+    with (folder / "estimates.csv").open(newline="", encoding="utf-8") as file:
+        return [
+            {name: value for name, value in row.items() if name != _STEP_TIME}
+            for row in csv.DictReader(file)
+        ]

@@ -1,0 +1,181 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+"""Truth as it lies beside images: where its files are, and the rows of one target."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.recordings.footage import LARGEST_PX
+from vehicle_pf_tracker.recordings.truth_formats import (
+    FORMATS,
+    Images,
+    Label,
+    Reader,
+    UnreadTruthError,
+    in_order,
+    read_text,
+)
+
+_IDS_SHOWN = 20
+"""Identities that an error lists: more are hard to read on a terminal."""
+_OWN = "groundtruth.csv"
+_ANYTHING = ("*groundtruth*", "*annotation*")
+"""What may be truth, and is read if it is."""
+_PLACES = (
+    _OWN,
+    "groundtruth_rect.txt",  # OTB
+    "groundtruth.txt",  # VOT, LaSOT, GOT-10k
+    "groundtruth*[._][0-9].txt",  # OTB and VOT, several targets
+    "{name}_gt.txt",  # TC128
+    "gt/gt.txt",  # MOTChallenge
+    "annotations.xml",  # CVAT
+    "project-*.json",  # Label Studio
+    "../anno/{name}.txt",
+    "../../../anno/{parent}/{name}.txt",  # UAV123: data_seq/UAV123/NAME, anno/UAV123/NAME.txt
+    "../../label_02/{name}.txt",  # KITTI: image_02/NAME
+    "../../*/anno/{name}_gt.txt",  # UAVDT-S: UAV-benchmark-S/NAME, .../anno/NAME_gt.txt
+    "../../*/GT/{name}_gt_whole.txt",  # UAVDT-M
+    "../../../anno/{parent}/{name}_[0-9].txt",  # UAV123's parts of a video
+    *_ANYTHING,
+)
+"""Where truth lies, from the folder of the images."""
+
+
+@dataclass(frozen=True, slots=True)
+class TruthRow:
+    """True box (px) of the vehicle in a frame, and its occlusion."""
+
+    box: Box
+    occlusion: Occlusion
+
+
+Table = dict[int, TruthRow]
+
+
+def truth_beside(
+    folder: Path, images: Images, identity: int | None = None
+) -> tuple[Table, list[str]]:
+    """Read the truth that lies with the images in `folder`.
+
+    Returns
+    -------
+    table : dict of int to TruthRow
+        The truth by the number of its image; empty where there is none.
+    notices : list of str
+        What was read, and what was seen and not read, a sentence each.
+
+    Raises
+    ------
+    InputError
+        As `read_truth`, of a file that is named as truth, but no `UnreadTruthError`.
+    """
+    folder, notices = folder.resolve(), list[str]()
+    names = {"name": folder.name, "parent": folder.parent.name}
+    seen: set[Path] = set()
+    for pattern in _PLACES:
+        paths = sorted(set(folder.glob(pattern.format_map(names))) - seen)
+        seen.update(paths)
+        try:
+            if paths:
+                table, said = read_truth(paths, images, identity)
+                read = [f"the truth is read from {paths[0]}"] if pattern != _OWN else []
+                return table, [*notices, *read, *said]
+        except InputError as error:
+            if not (isinstance(error, UnreadTruthError) or pattern in _ANYTHING):
+                raise
+            notices.append(str(error))
+    return {}, notices
+
+
+def read_truth(
+    paths: Sequence[Path], images: Images, identity: int | None = None
+) -> tuple[Table, list[str]]:
+    """Read the truth of a target, by the number of the image, and say what is irregular.
+
+    Several files are of one target each, the number that ends a file's name.
+
+    Raises
+    ------
+    UnreadTruthError
+        If a file is in no known format, or there are several targets and no `identity`.
+    InputError
+        If a file cannot be read, names a frame twice, or has a cell that is not a number; or if
+        there is no box, or no target `identity`.
+    """
+    targets: dict[int, dict[int, TruthRow | None]] = {}
+    notices = []
+    for path in paths:
+        text = read_text(path)
+        reader = _reader(path, text)
+        labels = list(reader(path, text, images))
+        if reader is in_order and len(labels) < len(images.numbers):
+            notices.append(
+                f"{path} has {len(labels)} rows for {len(images.numbers)} images; its first is "
+                f"taken for image {labels[0].number:g}"
+            )
+        for label in labels:
+            number, target, row = _row(label)
+            rows = targets.setdefault(target, {})
+            if number in rows:
+                raise InputError(f"{label.where} names frame {number} a second time")
+            rows[number] = row
+    table = {n: row for n, row in _chosen(paths[0], targets, identity).items() if row is not None}
+    if not table:
+        raise InputError(f"the truth {paths[0]} holds no box")
+    return table, notices
+
+
+def _reader(path: Path, text: str) -> Reader:
+    first = next((line.strip() for line in text.splitlines() if line.strip()), None)
+    if first is None:
+        raise InputError(f"the truth {path} is empty")
+    for pattern, reader in FORMATS.items():
+        if re.fullmatch(pattern, first, re.IGNORECASE):
+            return reader
+    raise UnreadTruthError(f"{path} looks like truth, but is in no format that is read")
+
+
+def _row(label: Label) -> tuple[int, int, TruthRow | None]:
+    """Return frame and target of a label, and its row; None where the target is absent."""
+    for value, name in ((label.number, "frame"), (label.identity, "target")):
+        if not float(value).is_integer():
+            raise InputError(f"{label.where} has no integer as its {name}")
+    if any(abs(value) > LARGEST_PX for value in label.sides if math.isfinite(value)):
+        raise InputError(f"{label.where} has a box beyond {LARGEST_PX:.0f} px")
+    is_box = all(map(math.isfinite, label.sides)) and min(label.sides[2:]) > 0
+    row = TruthRow(Box(*label.sides), label.occlusion) if is_box else None
+    return int(label.number), int(label.identity), row
+
+
+def _chosen(
+    path: Path, targets: dict[int, dict[int, TruthRow | None]], identity: int | None
+) -> dict[int, TruthRow | None]:
+    """Return the rows of the target, or of the only one."""
+    listed = ", ".join([*map(str, sorted(targets)[:_IDS_SHOWN]), "..."][: len(targets)])
+    if identity is None and len(targets) > 1:
+        raise UnreadTruthError(
+            f"{path} has the truth of {len(targets)} targets; `run` and `import` take one with "
+            f"--id: {listed}"
+        )
+    if identity is not None and identity not in targets:
+        raise InputError(f"the truth {path} has no target {identity}; it has {listed}")
+    return next(iter(targets.values()), {}) if identity is None else targets[identity]
