@@ -100,7 +100,8 @@ def truth_beside(
                 read = [f"the truth is read from {paths[0]}"] if pattern != _OWN else []
                 return table, [*notices, *read, *said]
         except InputError as error:
-            if not (isinstance(error, UnreadTruthError) or pattern in _ANYTHING):
+            is_unread = isinstance(error, UnreadTruthError) and pattern != _OWN
+            if not is_unread and pattern not in _ANYTHING:
                 raise
             notices.append(str(error))
     return {}, notices
@@ -116,10 +117,11 @@ def read_truth(
     Raises
     ------
     UnreadTruthError
-        If a file is in no known format, or there are several targets and no `identity`.
+        If a file is in no known format or holds no box, or there are several targets and no
+        `identity`.
     InputError
         If a file cannot be read, names a frame twice, or has a cell that is not a number; or if
-        there is no box, or no target `identity`.
+        there is no target `identity`.
     """
     targets: dict[int, dict[int, TruthRow | None]] = {}
     notices = []
@@ -127,9 +129,9 @@ def read_truth(
         text = read_text(path)
         reader = _reader(path, text)
         labels = list(reader(path, text, images))
-        if reader is in_order and len(labels) < len(images.numbers):
+        if reader is in_order and len(labels) < len(images.names):
             notices.append(
-                f"{path} has {len(labels)} rows for {len(images.numbers)} images; its first is "
+                f"{path} has {len(labels)} rows for {len(images.names)} images; its first is "
                 f"taken for image {labels[0].number:g}"
             )
         for label in labels:
@@ -140,7 +142,7 @@ def read_truth(
             rows[number] = row
     table = {n: row for n, row in _chosen(paths[0], targets, identity).items() if row is not None}
     if not table:
-        raise InputError(f"the truth {paths[0]} holds no box")
+        raise UnreadTruthError(f"the truth {paths[0]} holds no box")
     return table, notices
 
 
