@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """The formats of truth: those of data sets, of annotation tools, and our own table.
 
 Each reader yields the boxes that a file states, in our coordinates: the first pixel begins at 0.
