@@ -21,7 +21,6 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import cv2
@@ -36,7 +35,7 @@ from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
 from vehicle_pf_tracker.offline.drawing import draw_box, write_words
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.source import open_source
 
 _BLACK, _WHITE, _YELLOW = (0, 0, 0), (255, 255, 255), (240, 228, 66)
 
@@ -199,7 +198,7 @@ def take_stills(entry: Source, shots: Iterable[Shot]) -> dict[Shot, Still]:
     for shot in shots:
         waiting.setdefault(shot.frame, []).append(shot)
     stills: dict[Shot, Still] = {}
-    recording = Recording(Path(entry.path), entry.topic)
+    recording = open_source(entry.path, topic=entry.topic or None)
     for number, stamped in enumerate(recording.frames(), start=1):
         if not waiting:
             break
