@@ -38,7 +38,7 @@ from vehicle_pf_tracker.evaluation.result_store import scoring_digest
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.offline.driver import OfflineTracker
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
-from vehicle_pf_tracker.offline.output_files import flush_folder, make_folder, write_json
+from vehicle_pf_tracker.offline.output_files import flush, make_folder, write_json
 from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.offline.run_folder import (
     RUN,
@@ -214,7 +214,7 @@ def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]
             results.write_run(outcome.rows, {**outcome.run, **keys})
             results.write_metrics(outcome.metrics.to_json())
             seal(partial)
-    flush_folder(folder.parent)
+    flush(folder.parent)
 
 
 _MOST_NAMED = 5
