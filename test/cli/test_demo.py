@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """The demo: which verbs it runs, what it says is missing, and that it notices a difference."""
 
 import importlib.util

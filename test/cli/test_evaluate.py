@@ -159,11 +159,13 @@ def test_things_that_are_no_recordings_say_what_to_do(tmp_path, capsys):
     (tmp_path / "clip.mp4").touch()
     (tmp_path / "notes.txt").touch()
     (tmp_path / "empty").mkdir()
-    frame_folder(tmp_path / "frames")
+    frames = frame_folder(tmp_path / "frames")
+    (frames / "groundtruth.csv").rename(frames / "groundtruth.old")
+    (frames / "groundtruth.old").write_text("m4,5,2")
     record(tmp_path / "untrue", truths=())
     for name, said in {
         "clip.mp4": "is a video; make a recording of it first: `vehicle-pf-tracker import ",
-        "frames": "is a frame folder; make a recording of it first",
+        "frames": "groundtruth.old looks like truth, but is in no format that is read",
         "notes.txt": "is not a recording: give a rosbag2 folder",
         "empty": "is not a recording and holds none",
         "none": "there is no recording",
@@ -173,6 +175,25 @@ def test_things_that_are_no_recordings_say_what_to_do(tmp_path, capsys):
         (line,) = capsys.readouterr().err.splitlines()
         assert str(tmp_path / name) in line
         assert said in line
+
+
+def test_folders_of_images_are_evaluated_as_their_imports(tmp_path):
+    def scores(name, source):
+        assert evaluate(tmp_path / name, source, "--variants", "ms") == 0
+        return {
+            path.parts[-4]: json.loads(path.read_text())["rmse_px"]
+            for path in (tmp_path / name).glob("cells/*/ms/*/metrics.json")
+        }
+
+    for name in ("a", "b"):
+        folder = frame_folder(tmp_path / "frames" / name)
+        assert main(["import", str(folder), str(tmp_path / "bags" / name)]) == 0
+    found = scores("out", tmp_path / "frames")
+    assert sorted(found) == ["a", "b"]
+    assert found == scores("imported", tmp_path / "bags")
+    truth = folder / "groundtruth.csv"
+    truth.write_text(truth.read_text().replace(",24,", ",9,"))
+    assert scores("out", tmp_path / "frames")["b"] != found["b"]
 
 
 def test_recordings_of_one_name_are_told_apart(tmp_path):

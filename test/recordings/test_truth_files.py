@@ -245,7 +245,14 @@ def test_the_truth_above_the_folder_of_the_images_is_found(lay):
     [
         ("groundtruth.txt", "m4,5,2,3,100", "is in no format that is read"),
         ("car_groundtruth.mat", "MATLAB 5.0", "is in no format that is read"),
+        ("annotations/1.txt", "", "annotations is not a regular file"),
         ("annotations.xml", "<annotations><track", "is not whole XML"),
+        ("annotations.xml", "<annotation><object/></annotation>", "holds no box"),
+        (
+            "annotations.xml",
+            f"<annotations><image id='0'>{cvat_box(1) * 2}</image></annotations>",
+            "has several boxes in an image, and no tracks",
+        ),
         ("project-1.json", '[{"image": "1.jpg"}]', "is not Label Studio's export as JSON"),
         ("gt/gt.txt", track(3) + track(8), "has the truth of 2 targets; .* --id: 3, 8"),
     ],
@@ -269,7 +276,7 @@ def test_what_is_seen_and_not_read_is_said(lay, tmp_path, capsys, name, content,
         ("gt/gt.txt", "1,2.5,3,4,5,6\n", {}, "no integer as its target"),
         ("groundtruth.txt", "1,2,3,4\n1,2,3,4,5\n", {}, "line 2 .* 5 numbers; a box has 4"),
         ("groundtruth.txt", "1,2,3,4\n1,2,3,four\n", {}, "line 2 .* 'four' as number 4"),
-        ("groundtruth.txt", "nan,nan,nan,nan\n", {}, "holds no box"),
+        ("groundtruth.csv", "nan,nan,nan,nan\n", {}, "holds no box"),
         ("project-1.json", STUDIO_VIDEO.replace('"rotation": 0', '"rotation": 3'), {}, "rotated"),
     ],
 )

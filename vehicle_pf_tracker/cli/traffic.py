@@ -149,6 +149,7 @@ def _tracking(
         make_detector,
         frame_rate=parameters.frame_rate,
         reset_on_time_jump=settings.reset_on_time_jump,
+        every=parameters.detector.every,
     )
     counter = Counter(plan, plane) if plan else None
     return TrafficRun(

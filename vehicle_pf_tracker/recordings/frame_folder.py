@@ -105,21 +105,23 @@ class FrameFolder(Footage):
         if self.rows and not self.rows.keys() & self.images.keys():
             raise InputError(f"no frame of the truth {truth or 'in ' + str(folder)} has an image")
 
-    def frames(self) -> Iterator[Picture]:
-        """Yield the images by their numbers; the first is at the start, whatever its number."""
+    @property
+    def stamps(self) -> list[int]:
+        """Stamps of the images in ns; the first is at the start, whatever its number."""
         first = min(self.images)
-        for number, path in self.images.items():
-            stamp = stamp_of(number - first, self.fps)
+        return [stamp_of(number - first, self.fps) for number in self.images]
+
+    def frames(self) -> Iterator[Picture]:
+        """Yield the images by their numbers."""
+        for (number, path), stamp in zip(self.images.items(), self.stamps, strict=True):
             yield _picture(path, stamp, self.rows.get(number))
 
     def truth(self) -> list[Truth]:
         """Return the truth of all images, in order."""
-        first = min(self.images)
-        return [
-            Truth(stamp_of(number - first, self.fps), row.box, row.occlusion)
-            for number, row in sorted(self.rows.items())
-            if number in self.images
-        ]
+        rows = (
+            (stamp, self.rows.get(n)) for n, stamp in zip(self.images, self.stamps, strict=True)
+        )
+        return [Truth(stamp, row.box, row.occlusion) for stamp, row in rows if row is not None]
 
     def _size(self) -> tuple[int, int]:
         return frame_size(_picture(next(iter(self.images.values())), 0, None).frame)
@@ -137,11 +139,18 @@ class FrameFolder(Footage):
         return notices + ([f"frames of the truth without an image: {lost}"] if lost else [])
 
 
-def _numbered_images(folder: Path) -> dict[int, Path]:
+def image_files(folder: Path) -> list[Path]:
+    """Return the images in a folder or in one of `IMAGE_FOLDERS` below it, by name."""
     for name in IMAGE_FOLDERS:
         paths = sorted(p for p in (folder / name).glob("*") if p.suffix.lower() in FORMATS)
         if paths:
-            return dict(sorted(_by_number(paths).items()))
+            return paths
+    return []
+
+
+def _numbered_images(folder: Path) -> dict[int, Path]:
+    if paths := image_files(folder):
+        return dict(sorted(_by_number(paths).items()))
     raise InputError(f"the folder {folder} has no images img/000001.jpg, ... (jpg or png)")
 
 

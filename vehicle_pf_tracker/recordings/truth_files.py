@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Truth as it lies beside images: where its files are, and the rows of one target."""
 
 from __future__ import annotations
@@ -38,6 +39,8 @@ from vehicle_pf_tracker.recordings.truth_formats import (
 _IDS_SHOWN = 20
 """Identities that an error lists: more are hard to read on a terminal."""
 _OWN = "groundtruth.csv"
+_ANYTHING = ("*groundtruth*", "*annotation*")
+"""What may be truth, and is read if it is."""
 _PLACES = (
     _OWN,
     "groundtruth_rect.txt",  # OTB
@@ -53,10 +56,9 @@ _PLACES = (
     "../../*/anno/{name}_gt.txt",  # UAVDT-S: UAV-benchmark-S/NAME, .../anno/NAME_gt.txt
     "../../*/GT/{name}_gt_whole.txt",  # UAVDT-M
     "../../../anno/{parent}/{name}_[0-9].txt",  # UAV123's parts of a video
-    "*groundtruth*",
-    "*annotation*",
+    *_ANYTHING,
 )
-"""Where truth lies, from the folder of the images; the last ones may be anything."""
+"""Where truth lies, from the folder of the images."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +87,7 @@ def truth_beside(
     Raises
     ------
     InputError
-        As `read_truth`, but for an `UnreadTruthError`.
+        As `read_truth`, of a file that is named as truth, but no `UnreadTruthError`.
     """
     folder, notices = folder.resolve(), list[str]()
     names = {"name": folder.name, "parent": folder.parent.name}
@@ -98,7 +100,10 @@ def truth_beside(
                 table, said = read_truth(paths, images, identity)
                 read = [f"the truth is read from {paths[0]}"] if pattern != _OWN else []
                 return table, [*notices, *read, *said]
-        except UnreadTruthError as error:
+        except InputError as error:
+            is_unread = isinstance(error, UnreadTruthError) and pattern != _OWN
+            if not is_unread and pattern not in _ANYTHING:
+                raise
             notices.append(str(error))
     return {}, notices
 
@@ -113,10 +118,11 @@ def read_truth(
     Raises
     ------
     UnreadTruthError
-        If a file is in no known format, or there are several targets and no `identity`.
+        If a file is in no known format or holds no box, or there are several targets and no
+        `identity`.
     InputError
         If a file cannot be read, names a frame twice, or has a cell that is not a number; or if
-        there is no box, or no target `identity`.
+        there is no target `identity`.
     """
     targets: dict[int, dict[int, TruthRow | None]] = {}
     notices = []
@@ -124,9 +130,9 @@ def read_truth(
         text = read_text(path)
         reader = _reader(path, text)
         labels = list(reader(path, text, images))
-        if reader is in_order and len(labels) < len(images.numbers):
+        if reader is in_order and len(labels) < len(images.names):
             notices.append(
-                f"{path} has {len(labels)} rows for {len(images.numbers)} images; its first is "
+                f"{path} has {len(labels)} rows for {len(images.names)} images; its first is "
                 f"taken for image {labels[0].number:g}"
             )
         for label in labels:
@@ -137,7 +143,7 @@ def read_truth(
             rows[number] = row
     table = {n: row for n, row in _chosen(paths[0], targets, identity).items() if row is not None}
     if not table:
-        raise InputError(f"the truth {paths[0]} holds no box")
+        raise UnreadTruthError(f"the truth {paths[0]} holds no box")
     return table, notices
 
 

@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """The formats of truth: those of data sets, of annotation tools, and our own table.
 
 Each reader yields the boxes that a file states, in our coordinates: the first pixel begins at 0.
@@ -63,9 +64,10 @@ class Images:
     names: Mapping[str, int]
 
     def nth(self, index: int) -> int:
-        """Return the number of an image by its index from 0, also behind the last one."""
-        behind = index - len(self.numbers)
-        return self.numbers[index] if behind < 0 else self.numbers[-1] + behind + 1
+        """Return the number of an image by its index from 0, also of one that is not there."""
+        last = len(self.numbers) - 1
+        near = min(max(index, 0), last)
+        return self.numbers[near] + index - near
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,6 +264,8 @@ def _cvat(path: Path, text: str, images: Images) -> Iterator[Label]:
         root = ElementTree.fromstring(text)  # noqa: S314 - expat bounds what entities expand to
     except ElementTree.ParseError as error:
         raise UnreadTruthError(f"{path} is not whole XML: {error}") from error
+    if any(len(image.findall("box")) > 1 for image in root.iter("image")):
+        raise UnreadTruthError(f"{path} has several boxes in an image, and no tracks")
     for parent, box in ((one, box) for one in root.iter() for box in one.findall("box")):
         where = f"{parent.tag} {parent.get('id')} of the truth {path}"
         stated = {**parent.attrib, **box.attrib}
@@ -320,12 +324,12 @@ def _key_frames(
 
     A box moves linearly from one key frame to the next, but ends at one that is not ``enabled``.
     """
-    last = min(value.get("framesCount", 0), len(images.numbers))
+    last = min(value.get("framesCount") or 0, len(images.numbers))
     for now, following in pairwise([*value["sequence"], None]):
         frame = now["frame"]
         end = following["frame"] if following else max(last, frame) + 1
         for at in range(frame, end if now["enabled"] else frame + 1):
-            share = (at - frame) / (end - frame) if following else 0.0
+            share = (at - frame) / max(end - frame, 1) if following else 0.0
             then = following or now
             names = ("x", "y", "width", "height")
             place = {name: now[name] + share * (then[name] - now[name]) for name in names}

@@ -56,6 +56,11 @@ def test_the_image_of_a_standing_camera_is_left_as_it_is():
         assert seen is None
 
 
+def test_an_image_without_a_corner_is_taken_as_it_is():
+    steadier, black = Steadier(), np.zeros((48, 64, 3), np.uint8)
+    assert [steadier.steady(black)[1] for _ in range(3)] == [None] * 3
+
+
 def test_what_moves_is_found_before_a_shaking_camera_and_nothing_else():
     detector, rng = MotionDetector(), np.random.default_rng(1)
     shakes = rng.integers(-5, 6, (60, 2)).tolist()

@@ -26,7 +26,10 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
+from vehicle_pf_tracker.recordings.footage import Footage as RecordedFootage
+from vehicle_pf_tracker.recordings.frame_folder import FrameFolder, image_files
 from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.source import open_source
 
 _MAKE = "make a recording of it first: `vehicle-pf-tracker import {} OUT`"
 _VIDEOS = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm"})
@@ -53,9 +56,11 @@ def _at_path(path: Path) -> list[str]:
         raise InputError(f"{path} is a video; {_MAKE.format(path)}")
     if path.is_file():
         raise InputError(f"{path} is not a recording: give a rosbag2 folder or an MCAP file")
-    if (path / "img").is_dir():
-        raise InputError(f"{path} is a frame folder; {_MAKE.format(path)}")
-    inside = sorted(child for child in path.iterdir() if _is_recording(child))
+    children = sorted(path.iterdir())
+    inside = [child for child in children if _is_recording(child)]
+    if not inside and image_files(path):
+        return [str(path)]
+    inside = inside or [child for child in children if image_files(child)]
     if not inside:
         raise InputError(f"the folder {path} is not a recording and holds none")
     return [str(child) for child in inside]
@@ -74,7 +79,7 @@ _BLOCK = 1 << 22
 
 
 class Footage:
-    """A local recording: its truth, and its frames, readable repeatedly.
+    """A local recording or folder of images: its truth, and its frames, readable repeatedly.
 
     Attributes
     ----------
@@ -84,10 +89,10 @@ class Footage:
 
     def __init__(self, source: Source) -> None:
         path = Path(source.path)
-        if _digest(path) != source.digest:
+        self._recording = open_source(path, topic=source.topic or None)
+        if _digest(self._recording, path) != source.digest:
             raise InputError(f"the recording {source.path} has changed since it was planned")
-        self._recording = Recording(path, source.topic)
-        self.truth: tuple[Truth, ...] = self._recording.truth()
+        self.truth = tuple(self._recording.truth())
         size = source.frames * source.width * source.height * 3
         self._kept = list(self._decoded()) if size <= FRAMES_BYTES else None
 
@@ -149,43 +154,55 @@ def _describe(
     location: str, name: str, topic: str | None, max_diff: float
 ) -> tuple[Source, dict[int, Truth]]:
     path = Path(location)
-    recording = Recording(path, topic)
+    recording = open_source(path, topic=topic)
     truth = recording.truth()
     if not truth:
         raise InputError(
             f"the recording {location} has no truth to compare with; "
             "import it with truth, or track it with `vehicle-pf-tracker run`"
+            + "".join(f" ({notice})" for notice in recording.notices)
         )
-    stamps = [
-        message.log_time_ns if message.stamp_ns is None else message.stamp_ns
-        for message in recording.messages({recording.image_topic})
-    ]
+    stamps = _stamps(recording)
     pairs = associate(stamps, [one.stamp_ns for one in truth], max_diff)
     if not pairs:
         raise InputError(
             f"no stamp of the truth in {location} is within {max_diff:g} s of an image's; "
             "a larger --max-diff may help"
         )
-    width, height = _size(recording)
-    digest = _digest(path)
+    width, height = _size(recording, location)
+    digest = _digest(recording, path)
     source = Source(
         name, str(path.absolute()), recording.image_topic, len(stamps), width, height, digest
     )
     return source, {index + 1: truth[place] for index, place in pairs.items()}
 
 
-def _size(recording: Recording) -> tuple[int, int]:
+def _stamps(recording: Recording | RecordedFootage) -> list[int]:
+    """Return the stamps of the images without decoding them."""
+    if isinstance(recording, FrameFolder):
+        return recording.stamps
+    assert isinstance(recording, Recording)
+    return [
+        message.log_time_ns if message.stamp_ns is None else message.stamp_ns
+        for message in recording.messages({recording.image_topic})
+    ]
+
+
+def _size(recording: Recording | RecordedFootage, location: str) -> tuple[int, int]:
     frames = (image.frame for image in recording.frames())
     first = next((frame for frame in frames if frame is not None), None)
     if first is None:
-        raise InputError(f"the recording {recording.path} has no image that can be read")
+        raise InputError(f"the recording {location} has no image that can be read")
     return frame_size(first)
 
 
-def _digest(path: Path) -> str:
-    """Digest the names and the bytes of the files of a recording."""
+def _digest(recording: Recording | RecordedFootage, path: Path) -> str:
+    """Digest the names and the bytes of the files of a recording, and the truth of a folder."""
     digest = hashlib.sha256()
-    for file in recording_files(path)[0]:
+    is_folder = isinstance(recording, FrameFolder)
+    if is_folder:
+        digest.update(repr(recording.truth()).encode())
+    for file in image_files(path) if is_folder else recording_files(path)[0]:
         digest.update(file.name.encode() + b"\0")
         with file.open("rb") as stream:
             while block := stream.read(_BLOCK):

@@ -22,7 +22,6 @@ from __future__ import annotations
 import base64
 from collections.abc import Collection, Mapping, Sequence
 from itertools import islice
-from pathlib import Path
 from typing import NamedTuple
 
 import cv2
@@ -37,7 +36,7 @@ from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
 from vehicle_pf_tracker.offline.drawing import draw_box, write_words
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.source import open_source
 
 _BLACK, _WHITE = (0, 0, 0), (255, 255, 255)
 _LETTER = 13
@@ -114,7 +113,7 @@ def take_frames(entry: Source, numbers: Collection[int]) -> dict[int, Frame]:
     InputError
         If the recording is gone, or its images are not those of the evaluation.
     """
-    recording = Recording(Path(entry.path), entry.topic)
+    recording = open_source(entry.path, topic=entry.topic or None)
     frames: dict[int, Frame] = {}
     for number, found in enumerate(islice(recording.frames(), max(numbers, default=0)), start=1):
         if found.frame is None or number not in numbers:
@@ -140,7 +139,7 @@ def draw_still(frame: Frame, truth: Box, boxes: Mapping[int, Box]) -> Frame:
         x, y = (box.x - left) * scale, (box.y - top) * scale
         return Box(x, y, box.width * scale, box.height * scale)
 
-    marks = [(shown(box), colour_of(slot), False) for slot, box in reversed(boxes.items())]
+    marks = [(shown(box), colour_of(slot), False) for slot, box in reversed([*boxes.items()])]
     for box, colour, dashed in [*marks, (shown(truth), _WHITE, True)]:
         draw_box(image, box, _BLACK, 4, dashed=dashed)
         draw_box(image, box, colour, 2, dashed=dashed)

@@ -155,6 +155,7 @@ class Vehicles:
             (lambda: TimedDetector(make())) if make else None,
             frame_rate=parameters.frame_rate,
             reset_on_time_jump=configuration.session.reset_on_time_jump,
+            every=parameters.detector.every,
         )
         self.counter = self._counter()
         self.latest: dict[str, Crossing] = {}

@@ -40,9 +40,6 @@ _LEAST, _MOST = -0.6, 2.0
 a detector that knows little about a vehicle must not hide it for ever."""
 _SCORE_DOUBT = 0.5
 """Log odds per detection that are taken off, in confirming by scores alone."""
-_SCORE_MEMORY = 0.75
-"""Weight of the detections before in this: a spot that looks like a vehicle does so each time, so
-that the latest four are worth as much as all."""
 _NEW_VEHICLES = 0.05
 """Vehicles that come into view per image: one in two thirds of a second at 30 Hz."""
 _MOST_FIT = 3.0
@@ -66,8 +63,10 @@ _STANDING_MATCHES = 30
 """Detections after which what still stands is taken for a part of the scene."""
 _STANDING = 0.2
 """Way, of the size, below which it stands: boxes shake by less."""
-_USUAL = 0.5
-"""Share of the vehicles' detections with lower scores from which on scores prove what stands."""
+_STILL, _USUAL = 0.05, 0.5
+"""Way, of the size, below which a track has not moved at all; and share of the vehicles' detections
+with lower scores above which scores prove it even so: a spot of the road that looks like a vehicle
+does so each time, and many such scores are worth one."""
 _MOVED_MATCHES = 5
 """Fewest detections by which what ended unconfirmed is known to have driven: it may have been a
 vehicle, and tells nothing about its detections. Taken for false alarms, vehicles that reach the
@@ -164,9 +163,9 @@ class Existence:
         gain = log_odds if track.confirmed else self._evidence.score_gain(sample.score)
         track.add_evidence(found.edges[index], min(max(gain, _LEAST), _MOST), fit)
         doubted = min(max(log_odds - _SCORE_DOUBT, _LEAST), _MOST)
-        if track.way < _STANDING and self._evidence.rank(sample.score) < _USUAL:
+        if track.way < _STILL and self._evidence.rank(sample.score) < _USUAL:
             doubted = _LEAST
-        track.strength = _SCORE_MEMORY * track.strength + doubted
+        track.strength += doubted
         if track.has_driven or track.given:
             if track.given or track.state.speed_ratio > _MOVING:
                 self._evidence.learn(sample, True)

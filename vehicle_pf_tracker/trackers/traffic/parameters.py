@@ -131,7 +131,8 @@ class DetectorParameters:
         bounds=(0.0, 60.0), unit="s",
     )  # fmt: skip
     every: int = parameter(
-        1, "Above 1: the detector of a topic answers every k-th image, and the others do not wait.",
+        1, "Above 1: the detector looks at every k-th image, and pixels hold vehicles in between; "
+        "images do not wait for a topic's.",
         bounds=(1, 1000), unit="images",
     )  # fmt: skip
 

@@ -77,6 +77,8 @@ class TrafficSession(StreamSession[TrafficTracker]):
         Nominal rate in 1/s; 0 takes the median of the first ten intervals.
     reset_on_time_jump : bool
         Discard all vehicles when stamps go back and stay back.
+    every : int
+        The detector looks at every k-th image; pixels hold the vehicles in between.
 
     Attributes
     ----------
@@ -99,6 +101,7 @@ class TrafficSession(StreamSession[TrafficTracker]):
         *,
         frame_rate: float = 0.0,
         reset_on_time_jump: bool = True,
+        every: int = 1,
     ) -> None:
         super().__init__(tracker, frame_rate, reset_on_time_jump)
         self.estimates: tuple[TrackEstimate, ...] = ()
@@ -106,6 +109,7 @@ class TrafficSession(StreamSession[TrafficTracker]):
         self.successors: Mapping[int, int] = MappingProxyType({})
         self.detector = make_detector() if make_detector else None
         self._make_detector = make_detector
+        self._every, self._images = every, 0
         self._given: dict[int, tuple[Box, str]] = {}
         self._detections: Detections | None = None
 
@@ -175,7 +179,10 @@ class TrafficSession(StreamSession[TrafficTracker]):
             self._given = {number: followed[number] for number in self._given if number in followed}
 
     def _detected(self, detector: Detector, frame: Frame) -> Detections | None:
-        """Return the detections; None where it could not look, so that no vehicle is missed."""
+        """Return the detections; None where it did not look, so that no vehicle is missed."""
+        self._images += 1
+        if (self._images - 1) % self._every:
+            return None
         found = detector.detect(frame, self.estimates)
         if detector.disturbed:
             self.events.append(_DISTURBED)

@@ -104,6 +104,8 @@ class Steadier:
 
     def _similarity(self, reference: Image, grey: Image) -> Array:
         """Map from the present image to the reference."""
+        if not len(self._corners):
+            return _STILL
         back = np.asarray(cv2.invertAffineTransform(self._map))
         guess = (self._corners @ back[:, :2].T + back[:, 2]).astype(np.float32)
         moved, found, error = _FLOW.follow_and_return(reference, grey, self._corners, guess)
