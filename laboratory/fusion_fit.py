@@ -45,7 +45,6 @@ from laboratory.stress import (
     variant_system,
 )
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.processes import Progress
 from vehicle_pf_tracker.parameters.table import ParameterSpec, specs
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 
@@ -235,10 +234,10 @@ def page(results: Sequence[Result]) -> str:
     return "\n".join([head, *rows]) + "\n"
 
 
-def report_progress(progress: Progress) -> None:
+def report_progress(done: int, total: int | None) -> None:
     """Tell how many runs are done, now and then."""
-    if progress.done % 50 == 0 or progress.done == progress.total:
-        print(f"{progress.done} of {progress.total} runs", file=sys.stderr, flush=True)
+    if done % 50 == 0 or done == total:
+        print(f"{done} of {total} runs", file=sys.stderr, flush=True)
 
 
 def main() -> int:

@@ -27,7 +27,7 @@ from reproduction.experiment import QUICK_SEEDS, SEEDS, Size
 from reproduction.output import write_report
 from reproduction.page import write_page
 from reproduction.running import complete
-from vehicle_pf_tracker.cli.console import USAGE, UsageError, telling
+from vehicle_pf_tracker.cli.console import USAGE, UsageError, counting
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.cli.requests import (
     WorkersOption,
@@ -103,7 +103,7 @@ def _reproduce_all(request: Request) -> int:
     size = Size(range(request.first_seed, request.first_seed + count), request.quick)
     store = ResultStore(request.output / CELLS)
     for experiment in experiments:
-        with telling(experiment.name) as on_progress:
+        with counting(f"{experiment.name}: did", "runs") as on_progress:
             results = complete(experiment.cells(size), store, request.workers, on_progress)
         report = experiment.report(results, size)
         write_report(request.output / experiment.name, experiment, report, size)

@@ -21,7 +21,7 @@ from typing import TypeAlias
 
 from reproduction.cells import Cell, Result
 from vehicle_pf_tracker.evaluation.result_store import ResultStore, result_key, variant_modules
-from vehicle_pf_tracker.offline.processes import OnProgress, Progress, run_in_processes
+from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 
@@ -51,7 +51,7 @@ def complete(
     workers : int
         Processes; with 1 this one does the work. Results do not depend on it.
     on_progress : callable
-        Is parts at the start and after every batch.
+        Called with the number of cells done, and of all: at the start and after every batch.
 
     Raises
     ------
@@ -62,11 +62,12 @@ def complete(
     missing = [cell for cell, name in keys.items() if name not in store]
     batches = sorted(_batches(missing), key=_is_alone)
     done = 0
-    for batch, results, running in _run(batches, workers):
+    on_progress(done, len(missing))
+    for batch, results in _run(batches, workers):
         for cell, result in zip(batch, results, strict=False):
             store.add(keys[cell], cell.label, result)
         done += len(results)
-        on_progress(Progress(done, len(missing), tuple(b[0].label for b in running)))
+        on_progress(done, len(missing))
     return {cell: store[name] for cell, name in keys.items()}
 
 
@@ -92,24 +93,10 @@ def _is_alone(batch: _Batch) -> bool:
     return batch[0].alone
 
 
-def _run(
-    batches: Sequence[_Batch], workers: int
-) -> Iterator[tuple[_Batch, list[Result], Sequence[_Batch]]]:
-    """Give each batch with its results when it is done, and those that run by then.
-
-    Before the first there is one without results.
-    """
+def _run(batches: Sequence[_Batch], workers: int) -> Iterator[tuple[_Batch, list[Result]]]:
+    """Yield each batch with its results when it is done."""
     beside = [] if workers == 1 else [batch for batch in batches if not _is_alone(batch)]
     if beside:
-        yield from _run_in_processes(beside, workers)
+        yield from run_in_processes(run_together, beside, workers)
     for batch in batches[len(beside) :]:
-        yield batch, [], [batch]
-        yield batch, run_together(batch), []
-
-
-def _run_in_processes(
-    batches: Sequence[_Batch], workers: int
-) -> Iterator[tuple[_Batch, list[Result], Sequence[_Batch]]]:
-    for turn in run_in_processes(run_together, batches, workers):
-        batch, results = turn.ended or (batches[0], [])
-        yield batch, results, turn.running
+        yield batch, run_together(batch)

@@ -30,7 +30,7 @@ from laboratory.stress import (
 )
 from laboratory.stress.battery import QUICK_FRAMES, QUICK_PER_SEQUENCE
 from laboratory.stress.report import MARKDOWN, table_rows, write_report
-from vehicle_pf_tracker.cli.console import print_rows, tell_notices, telling
+from vehicle_pf_tracker.cli.console import counting, print_rows, tell_notices
 from vehicle_pf_tracker.cli.requests import option, positive
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest, chosen
 
@@ -66,7 +66,7 @@ def run(request: Request) -> int:
     count = request.seeds or FEW_SEEDS
     seeds = range(request.first_seed, request.first_seed + count)
     tell_notices([f"{len(cases)} cases of {len({case.sequence for case in cases})} sequences"])
-    with telling("stress") as on_progress:
+    with counting("tracked", "runs") as on_progress:
         results = run_battery(
             cases, systems, seeds=seeds, workers=request.workers, store=request.output / STORE,
             on_progress=on_progress,

@@ -29,7 +29,7 @@ from laboratory.stress.systems import Follower, StressSystem
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.result_store import ResultStore, result_key
 from vehicle_pf_tracker.offline.estimates import EstimateRow
-from vehicle_pf_tracker.offline.processes import OnProgress, Progress, run_in_processes
+from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.trackers.estimate import Estimate
 
 WORKERS = 2
@@ -115,7 +115,7 @@ def run_battery(
         File that keeps each score as soon as it is there. Scores that it has under the same case,
         footage, system, code and versions are not computed again.
     on_progress : callable or None
-        Is told whenever a run begins or ends.
+        Called with the number of runs done, and of all.
 
     Returns
     -------
@@ -134,13 +134,14 @@ def run_battery(
     missing = sorted(
         (pair for pair in tasks if pair[1] not in scores), key=lambda pair: pair[0].case.sequence
     )
-    for ended, running in _run(missing, workers):
-        if ended is not None:
-            (task, key), scores[key] = ended
-            if kept is not None:
-                kept.add(key, task.label, scores[key])
+    if on_progress is not None:
+        on_progress(len(scores), len(tasks))
+    for (task, key), score in _run(missing, workers):
+        scores[key] = score
+        if kept is not None:
+            kept.add(key, task.label, score)
         if on_progress is not None:
-            on_progress(Progress(len(scores), len(tasks), running))
+            on_progress(len(scores), len(tasks))
     return [
         Result(task.case, task.system.label, task.seed, Score.from_json(scores[key]))
         for task, key in tasks
@@ -160,19 +161,16 @@ def _tasks(
 
 
 _Keyed = tuple[_Task, str]
-_Ended = tuple[_Keyed, dict[str, Any]] | None
 
 
-def _run(tasks: Sequence[_Keyed], workers: int) -> Iterator[tuple[_Ended, tuple[str, ...]]]:
-    """Run tasks; give each with its score, and the labels of those that run now."""
+def _run(tasks: Sequence[_Keyed], workers: int) -> Iterator[tuple[_Keyed, dict[str, Any]]]:
+    """Run tasks; yield each with its score."""
     if workers == 0:
         for task in tasks:
-            yield None, (task[0].label,)
-            yield (task, _score(task)), ()
+            yield task, _score(task)
         return
     with _single_threaded():
-        for turn in run_in_processes(_score, tasks, workers):
-            yield turn.ended, tuple(task.label for task, _ in turn.running)
+        yield from run_in_processes(_score, tasks, workers)
 
 
 def _score(task: _Keyed) -> dict[str, Any]:

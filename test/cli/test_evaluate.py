@@ -19,7 +19,6 @@ from small_recordings import frame_folder, record
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.evaluation.grid.running import run_cell
-from vehicle_pf_tracker.offline.processes import Turn
 
 
 @pytest.fixture
@@ -32,7 +31,7 @@ def bags(tmp_path):
 
 def in_this_process(cells):
     for cell in cells:
-        yield Turn((cell, run_cell(cell)), ())
+        yield cell, run_cell(cell)
 
 
 @pytest.fixture(autouse=True)

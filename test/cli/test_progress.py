@@ -19,9 +19,8 @@ import time
 
 import pytest
 
-from vehicle_pf_tracker.cli.console import counting, stages, telling
+from vehicle_pf_tracker.cli.console import counting, stages
 from vehicle_pf_tracker.cli.replay import shown_replay
-from vehicle_pf_tracker.offline import processes
 from vehicle_pf_tracker.ros.replay import replay_options
 
 
@@ -41,11 +40,11 @@ def lines(view, reports):
 
 
 def frames(stream, clock):
-    return counting("tracked", stream, clock)
+    return counting("tracked", stream=stream, clock=clock)
 
 
 def runs(stream, clock):
-    return telling("apf-fig1", stream, clock)
+    return counting("evaluated", "runs", stream, clock)
 
 
 def report_stages(stream, clock):
@@ -60,27 +59,14 @@ def replayed(*moments):
 
 def test_plain_lines_come_after_two_seconds_and_every_five():
     assert lines(frames, [(float(done), (done, 12)) for done in range(1, 13)]) == [
-        "tracked 2 of 12 frames, about 10 s left",
-        "tracked 7 of 12 frames, about 5 s left",
+        "tracked 2 of 12 frames",
+        "tracked 7 of 12 frames",
         "tracked 12 of 12 frames",
     ]
 
 
 def test_where_the_total_is_unknown_the_line_says_less():
     assert lines(frames, [(9.0, (7, None))]) == ["tracked 7 frames"]
-
-
-def test_runs_are_told_with_the_time_left_and_those_under_way():
-    reports = [
-        processes.Progress(0, 8, ("bar PF",)),
-        processes.Progress(4, 8, ("bar PF", "bar MS")),
-        processes.Progress(7, 8, tuple("abcdef")),
-    ]
-    assert lines(runs, [(10.0 * n, (one,)) for n, one in enumerate(reports, start=1)]) == [
-        "apf-fig1: 0 of 8 runs done; running bar PF",
-        "apf-fig1: 4 of 8 runs done; running bar PF, bar MS, about 10 s left",
-        "apf-fig1: 7 of 8 runs done; running a, b, c, d, 2 more, about 3 s left",
-    ]
 
 
 def test_stages_of_quick_work_are_not_told():
@@ -92,13 +78,7 @@ def test_stages_of_quick_work_are_not_told():
 def test_the_rate_of_a_replay_begins_with_its_first_frame():
     assert replayed((100.0, 1, 0.0), (102.0, 21, 2.0), (106.0, 61, 6.0)) == [
         "1 frame",
-        "61 frames, 10.0 frames/s, about 14 s left",
-    ]
-
-
-def test_the_time_left_is_that_of_the_present_pass_of_a_loop():
-    assert replayed((0.0, 1, 0.0), (1.5, 16, 20.0), (1.6, 17, 1.0), (3.4, 35, 10.0)) == [
-        "35 frames, 10.0 frames/s, about 2 s left"
+        "61 frames, 10.0 frames/s",
     ]
 
 
@@ -110,8 +90,8 @@ def test_a_recording_of_one_moment_has_no_end_to_wait_for():
     ("view", "report", "shown"),
     [
         (frames, (3, 12), "tracked 3 of 12 frames"),
-        (runs, (processes.Progress(1, 2, ("[a]",)),), "running [a]"),
-        (report_stages, ("drawing the page",), "report: drawing the page"),
+        (runs, (1, 2), "evaluated 1 of 2 runs"),
+        (report_stages, ("drawing [a] page",), "report: drawing [a] page"),
         (shown_replay, (replay_options.Progress(41, 10.0, 20.0),), "41 frames"),
     ],
 )

@@ -20,7 +20,6 @@ from small_recordings import record
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.evaluation.grid.running import run_cell
-from vehicle_pf_tracker.offline.processes import Turn
 
 pytest.importorskip("optuna", reason="the extra [evaluation] is not installed")
 
@@ -31,7 +30,7 @@ QUICK = ["--variant", "pf", "--trials", "3", "--seeds", "2", "--set", "num_parti
 def _in_this_process(monkeypatch):
     def runner(cells):
         for cell in cells:
-            yield Turn((cell, run_cell(cell)), ())
+            yield cell, run_cell(cell)
 
     monkeypatch.setattr("vehicle_pf_tracker.cli.tune.on_this_machine", lambda workers: runner)
 

@@ -24,7 +24,6 @@ from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, Plan, Varia
 from vehicle_pf_tracker.evaluation.grid.running import complete, run_cell
 from vehicle_pf_tracker.evaluation.grid.sources import describe
 from vehicle_pf_tracker.offline.output_files import write_json
-from vehicle_pf_tracker.offline.processes import Turn
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
@@ -87,11 +86,10 @@ def make_plan(paths, systems=None, seeds=SEEDS):
 def here(cells):
     """Run cells in this process, one after the other."""
     for cell in cells:
-        yield Turn(None, (cell,))
-        yield Turn((cell, run_cell(cell)), ())
+        yield cell, run_cell(cell)
 
 
-def silent(progress):
+def silent(done, total):
     pass
 
 

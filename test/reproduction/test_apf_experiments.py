@@ -40,7 +40,7 @@ def reports(tmp_path_factory):
     def report(name):
         if name not in made:
             experiment = EXPERIMENTS[name]
-            results = complete(experiment.cells(SIZE), store, 1, lambda progress: None)
+            results = complete(experiment.cells(SIZE), store, 1, lambda done, total: None)
             made[name] = experiment.report(results, SIZE)
         return made[name]
 

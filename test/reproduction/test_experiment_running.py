@@ -22,7 +22,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
 
-def silent(progress):
+def silent(done, total):
     pass
 
 
@@ -50,17 +50,17 @@ def test_what_was_interrupted_continues_and_comes_out_the_same(tmp_path, path):
     cells = run_cells(scenes=range(4))
     whole = complete(cells, ResultStore(tmp_path / "whole"), 1, silent)
 
-    def interrupt(progress):
-        if progress.done == 6:
+    def interrupt(done, total):
+        if done == 6:
             raise InterruptedHereError
 
     with pytest.raises(InterruptedHereError):
         complete(cells, ResultStore(path), 1, interrupt)
     assert len(lines(path)) == 6
     seen = []
-    rest = complete(cells, ResultStore(path), 1, seen.append)
+    rest = complete(cells, ResultStore(path), 1, lambda *counts: seen.append(counts))
     assert json.dumps(list(rest.values())) == json.dumps(list(whole.values()))
-    assert (seen[-1].done, seen[-1].total) == (6, 6)
+    assert seen[-1] == (6, 6)
     assert len(lines(path)) == len(cells)
 
 
@@ -69,9 +69,9 @@ def test_nothing_is_run_twice(path):
     complete(cells, ResultStore(path), 1, silent)
     before = path.read_bytes()
     parts = []
-    complete([*cells, *cells], ResultStore(path), 1, parts.append)
+    complete([*cells, *cells], ResultStore(path), 1, lambda *counts: parts.append(counts))
     assert path.read_bytes() == before
-    assert parts == []
+    assert parts == [(0, 0)]
 
 
 def test_changed_parameters_are_run_anew(path):
@@ -87,8 +87,8 @@ def test_a_line_that_was_not_finished_is_dropped_and_run_anew(path):
     text = path.read_bytes()
     path.write_bytes(text[:-40])
     parts = []
-    again = complete(cells, ResultStore(path), 1, parts.append)
-    assert parts[-1].total == 1
+    again = complete(cells, ResultStore(path), 1, lambda *counts: parts.append(counts))
+    assert parts == [(0, 1), (1, 1)]
     assert again == whole
     assert path.read_bytes() == text
 
@@ -98,8 +98,8 @@ def test_a_line_that_is_no_result_is_passed_over(path):
     complete(cells, ResultStore(path), 1, silent)
     path.write_text("nonsense\n[1]\n" + path.read_text())
     parts = []
-    complete(cells, ResultStore(path), 1, parts.append)
-    assert parts == []
+    complete(cells, ResultStore(path), 1, lambda *counts: parts.append(counts))
+    assert parts == [(0, 0)]
 
 
 def test_cells_of_one_scene_share_its_rendering(path, monkeypatch):
@@ -110,24 +110,21 @@ def test_cells_of_one_scene_share_its_rendering(path, monkeypatch):
     assert made == [SCENE, SCENE.seeded(1)]
 
 
-def test_cells_that_must_be_alone_are(path):
+def test_cells_that_must_be_alone_are(path, monkeypatch):
     cells = [CountingCell("a"), CountingCell("b", alone=True), CountingCell("c", alone=True)]
-    parts = []
-    results = complete(cells, ResultStore(path), 2, parts.append)
+    beside = []
+
+    def run_here(function, batches, workers):
+        beside.extend(batches)
+        return ((batch, function(batch)) for batch in batches)
+
+    monkeypatch.setattr("reproduction.running.run_in_processes", run_here)
+    results = complete(cells, ResultStore(path), 2, silent)
     assert {cell.name: result["frames"] for cell, result in results.items()} == {
         "a": SCENE.make().frame_count, "b": SCENE.make().frame_count,
         "c": SCENE.make().frame_count,
     }  # fmt: skip
-    running = [progress.running for progress in parts]
-    assert ("b",) in running
-    assert ("c",) in running
-
-
-def test_progress_tells_what_runs_and_ends_at_the_total(path):
-    parts = []
-    complete(run_cells(), ResultStore(path), 1, parts.append)
-    assert (parts[0].done, parts[0].total, parts[0].running) == (0, 6, ("bar PF",))
-    assert (parts[-1].done, parts[-1].total, parts[-1].running) == (6, 6, ())
+    assert beside == [(cells[0],)]
 
 
 def test_a_store_that_cannot_be_written_is_named(tmp_path):

@@ -24,15 +24,12 @@ from typing import TYPE_CHECKING, TextIO, TypeAlias
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.offline.processes import OnProgress
-    from vehicle_pf_tracker.offline.processes import Progress as WorkProgress
 
 PROGRAM = "vehicle-pf-tracker"
 FAILED, USAGE, INTERRUPTED, PIPE_CLOSED = 1, 2, 130, 141
 """Exit statuses; the last two are those of a program that a signal ended."""
 _WIDE = 200
 """Columns of a table that is written to a file or a pipe, where lines may be long."""
-_SHOWN_RUNS = 4
-"""Names of runs in a line of progress: more do not fit a terminal of 100 columns."""
 
 
 class UsageError(Exception):
@@ -75,8 +72,6 @@ def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: st
     console.print(table)
 
 
-OnFrames: TypeAlias = Callable[[int, int | None], None]
-"""Takes the numbers of frames done and of all, None if unknown."""
 Show: TypeAlias = Callable[[str, float | None], None]
 """Takes words about work under way, and its share done (0 to 1), None if unknown."""
 Clock: TypeAlias = Callable[[], float]
@@ -97,84 +92,50 @@ def shown_progress(stream: TextIO | None = None, clock: Clock = time.monotonic) 
     clock : callable
         The monotonic clock in s.
     """
-    stream, time_left = stream or sys.stderr, _TimeLeft(clock)
+    stream = stream or sys.stderr
     if not stream.isatty():
         next_line = clock() + _FIRST_SECONDS
 
         def print_line(words: str, share: float | None) -> None:
             nonlocal next_line
-            left = time_left(share)
             if clock() >= next_line:
                 next_line = clock() + _LINE_SECONDS
-                print(f"{words}{left}", file=stream, flush=True)
+                print(words, file=stream, flush=True)
 
         yield print_line
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-    columns = BarColumn(), TextColumn("{task.description}", markup=False)
+    words_column = TextColumn("{task.description}", markup=False)
+    columns = BarColumn(), words_column, TimeRemainingColumn()
     with Progress(*columns, console=Console(file=stream), transient=True) as bar:
         task = bar.add_task("", total=None)
 
         def move_bar(words: str, share: float | None) -> None:
             total = None if share is None else 1.0
-            bar.update(task, completed=share, total=total, description=words + time_left(share))
+            bar.update(task, completed=share, total=total, description=words)
 
         yield move_bar
 
 
-class _TimeLeft:
-    """Words about the time that the rest takes, by the pace since the first share known."""
-
-    def __init__(self, clock: Clock) -> None:
-        self._clock = clock
-        self._first: tuple[float, float] | None = None
-        self._last = 0.0
-
-    def __call__(self, share: float | None) -> str:
-        if share is None:
-            return ""
-        if self._first is None or share < self._last:  # a loop begins again
-            self._first = self._clock(), share
-        self._last, (began, first) = share, self._first
-        if share >= 1 or share <= first:
-            return ""
-        left = (self._clock() - began) * (1 - share) / (share - first)
-        return f", about {left:.0f} s left" if left < 100 else f", about {left / 60:.0f} min left"
-
-
 @contextmanager
 def counting(
-    verb: str, stream: TextIO | None = None, clock: Clock = time.monotonic
-) -> Iterator[OnFrames]:
-    """Return a function that shows how many frames are done; `verb` is a participle."""
+    verb: str,
+    noun: str = "frames",
+    stream: TextIO | None = None,
+    clock: Clock = time.monotonic,
+) -> Iterator[OnProgress]:
+    """Return a function that shows how many frames or runs are done; `verb` is a participle."""
     with shown_progress(stream, clock) as show:
 
         def count(done: int, total: int | None) -> None:
             if total:
-                show(f"{verb} {done} of {total} frames", done / total)
+                show(f"{verb} {done} of {total} {noun}", done / total)
             else:
-                show(f"{verb} {done} frames", None)
+                show(f"{verb} {done} {noun}", None)
 
         yield count
-
-
-@contextmanager
-def telling(
-    name: str, stream: TextIO | None = None, clock: Clock = time.monotonic
-) -> Iterator[OnProgress]:
-    """Return a function that shows the runs done and running."""
-    with shown_progress(stream, clock) as show:
-
-        def tell(work: WorkProgress) -> None:
-            shown, beyond = work.running[:_SHOWN_RUNS], len(work.running) - _SHOWN_RUNS
-            names = ", ".join([*shown, *([f"{beyond} more"] if beyond > 0 else [])])
-            running = f"; running {names}" if names else ""
-            words = f"{name}: {work.done} of {work.total} runs done{running}"
-            show(words, work.done / work.total if work.total else 1.0)
-
-        yield tell
 
 
 @contextmanager

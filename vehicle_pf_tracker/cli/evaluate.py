@@ -33,14 +33,9 @@ from vehicle_pf_tracker.cli.console import (
     tell_error,
     tell_notice,
     tell_notices,
-    telling,
 )
 from vehicle_pf_tracker.cli.report import ReportParts
-from vehicle_pf_tracker.cli.requests import (
-    MaxDiffOption,
-    option,
-    switch,
-)
+from vehicle_pf_tracker.cli.requests import MaxDiffOption, option, switch
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -109,10 +104,7 @@ def run_traffic(request: TrafficRequest) -> int:
     cases = cases_of(sequences, _sources(request, sequences))
     parameters = _parameters(request)
     seeds = range(request.first_seed, request.first_seed + (request.seeds or FEW_SEEDS))
-    with (
-        TrafficWorker(request.baselines_python) as worker,
-        counting("compared") as progress,
-    ):
+    with TrafficWorker(request.baselines_python) as worker, counting("compared") as progress:
         results = list(compare(cases, worker, parameters, seeds, on_progress=progress))
         options = {
             "command": list(request.command),
@@ -186,7 +178,7 @@ def run(request: Request) -> int:
 
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
     plan = _plan(request, sources)
-    with telling("evaluate") as on_progress:
+    with counting("evaluated", "runs") as on_progress:
         complete(plan, request.output, on_this_machine(request.workers), on_progress, tell_notice)
     return _judge(report.write(request.output, request), request.max_rmse)
 

@@ -26,11 +26,7 @@ from vehicle_pf_tracker.cli.console import UsageError, counting, print_rows, tel
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import stopping
-from vehicle_pf_tracker.cli.tracking_options import (
-    TrackingRequest,
-    by_name,
-    chosen,
-)
+from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.metrics import measure

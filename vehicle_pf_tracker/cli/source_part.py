@@ -21,10 +21,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.cli.console import OnFrames
 from vehicle_pf_tracker.cli.stopping import Stop
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.driver import Numbered
+from vehicle_pf_tracker.offline.processes import OnProgress
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source
 
@@ -77,7 +77,7 @@ class Moment:
 
 
 def numbered_part(
-    source: Source, start: Moment | None, end: Moment | None, stop: Stop, progress: OnFrames
+    source: Source, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
 ) -> tuple[tuple[int, StampedFrame], Numbered]:
     """Return the first frame from `start` on, and all to `end`, with their numbers in the source.
 
@@ -96,7 +96,7 @@ def numbered_part(
 
 
 def _numbered(
-    source: Source, start: Moment | None, end: Moment | None, stop: Stop, progress: OnFrames
+    source: Source, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
 ) -> Iterator[tuple[int, StampedFrame]]:
     first_ns: int | None = None
     number, is_empty = 0, True

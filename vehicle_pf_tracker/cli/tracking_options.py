@@ -25,12 +25,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import yaml
 
-from vehicle_pf_tracker.cli.requests import (
-    OverwriteOption,
-    SourceOptions,
-    VerbRequest,
-    option,
-)
+from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, VerbRequest, option
 from vehicle_pf_tracker.cli.source_part import Moment
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError

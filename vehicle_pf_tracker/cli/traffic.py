@@ -30,11 +30,7 @@ from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notices
 from vehicle_pf_tracker.cli.requests import option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
-from vehicle_pf_tracker.cli.tracking_options import (
-    TrackingRequest,
-    by_name,
-    chosen,
-)
+from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -44,12 +40,7 @@ from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import RUN, RunInfo, describe
 from vehicle_pf_tracker.offline.traffic_following import TrafficRun
-from vehicle_pf_tracker.offline.traffic_results import (
-    COUNTS,
-    MOT_TRACKS,
-    TRACKS,
-    track_files,
-)
+from vehicle_pf_tracker.offline.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.recordings.source import Source, open_source
 from vehicle_pf_tracker.trackers.registry import TRAFFIC

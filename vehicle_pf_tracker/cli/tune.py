@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli import system_options
-from vehicle_pf_tracker.cli.console import print_rows, stages, tell_notice, telling
+from vehicle_pf_tracker.cli.console import counting, print_rows, stages, tell_notice
 from vehicle_pf_tracker.cli.requests import (
     MaxDiffOption,
     WorkersOption,
@@ -192,7 +192,7 @@ def _search(
 
 def _find_best(what: SearchTask, output: Path, request: Request) -> Trial:
     store = ResultStore(output / "runs.jsonl")
-    with telling("tune") as on_progress:
+    with counting("tuned", "runs") as on_progress:
         trials = search(what, request.trials, store, on_this_machine(request.workers), on_progress)
     write_text(output / "trials.csv", to_csv(trials, what.objective))
     return best_of(trials, what.objective)
@@ -205,7 +205,7 @@ def _compare(
     plan = Plan(
         dict(recordings), systems, range(request.seeds), list(request.command), request.max_diff
     )
-    with telling("compare") as on_progress:
+    with counting("compared", "runs") as on_progress:
         complete(plan, folder, on_this_machine(request.workers), on_progress)
     report = write_report(folder)
     held_out = [source.name for source, _ in recordings if source not in what.sources]

@@ -38,7 +38,7 @@ from vehicle_pf_tracker.evaluation.result_store import ResultStore, scoring_dige
 from vehicle_pf_tracker.evaluation.search_space import Dimension, Objective
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
 from vehicle_pf_tracker.evaluation.tables import NOTHING, csv_text
-from vehicle_pf_tracker.offline.processes import OnProgress, Progress
+from vehicle_pf_tracker.offline.processes import OnProgress
 from vehicle_pf_tracker.parameters.table import Value
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ def search(
     runner : callable
         Runs cells, see `grid.running`.
     on_progress : callable
-        Called whenever a run begins or ends.
+        Called with the number of runs done, and of all.
     """
     study = _study(what)
     space = {dimension.name: dimension.distribution() for dimension in what.space}
@@ -137,8 +137,9 @@ def search(
         values = [{d.name: d.tidy(one.params[d.name]) for d in what.space} for one in asked]
         grids = [what.cells(tried) for tried in values]
         before = len(trials) * runs
-        for done, running in _run_missing(what, grids, store, runner):
-            on_progress(Progress(before + done, count * runs, running))
+        on_progress(before, count * runs)
+        for done in _run_missing(what, grids, store, runner):
+            on_progress(before + done, count * runs)
         for one, tried, cells in zip(asked, values, grids, strict=True):
             score = None if cells is None else _score(what, cells, store)
             study.tell(one, score, state=fail if score is None else None)
@@ -168,20 +169,16 @@ def _run_missing(
     grids: Sequence[Sequence[GridCell] | None],
     store: ResultStore,
     runner: Runner,
-) -> Iterator[tuple[int, tuple[str, ...]]]:
-    """Run what the store lacks, for all candidates; give the number done, and those that run."""
+) -> Iterator[int]:
+    """Run what the store lacks, for all candidates; yield the number done after each."""
     cells = {what.key(cell): cell for grid in grids for cell in grid or ()}
     missing = [cell for key, cell in cells.items() if key not in store]
-    done = 0
-    for turn in runner(missing):
-        if turn.ended is not None:
-            cell, outcome = turn.ended
-            metrics = outcome.metrics
-            score = None if metrics is None else getattr(metrics, what.objective.metric)
-            if not outcome.reason:
-                store.add(what.key(cell), cell.label, {"score": score})
-            done += 1
-        yield done, tuple(cell.label for cell in turn.running)
+    for done, (cell, outcome) in enumerate(runner(missing), start=1):
+        metrics = outcome.metrics
+        score = None if metrics is None else getattr(metrics, what.objective.metric)
+        if not outcome.reason:
+            store.add(what.key(cell), cell.label, {"score": score})
+        yield done
 
 
 def _score(what: SearchTask, cells: Sequence[GridCell], store: ResultStore) -> float | None:

@@ -172,9 +172,7 @@ def estimate_words(name: str, row: EstimateRow) -> str:
 
 
 def annotated(
-    frame: Frame,
-    elapsed_ns: int,
-    states: Iterable[tuple[Annotator, EstimateRow, Estimate | None]],
+    frame: Frame, elapsed_ns: int, states: Iterable[tuple[Annotator, EstimateRow, Estimate | None]]
 ) -> Frame:
     """Return a copy of `frame` with all targets, and a line for the time and for each of them."""
     picture: Frame = np.array(frame, order="C")

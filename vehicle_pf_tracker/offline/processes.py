@@ -16,17 +16,15 @@
 
 from __future__ import annotations
 
-import itertools
 import multiprocessing
 import os
 import signal
 import subprocess
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
-from typing import Generic, TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar
 
 import cv2
 
@@ -36,18 +34,10 @@ TaskT = TypeVar("TaskT")
 ResultT = TypeVar("ResultT")
 
 
-@dataclass(frozen=True, slots=True)
-class Turn(Generic[TaskT, ResultT]):
-    """An event: a task that ended, or None where new ones began; and the tasks running now."""
-
-    ended: tuple[TaskT, ResultT] | None
-    running: tuple[TaskT, ...]
-
-
 def run_in_processes(
     function: Callable[[TaskT], ResultT], tasks: Sequence[TaskT], workers: int
-) -> Iterator[Turn[TaskT, ResultT]]:
-    """Call `function` with each task, and give every result as soon as it is there.
+) -> Iterator[tuple[TaskT, ResultT]]:
+    """Call `function` with each task; yield every task with its result as soon as it is there.
 
     Parameters
     ----------
@@ -63,21 +53,13 @@ def run_in_processes(
     InputError
         If a process is ended from outside.
     """
-    waiting = iter(tasks)
     # Fresh processes: forked ones would inherit locks of OpenCV's threads.
     pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _prepare)
     others = multiprocessing.active_children()
-    running: dict[Future[ResultT], TaskT] = {}
     try:
-        while True:
-            for task in itertools.islice(waiting, workers - len(running)):
-                running[pool.submit(function, task)] = task
-            if not running:
-                return
-            yield Turn(None, tuple(running.values()))
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                task = running.pop(future)
-                yield Turn((task, future.result()), tuple(running.values()))
+        futures = {pool.submit(function, task): task for task in tasks}
+        for future in as_completed(futures):
+            yield futures.pop(future), future.result()
     except BrokenProcessPool as error:
         raise InputError(
             "a worker process was ended from outside, perhaps out of memory; "
@@ -116,13 +98,5 @@ def wait_or_kill(process: subprocess.Popen[bytes] | subprocess.Popen[str]) -> in
         return process.wait()
 
 
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """Runs done in this call, runs that were to be done, and what is running now."""
-
-    done: int
-    total: int
-    running: tuple[str, ...]
-
-
-OnProgress: TypeAlias = Callable[[Progress], None]
+OnProgress: TypeAlias = Callable[[int, int | None], None]
+"""Takes the numbers of runs or frames done and of all, None if unknown."""

@@ -176,11 +176,7 @@ class TrafficRun:
             self._by_name[name] = self.session.add(box, "" if name.isdecimal() else name)
 
     def _write(
-        self,
-        number: int,
-        stamp_ns: int,
-        estimates: Sequence[TrackEstimate],
-        files: TrackFiles,
+        self, number: int, stamp_ns: int, estimates: Sequence[TrackEstimate], files: TrackFiles
     ) -> None:
         crossings = self.counter.update(estimates, stamp_ns) if self.counter is not None else ()
         files.write(number, stamp_ns, estimates, crossings)

@@ -99,11 +99,7 @@ _WIDTH = 96
 """Width of comments: with their indent of four and "# ", lines of at most about 100 characters."""
 
 
-def to_yaml(
-    table: Mapping[str, ParameterSpec],
-    values: Mapping[str, Value],
-    title: str,
-) -> str:
+def to_yaml(table: Mapping[str, ParameterSpec], values: Mapping[str, Value], title: str) -> str:
     """Write `values` as a commented ROS parameter file for any node name and namespace."""
     lines = [f"# {title}", "/**:", "  ros__parameters:"]
     for name, spec in table.items():

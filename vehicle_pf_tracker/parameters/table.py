@@ -209,9 +209,7 @@ def to_mapping(parameters: object) -> dict[str, Value]:
 
 
 def from_mapping(
-    cls: type[ParametersT],
-    values: Mapping[str, object],
-    base: ParametersT | None = None,
+    cls: type[ParametersT], values: Mapping[str, object], base: ParametersT | None = None
 ) -> ParametersT:
     """Make a `cls` from `base` (the defaults if None) with `values` put over it.
 

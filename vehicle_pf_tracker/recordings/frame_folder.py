@@ -27,12 +27,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
-from vehicle_pf_tracker.recordings.footage import (
-    Footage,
-    Picture,
-    check_fps,
-    stamp_of,
-)
+from vehicle_pf_tracker.recordings.footage import Footage, Picture, check_fps, stamp_of
 from vehicle_pf_tracker.recordings.truth_files import TruthRow, read_truth, truth_beside
 from vehicle_pf_tracker.recordings.truth_formats import Images
 

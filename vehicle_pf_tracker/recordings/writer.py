@@ -26,19 +26,10 @@ from mcap.writer import CompressionType, Writer
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.core.outputs import (
-    BAG_INFORMATION,
-    OutputFolder,
-    check_free,
-    output_errors,
-)
+from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, OutputFolder, check_free, output_errors
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings import messages, topics
-from vehicle_pf_tracker.recordings.bag_folder import (
-    RELIABLE_QOS,
-    bag_information,
-    to_yaml,
-)
+from vehicle_pf_tracker.recordings.bag_folder import RELIABLE_QOS, bag_information, to_yaml
 from vehicle_pf_tracker.recordings.cdr import definition, serialize, type_hash
 
 

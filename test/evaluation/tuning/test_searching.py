@@ -30,7 +30,6 @@ from vehicle_pf_tracker.evaluation.tuning import (
     search,
     to_csv,
 )
-from vehicle_pf_tracker.offline.processes import Turn
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 
@@ -59,9 +58,9 @@ class FakeRunner:
             self.asked.append(cell)
             sigma = dict(cell.system.parameters)["sigma"]
             if self.fail_above is not None and sigma > self.fail_above:
-                yield Turn((cell, CellResult(reason="too wide")), ())
+                yield cell, CellResult(reason="too wide")
             else:
-                yield Turn((cell, CellResult(metrics=Scored(cell))), ())
+                yield cell, CellResult(metrics=Scored(cell))
 
 
 def what(objective="rmse_px", **more):
@@ -72,7 +71,7 @@ def what(objective="rmse_px", **more):
     return SearchTask(base, space, SOURCES, (100, 101), OBJECTIVES[objective], 0.01, **more)
 
 
-def silent(progress):
+def silent(done, total):
     pass
 
 
@@ -115,8 +114,8 @@ class InterruptedHereError(Exception):
 
 
 def test_an_interrupted_search_goes_on_with_the_next_run(store, tmp_path):
-    def interrupt(progress):
-        if progress.done == 30:
+    def interrupt(done, total):
+        if done == 30:
             raise InterruptedHereError
 
     with pytest.raises(InterruptedHereError):

@@ -95,7 +95,7 @@ def test_results_do_not_depend_on_workers_and_resume(few, tmp_path):
         seeds=(0, 1),
         workers=0,
         store=store,
-        on_progress=lambda p: steps.append(p.done),
+        on_progress=lambda done, total: steps.append(done),
     )
     assert again == alone
     assert steps[0] == 4

@@ -39,7 +39,7 @@ from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.offline.driver import OfflineTracker
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.output_files import flush_folder, make_folder, write_json
-from vehicle_pf_tracker.offline.processes import OnProgress, Progress, Turn, run_in_processes
+from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.offline.run_folder import (
     RUN,
     RunFolder,
@@ -139,8 +139,8 @@ def _run_baseline(
     }
 
 
-Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[Turn[GridCell, CellResult]]]
-"""Runs cells, in any order, and reports each that begins or ends."""
+Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[tuple[GridCell, CellResult]]]
+"""Runs cells, in any order, and yields each with its result."""
 
 
 def on_this_machine(workers: int) -> Runner:
@@ -166,7 +166,7 @@ def complete(
     runner : callable
         Runs the missing cells.
     on_progress : callable
-        Called whenever a run begins or ends.
+        Called with the number of runs done, and of all.
     notify : callable
         Called with a sentence about stored cells that are damaged, and so run again.
 
@@ -183,13 +183,10 @@ def complete(
     damaged = [cell.label for cell in missing if _is_damaged(cell.folder(folder))]
     if damaged:
         notify(_damage_notice(damaged))
-    done = 0
-    for turn in runner(missing):
-        if turn.ended is not None:
-            cell, outcome = turn.ended
-            _store(cell, outcome, cell.folder(folder), plan.command)
-            done += 1
-        on_progress(Progress(done, len(missing), tuple(cell.label for cell in turn.running)))
+    on_progress(0, len(missing))
+    for done, (cell, outcome) in enumerate(runner(missing), start=1):
+        _store(cell, outcome, cell.folder(folder), plan.command)
+        on_progress(done, len(missing))
     return len(missing)
 
 
