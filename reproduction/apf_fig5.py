@@ -27,10 +27,10 @@ from reproduction import experiment as ex
 from reproduction.apf_systems import APF, INTERPRETATIONS
 from reproduction.cells import Result, RunCell
 from reproduction.numbers import counted, median_and_range, share
+from reproduction.shading import OUTLINE
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.plots import OUTLINE
 from vehicle_pf_tracker.evaluation.scores import Scores
 from vehicle_pf_tracker.trackers.estimate import Mode
 

@@ -22,7 +22,8 @@ from reproduction import apf_video3 as video3
 from reproduction import experiment as ex
 from reproduction.apf_systems import INTERPRETATIONS, RIVALS, SIX
 from reproduction.numbers import counted, share
-from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
+from reproduction.shading import shade_occlusions
+from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _PLACE = "section IV, figure 7"

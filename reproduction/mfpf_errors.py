@@ -24,7 +24,8 @@ from reproduction import experiment as ex
 from reproduction import mfpf_systems as mfpf
 from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
 from reproduction.mfpf_systems import FOUR, INTERPRETATIONS, MFPF, SINGLES
-from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
+from reproduction.shading import shade_occlusions
+from vehicle_pf_tracker.evaluation.plots import STYLES
 
 _PLACE = "section V, figures 5b to 15b"
 

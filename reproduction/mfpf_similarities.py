@@ -27,7 +27,8 @@ from reproduction import mfpf_systems as mfpf
 from reproduction.mfpf_case_plots import draw_by_case
 from reproduction.mfpf_systems import FEATURES, INTERPRETATIONS, MFPF
 from reproduction.numbers import mean_and_spread
-from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
+from reproduction.shading import shade_occlusions
+from vehicle_pf_tracker.evaluation.plots import STYLES
 
 _PLACE = "section V, figures 5a to 15a"
 

@@ -25,7 +25,8 @@ from reproduction import experiment as ex
 from reproduction import resampling_systems as resampling
 from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
 from reproduction.numbers import median_and_range
-from vehicle_pf_tracker.evaluation.plots import STYLES, shade_occlusions
+from reproduction.shading import shade_occlusions
+from vehicle_pf_tracker.evaluation.plots import STYLES
 
 _PLACE = "section VI, figure 4"
 _LOW = 15.0

@@ -25,7 +25,8 @@ from matplotlib.figure import Figure
 from reproduction import experiment as ex
 from reproduction import resampling_systems as resampling
 from reproduction.numbers import median_and_range
-from vehicle_pf_tracker.evaluation.plots import STYLES, Style, shade_occlusions
+from reproduction.shading import shade_occlusions
+from vehicle_pf_tracker.evaluation.plots import STYLES, Style
 
 _PLACE = "section VI, figure 5"
 _MOST_PASSES = 20

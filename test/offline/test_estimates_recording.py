@@ -16,7 +16,7 @@ import pytest
 from drive import drive, truth_of
 
 from vehicle_pf_tracker.offline.estimates import EstimateRow
-from vehicle_pf_tracker.offline.estimates_recording import write_with_estimates
+from vehicle_pf_tracker.offline.estimates_recording import run_recording
 from vehicle_pf_tracker.recordings.cdr import deserialize
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
@@ -38,6 +38,13 @@ def row(index, mode="TRACKING", x=None):
     return EstimateRow(index + 1, stamp, x, 20.5, 16.0, 12.0, mode, 0.5, 99.0, 1.0)
 
 
+def write(folder, recording, rows):
+    """Write a run with these rows, by target, beside the images of `recording`."""
+    with run_recording(folder, "apf_tracker", list(rows), recording.truth()) as keep:
+        for index, found in enumerate(recording.frames()):
+            keep(found, {name: some[index] for name, some in rows.items()})
+
+
 def read(folder, topic):
     together = Recording(folder)
     kinds = {info.name: info.type_name for info in together.topics}
@@ -49,7 +56,7 @@ def read(folder, topic):
 
 def test_estimates_stand_beside_images_and_truth(recording, tmp_path):
     rows = [row(0, "WAITING"), row(1, "TRACKING", 0.1 + 0.2), row(2, "LOST", 31.0)]
-    write_with_estimates(tmp_path / "all", recording, {"apf_tracker": rows})
+    write(tmp_path / "all", recording, {"car": rows})
     positions = read(tmp_path / "all", "/apf_tracker/position")
     assert [(stamp, p.point.x, p.point.y) for stamp, p in positions] == [
         (rows[1].stamp_ns, 0.1 + 0.2, 20.5),
@@ -62,29 +69,20 @@ def test_estimates_stand_beside_images_and_truth(recording, tmp_path):
     assert [p.x for p in box.polygon.points] == pytest.approx([-7.7, 8.3, 8.3, -7.7])
 
 
-def test_images_and_truth_are_copied_as_they_are(recording, tmp_path):
-    write_with_estimates(tmp_path / "all", recording, {})
-    together = Recording(tmp_path / "all")
-    assert together.truth() == recording.truth()
-    copied, original = list(together.frames()), list(recording.frames())
-    assert [f.stamp_ns for f in copied] == [f.stamp_ns for f in original]
-    assert all((a.frame == b.frame).all() for a, b in zip(copied, original, strict=True))
-
-
-def test_annotations_are_stamped_as_their_images_and_name_the_node(recording, tmp_path):
-    rows = {"apf_tracker": [row(0, x=1.0), row(1, "LOST", 2.0)], "pf_tracker": [row(0, "WAITING")]}
-    write_with_estimates(tmp_path / "all", recording, rows)
+def test_annotations_are_stamped_as_their_images_and_name_the_target(recording, tmp_path):
+    rows = {"car": [row(0, x=1.0), row(1, "LOST", 2.0)], "van": [row(0, "WAITING")] * 2}
+    write(tmp_path / "all", Recording(recording.path), {n: [*r, r[-1]] for n, r in rows.items()})
     together = Recording(tmp_path / "all")
     (kind,) = {
         info.type_name for info in together.topics if info.name.endswith("/annotations")
     }  # fmt: skip
     assert kind == "foxglove_msgs/msg/ImageAnnotations"
     images = [found.stamp_ns for found in together.frames()]
-    logged = [m.log_time_ns for m in together.messages({"/apf_tracker/annotations"})]
-    assert logged == images[:2]
+    logged = [m.log_time_ns for m in together.messages({"/apf_tracker/car/annotations"})]
+    assert logged[:2] == images[:2]
     words = [
         message.texts[0].text
         for name in rows
-        for _, message in read(tmp_path / "all", f"/{name}/annotations")
+        for _, message in read(tmp_path / "all", f"/apf_tracker/{name}/annotations")
     ]
-    assert words == ["apf TRACKING 0.50", "apf LOST 0.50", "pf WAITING"]
+    assert words == ["car TRACKING 0.50", *["car LOST 0.50"] * 2, *["van WAITING"] * 3]

@@ -23,7 +23,6 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, TextIO, TypeAlias
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.evaluation.tables import Comparison
     from vehicle_pf_tracker.offline.processes import OnProgress
 
 PROGRAM = "vehicle-pf-tracker"
@@ -51,11 +50,6 @@ def tell_notices(sentences: Iterable[str]) -> None:
     """Print notices on stderr, one per line."""
     for sentence in sentences:
         tell_notice(sentence)
-
-
-def show(table: Comparison) -> None:
-    """Print a table on stdout."""
-    print_rows(*table.texts())
 
 
 def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: str = "") -> None:

@@ -22,8 +22,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli.console import stages, tell_notice, tell_notices
-from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, switch
+from vehicle_pf_tracker.cli.console import stages
+from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional
 from vehicle_pf_tracker.core.outputs import Products, claimed
 
 if TYPE_CHECKING:
@@ -52,9 +52,6 @@ class ReportParts(VerbRequest):
         "--no-images", action="store_false",
         help="leave the stills of the recordings out of report.html",
     )  # fmt: skip
-    recordings: bool = switch(
-        help="write the recordings with truth and all estimates to DIR/estimates, for Foxglove"
-    )
     figures: tuple[str, ...] = option(
         type=_several("pdf", "svg", "png"), default=(), metavar="FORMATS",
         help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
@@ -88,18 +85,14 @@ def run(request: Request) -> int:
 def write(folder: Path, request: ReportParts) -> Report:
     """Write the report of `folder` with the parts that are asked for."""
     from vehicle_pf_tracker.evaluation.report import write_report
-    from vehicle_pf_tracker.evaluation.report.scored_runs import version_notes
 
     with stages("report") as on_stage:
         report = write_report(
             folder,
             images=request.images,
-            recordings=request.recordings,
             figures=request.figures,
             toolkits=request.write,
-            notify=tell_notice,
             on_stage=on_stage,
         )
-    tell_notices(version_notes(report.evaluation))
     print(f"the report is {report.paths[0]}")
     return report

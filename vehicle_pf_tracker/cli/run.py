@@ -22,7 +22,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import UsageError, counting, show, tell_notices
+from vehicle_pf_tracker.cli.console import UsageError, counting, print_rows, tell_notices
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import stopping
@@ -31,7 +31,7 @@ from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.evaluation.tables import comparison
+from vehicle_pf_tracker.evaluation.tables import run_rows
 from vehicle_pf_tracker.offline.driver import OfflineTracker, follow
 from vehicle_pf_tracker.offline.estimates import EstimateRow, summary, write_tracks
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame, run_recording
@@ -162,4 +162,4 @@ def _write(
     metrics = measure(score_frames(found, source.truth(), request.max_diff))
     folder.write_metrics(metrics.to_json())
     if metrics.frames_scored:
-        show(comparison({request.variant: metrics}))
+        print_rows(["", request.variant], run_rows(metrics))

@@ -22,12 +22,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from matplotlib import rc_context
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patheffects import Normal, Stroke
 
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.scores import Scores
 from vehicle_pf_tracker.offline.output_files import replacing
 
 
@@ -48,10 +45,7 @@ STYLES = (
     Style("#E69F00", (0, (5, 1, 1, 1, 1, 1)), "v"),
     Style("#56B4E9", (0, (8, 2)), "P"),
 )
-_SHADES = {Occlusion.PARTIAL: ("0.93", "partly hidden"), Occlusion.TOTAL: ("0.78", "hidden")}
 _DPI = 150
-OUTLINE = (Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal())
-"""Keeps lines visible on any scenery."""
 
 
 def save(figure: Figure, path: Path) -> None:
@@ -67,15 +61,6 @@ def save(figure: Figure, path: Path) -> None:
     metadata = {"Date": None} if path.suffix == ".svg" else {}
     with replacing(path) as partial, rc_context({"svg.hashsalt": "vehicle_pf_tracker"}):
         figure.savefig(partial, dpi=_DPI, metadata=metadata)
-
-
-def shade_occlusions(axes: Axes, scores: Scores) -> None:
-    """Shade the frames in which the vehicle is partly or totally hidden."""
-    truths = {frame.row.frame: frame.truth for frame in scores.frames if frame.truth is not None}
-    for occlusion, (shade, label) in _SHADES.items():
-        for index, (first, last) in enumerate(stretches(truths, {occlusion})):
-            shown = None if index else label
-            axes.axvspan(first - 0.5, last + 0.5, color=shade, lw=0, label=shown)
 
 
 def stretches(truths: Mapping[int, Truth], kinds: Collection[Occlusion]) -> list[tuple[int, int]]:

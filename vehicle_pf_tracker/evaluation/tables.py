@@ -18,14 +18,13 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
 
-Cell: TypeAlias = float | int | bool | str | None
 NOTHING = "-"
 Rows: TypeAlias = list[list[str]]
 
@@ -97,102 +96,39 @@ class Table:
         return ["system", *titles], rows
 
 
-@dataclass(frozen=True, slots=True)
-class MetricRow:
-    """A row: the metric and its unit, its cells, and the decimals that are shown."""
-
-    label: str
-    unit: str
-    cells: tuple[Cell, ...]
-    decimals: int = 1
-
-
-@dataclass(frozen=True, slots=True)
-class Comparison:
-    """One line per metric, one column per run."""
-
-    columns: tuple[str, ...]
-    lines: tuple[MetricRow, ...]
-
-    def texts(self) -> tuple[list[str], Rows]:
-        """Return the headings, and the text of all rows."""
-        rows = [[_label(line), *(_text(cell, line.decimals) for cell in line.cells)]
-                for line in self.lines]  # fmt: skip
-        return ["", *self.columns], rows
-
-    def to_markdown(self) -> str:
-        """Return the table as Markdown."""
-        return markdown(*self.texts())
-
-    def to_csv(self) -> str:
-        """Return the table as CSV: every digit, and nothing where there is no value."""
-        lines = ([line.label, line.unit, *line.cells] for line in self.lines)
-        return csv_text(["metric", "unit", *self.columns], lines)
-
-
 _LINES = (
-    ("error, RMSE", "px", "rmse_px", 1),
-    ("error, RMSE while visible", "px", "rmse_visible_px", 1),
-    ("error, median", "px", "median_px", 1),
-    ("error, largest", "px", "max_px", 1),
-    ("error below 15 px", "share", "p_error_lt_15px", 3),
-    ("on target while visible", "share", "on_target", 3),
-    ("TRACKING while visible", "share", "visible_tracking", 3),
-    ("not TRACKING while hidden", "share", "hidden_not_tracking", 3),
-    ("frames", "", "frames", 1),
-    ("frames scored", "", "frames_scored", 1),
-    ("time per step, median", "ms", "step_ms_p50", 2),
-    ("time per step, 95 %", "ms", "step_ms_p95", 2),
+    ("error, RMSE, px", "rmse_px", 1),
+    ("error, RMSE while visible, px", "rmse_visible_px", 1),
+    ("error, median, px", "median_px", 1),
+    ("error, largest, px", "max_px", 1),
+    ("error below 15 px", "p_error_lt_15px", 3),
+    ("on target while visible", "on_target", 3),
+    ("TRACKING while visible", "visible_tracking", 3),
+    ("not TRACKING while hidden", "hidden_not_tracking", 3),
+    ("frames", "frames", 0),
+    ("frames scored", "frames_scored", 0),
+    ("time per step, median, ms", "step_ms_p50", 2),
+    ("time per step, 95 %, ms", "step_ms_p95", 2),
 )
-"""Label, unit, name of the metric and decimals; occlusions stand before the modes."""
+"""Label, name of the metric and decimals; occlusions stand before the modes."""
 _MODES = 6
 
 
-def comparison(runs: Mapping[str, Metrics]) -> Comparison:
-    """Put runs on the same recording side by side, each under its name.
-
-    Metrics that no run has are left out.
-    """
-    metrics = list(runs.values())
-    lines = [
-        MetricRow(label, unit, tuple(getattr(run, name) for run in metrics), decimals)
-        for label, unit, name, decimals in _LINES
-    ]
-    lines[_MODES:_MODES] = _occlusion_lines(metrics)
-    kept = (line for line in lines if any(cell is not None for cell in line.cells))
-    return Comparison(tuple(runs), tuple(kept))
+def run_rows(metrics: Metrics) -> Rows:
+    """Return a row for each metric that the run has: its label with the unit, and its value."""
+    values = [(label, getattr(metrics, name), decimals) for label, name, decimals in _LINES]
+    values[_MODES:_MODES] = [line for one in metrics.occlusions for line in _occlusion_lines(one)]
+    return [[label, _text(value, decimals)] for label, value, decimals in values
+            if value is not None]  # fmt: skip
 
 
-def _occlusion_lines(metrics: list[Metrics]) -> list[MetricRow]:
-    # Runs that were started at different frames may not have seen the same occlusions.
-    by_frames = [{(o.first_frame, o.last_frame): o for o in m.occlusions} for m in metrics]
-    lines = []
-    for first, last in sorted(set().union(*by_frames)):
-        found = [table.get((first, last)) for table in by_frames]
-        name = f"hidden {first}-{last}"
-        inside = tuple(o.error_inside_px if o else None for o in found)
-        after = tuple(o.error_after_px if o else None for o in found)
-        lines += [
-            MetricRow(f"{name}: mean error inside", "px", inside),
-            MetricRow(f"{name}: mean error after", "px", after),
-            MetricRow(f"{name}: recovered", "", tuple(map(_verdict, found))),
-        ]
-    return lines
+def _occlusion_lines(one: OcclusionScore) -> Iterator[tuple[str, float | str | None, int]]:
+    name = f"hidden {one.first_frame}-{one.last_frame}"
+    yield f"{name}: mean error inside, px", one.error_inside_px, 1
+    yield f"{name}: mean error after, px", one.error_after_px, 1
+    recovered = "not judged" if one.recovered is None else "yes" if one.recovered else "no"
+    yield f"{name}: recovered", recovered, 0
 
 
-def _verdict(occlusion: OcclusionScore | None) -> Cell:
-    if occlusion is None:
-        return None
-    return "not judged" if occlusion.recovered is None else occlusion.recovered
-
-
-def _label(line: MetricRow) -> str:
-    return f"{line.label}, {line.unit}" if line.unit not in {"", "share"} else line.label
-
-
-def _text(cell: Cell, decimals: int) -> str:
-    if cell is None:
-        return NOTHING
-    if isinstance(cell, bool):
-        return "yes" if cell else "no"
-    return f"{cell:.{decimals}f}" if isinstance(cell, float) else str(cell)
+def _text(value: float | str, decimals: int) -> str:
+    return value if isinstance(value, str) else f"{value:.{decimals}f}"

@@ -40,12 +40,11 @@ from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
 from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.messages import as_token
-from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.topics import (
     DIAGNOSTIC_ARRAY,
     POINT_STAMPED,
     POLYGON_STAMPED,
-    TRUTH_TOPICS,
 )
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.estimate import Mode
@@ -192,61 +191,6 @@ class EstimateTopics:
         writer.write(f"/{name}/position", POINT_STAMPED, stamp, point)
         polygon = messages.polygon_stamped(stamp, row.box.corners)
         writer.write(f"/{name}/box", POLYGON_STAMPED, stamp, polygon)
-
-
-def write_with_estimates(
-    folder: Path,
-    recording: Recording,
-    runs: Mapping[str, Sequence[EstimateRow]],
-    *,
-    overwrite: bool = False,
-) -> None:
-    """Copy `recording` to `folder` with the estimates of `runs` beside it.
-
-    Parameters
-    ----------
-    folder : Path
-        The rosbag2 folder to write.
-    recording : Recording
-        The recording whose images and truth are copied as they are.
-    runs : mapping of str to rows
-        Estimates by node name; see `EstimateTopics`.
-    overwrite : bool
-        Replace a recording that is there.
-
-    Raises
-    ------
-    InputError
-        If the folder cannot be written.
-    """
-    rows = _by_stamp(runs)
-    copied = {recording.image_topic, *TRUTH_TOPICS}
-    with RecordingWriter(folder, overwrite=overwrite) as writer:
-        labels = {name: name.removesuffix("_tracker") for name in runs}
-        topics = EstimateTopics(writer, labels, _image_size(recording))
-        for message in recording.messages(copied):
-            stamp = message.log_time_ns if message.stamp_ns is None else message.stamp_ns
-            writer.write_serialized(message.topic, message.type_name, stamp, message.data)
-            if message.topic == recording.image_topic:
-                for name, row in rows.pop(stamp, []):
-                    topics.write(name, row)
-
-
-def _by_stamp(
-    runs: Mapping[str, Sequence[EstimateRow]],
-) -> dict[int, list[tuple[str, EstimateRow]]]:
-    table: dict[int, list[tuple[str, EstimateRow]]] = {}
-    for name, rows in runs.items():
-        for row in rows:
-            table.setdefault(row.stamp_ns, []).append((name, row))
-    return table
-
-
-def _image_size(recording: Recording) -> tuple[int, int]:
-    """Return the size of the first image that can be read; (0, 0) without any."""
-    frames = (found.frame for found in recording.frames())
-    first = next((frame for frame in frames if frame is not None), None)
-    return (0, 0) if first is None else frame_size(first)
 
 
 OnFrame: TypeAlias = Callable[[StampedFrame, Mapping[str, EstimateRow]], None]

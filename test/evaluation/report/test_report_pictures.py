@@ -18,7 +18,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from evaluation_samples import HIDDEN
 from matplotlib.figure import Figure
 
 from vehicle_pf_tracker.core.box import Box
@@ -33,14 +32,14 @@ from vehicle_pf_tracker.evaluation.report.figures import (
     draw_errors,
 )
 from vehicle_pf_tracker.evaluation.report.filmstrip import (
-    Crop,
-    Mark,
-    Shot,
+    HEIGHT,
+    WIDTH,
     colour_of,
-    draw_overlay,
+    draw_still,
+    film_strips,
     longest_occlusions,
-    plan_strips,
-    take_stills,
+    take_frames,
+    view_of,
 )
 from vehicle_pf_tracker.evaluation.report.page import svg_element
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
@@ -68,59 +67,53 @@ def test_stretches_of_one_kind():
 
 
 def test_a_view_holds_the_boxes_and_stays_in_the_image():
-    view = Crop.around([BOX, Box(5, 5, 20, 10)], (320, 240), 280)
-    assert view.left <= 5 and view.top <= 5
-    assert view.left + view.width >= 120 and view.top + view.height >= 70
-    assert view.scale == pytest.approx(280 / view.width)
-    far = Crop.around([BOX, Box(-900, 5, 20, 10)], (320, 240), 280)
-    assert (far.left, far.top, far.width, far.height) == (0, 0, 320, 240)
+    left, top, width, height = view_of([BOX, Box(5, 5, 20, 10)], (320, 240))
+    assert left <= 5 and top <= 5
+    assert left + width >= 120 and top + height >= 70
+    assert view_of([BOX, Box(-900, 5, 20, 10)], (320, 240)) == (0, 0, 320, 240)
 
 
 @pytest.mark.parametrize("size", [(96, 64), (640, 360), (40, 400)])
 def test_views_are_four_to_three_in_every_image(size):
-    view = Crop.around([Box(10, 10, 8, 8)], size, 280)
-    assert view.width / view.height == pytest.approx(4 / 3, rel=0.05)
-    assert 0 <= view.left <= size[0] - view.width
-    assert 0 <= view.top <= size[1] - view.height
+    left, top, width, height = view_of([Box(10, 10, 8, 8)], size)
+    assert width / height == pytest.approx(4 / 3, rel=0.05)
+    assert 0 <= left <= size[0] - width
+    assert 0 <= top <= size[1] - height
 
 
-def test_an_overlay_has_the_boxes_where_they_are():
-    frame = np.full((240, 320, 3), 128, np.uint8)
+def test_a_still_has_the_boxes_where_they_are():
+    frame = np.full((HEIGHT, WIDTH, 3), 128, np.uint8)  # shown whole, as the margins reach its ends
     before = frame.copy()
-    image = draw_overlay(frame, Crop(0, 0, 320, 240, 2.0), BOX, [Mark(Box(200, 100, 40, 40), 1)])
-    assert image.shape == (480, 640, 3)
-    assert tuple(image[240, 400]) == colour_of(1)  # the middle of its left side
-    assert tuple(image[120, 200]) == (255, 255, 255)  # the truth's corner
-    assert tuple(image[130, 220]) == (128, 128, 128)  # and nothing inside
+    truth = Box(100, 60, 60, 40)
+    image = draw_still(frame, truth, {1: Box(200, 100, 40, 40)})
+    assert image.shape == frame.shape
+    assert tuple(image[120, 200]) == colour_of(1)  # the middle of its left side
+    assert tuple(image[60, 100]) == (255, 255, 255)  # the truth's corner
+    assert tuple(image[80, 130]) == (128, 128, 128)  # and nothing inside
     assert np.array_equal(frame, before)
 
 
 def test_boxes_far_outside_do_no_harm():
     frame = np.full((24, 32, 3), 128, np.uint8)
-    marks = [Mark(Box(1e9, -1e9, 5, 5), None), Mark(Box(-50, -50, 1e7, 1e7), 2)]
-    assert draw_overlay(frame, Crop(0, 0, 32, 24, 10.0), None, marks).shape == (240, 320, 3)
+    boxes = {0: Box(1e9, -1e9, 5, 5), 2: Box(-50, -50, 1e7, 1e7)}
+    assert draw_still(frame, BOX, boxes).shape == (HEIGHT, WIDTH, 3)
 
 
-def test_each_system_is_shown_where_it_was_worst(made_evaluation):
+def test_stills_show_the_systems_with_a_style(made_evaluation):
     evaluation = score_folder(EvaluationFolder(made_evaluation))
+    entry = next(one for one in evaluation.recordings if one.name == "bridge")
     runs = {label: typical(evaluation.of("bridge", label)) for label in ("pf", "ms")}
-    strips = plan_strips(evaluation.truths["bridge"], runs, {"pf": 0})
-    around, worst = strips.values()
-    assert all(len(shot.marks) == 1 for shot in around)  # ms has no style
-    hidden = {index + 1 for index in HIDDEN["bridge"]}
-    for shot, run in zip(worst, runs.values(), strict=True):
-        visible = [e for n, e in enumerate(run.errors, start=1) if n not in hidden]
-        assert shot.frame not in hidden
-        assert run.errors[shot.frame - 1] == max(visible)
-        assert shot.marks[0].box == run.boxes[shot.frame - 1]
+    ((title, stills),) = film_strips(entry, evaluation.truths["bridge"], runs, {"pf": 0}).items()
+    assert title.startswith("Occlusion, frames 9 to 14 (total from ")
+    assert all(still.alt.endswith("the true box and 1 estimated") for still in stills)
+    assert all(still.data.startswith("data:image/jpeg;base64,") for still in stills)
 
 
-def test_stills_of_other_images_are_refused(made_evaluation):
+def test_images_of_another_size_are_refused(made_evaluation):
     (entry, _) = EvaluationFolder(made_evaluation).recordings
-    shot = Shot(1, "", BOX, ())
-    assert take_stills(entry, [shot])[shot].data.startswith("data:image/jpeg;base64,")
+    assert list(take_frames(entry, {2})) == [2]
     with pytest.raises(InputError, match="other images"):
-        take_stills(replace(entry, width=640), [shot])
+        take_frames(replace(entry, width=640), {1})
 
 
 def test_an_error_panel_draws_the_median_within_its_band():

@@ -24,7 +24,6 @@ from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
     ScoredRun,
-    version_notes,
 )
 from vehicle_pf_tracker.evaluation.statistics import (
     FEWEST_RECORDINGS,
@@ -286,7 +285,7 @@ def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
     result = f"All {cells} of the grid have a result."
     if failed:
         result = f"{failed} of {cells} have no result; see Failed cells."
-    return [*_leader(aggregates), *filter(None, best), result, *version_notes(evaluation)]
+    return [*_leader(aggregates), *filter(None, best), result]
 
 
 def _leader(aggregates: Aggregates) -> list[str]:

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.evaluation.plots import STYLES
-from vehicle_pf_tracker.evaluation.report import filmstrip, page_tables
+from vehicle_pf_tracker.evaluation.report import page_tables
 from vehicle_pf_tracker.evaluation.report.aggregates import (
     COLUMNS,
     RANKED,
@@ -48,7 +48,7 @@ from vehicle_pf_tracker.evaluation.report.figures import (
     Drawn,
     draw_all,
 )
-from vehicle_pf_tracker.evaluation.report.filmstrip import Still
+from vehicle_pf_tracker.evaluation.report.filmstrip import Still, film_strips
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     FailedCell,
     ScoredEvaluation,
@@ -171,7 +171,7 @@ def _section(
     """Return the values of a recording's section of the template."""
     truths = evaluation.truths[entry.name]
     runs = evaluation.by_system(entry.name, aggregates.order)
-    strips, note = _strips(entry, truths, runs, styled(aggregates)) if images else ([], "")
+    strips, note = _strips(entry, truths, runs, styled(aggregates)) if images else ({}, "")
     shown = [column for column in COLUMNS if column.by_recording]
     return {
         "name": entry.name,
@@ -198,17 +198,13 @@ def _strips(
     truths: Mapping[int, Truth],
     runs: Mapping[str, Sequence[ScoredRun]],
     slots: Mapping[str, int],
-) -> tuple[list[tuple[str, Sequence[Still]]], str]:
+) -> tuple[dict[str, list[Still]], str]:
     """Take the stills, and say why there are none."""
     shown = {label: run for label, some in runs.items() if (run := typical(some)) is not None}
-    strips = filmstrip.plan_strips(truths, shown, slots)
     try:
-        taken = filmstrip.take_stills(entry, [shot for shots in strips.values() for shot in shots])
+        return film_strips(entry, truths, shown, slots), ""
     except InputError as error:
-        return [], f"There are no stills: {error}."
-    stills = {name: [taken[shot] for shot in shots if shot in taken]
-              for name, shots in strips.items()}  # fmt: skip
-    return [(name, some) for name, some in stills.items() if some], ""
+        return {}, f"There are no stills: {error}."
 
 
 def _failed_groups(failed: Sequence[FailedCell]) -> list[tuple[str, str, str]]:

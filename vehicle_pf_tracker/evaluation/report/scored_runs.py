@@ -12,17 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Cells of an evaluation, scored against the truth.
-
-They are exported as recordings for other tools, such as Foxglove and evo.
-"""
+"""Cells of an evaluation, scored against the truth."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,9 +42,6 @@ from vehicle_pf_tracker.evaluation.metrics import (
 )
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 from vehicle_pf_tracker.offline.estimates import EstimateRow
-from vehicle_pf_tracker.offline.estimates_recording import write_with_estimates
-from vehicle_pf_tracker.recordings.messages import as_token
-from vehicle_pf_tracker.recordings.reader import Recording
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +62,6 @@ class ScoredRun:
         Estimates by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
-    versions : mapping of str to str or None
-        What it was made with, as `run.json` has it.
     """
 
     recording: str
@@ -82,7 +73,6 @@ class ScoredRun:
     boxes: Sequence[Box | None]
     rows: Sequence[EstimateRow]
     curves: Mapping[str, Curve]
-    versions: Mapping[str, str | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,67 +189,9 @@ def _result(
         boxes=[_box(frame) for frame in frames],
         rows=cell.rows,
         curves={name: curve for name, curve in curves.items() if curve is not None},
-        versions=cell.run.get("versions", {}),
     )
 
 
 def _box(frame: FrameScore) -> Box | None:
     row = frame.scored_row
     return None if row is None or frame.waiting else row.box
-
-
-_PROGRAMS = {
-    "vehicle_pf_tracker": "vehicle_pf_tracker", "numpy": "NumPy", "opencv": "OpenCV",
-    "numba": "numba",
-}  # fmt: skip
-"""Programs whose version moves estimates, with their names for readers."""
-
-
-def version_notes(evaluation: ScoredEvaluation) -> list[str]:
-    """State that runs of variants were made with different versions, if they were."""
-    ours = {entry.label for entry in evaluation.systems if not entry.kind.startswith("baseline:")}
-    runs = [run for run in (*evaluation.runs, *evaluation.shifted) if run.system in ours]
-    found = {
-        name: sorted({str(run.versions.get(key) or "none") for run in runs})
-        for key, name in _PROGRAMS.items()
-    }
-    differing = [f"{name} {' and '.join(some)}" for name, some in found.items() if len(some) > 1]
-    if not differing:
-        return []
-    return [
-        f"Results of different versions are compared ({'; '.join(differing)}); "
-        "docs/scoring.md says what to expect."
-    ]
-
-
-ESTIMATE_RECORDINGS = "estimates"
-
-
-def write_estimate_recordings(
-    evaluation: ScoredEvaluation,
-    notify: Callable[[str], object],
-    on_stage: Callable[[str], object] = lambda _: None,
-) -> list[Path]:
-    """Write a recording for each of the evaluation's, and return their folders.
-
-    The estimates are on ``/<system>/seed_<n>/position``, ``box``, ``mode`` and ``annotations``.
-    `notify` takes a sentence for each recording that could not be made, and `on_stage` a few words
-    before each.
-    """
-    written = []
-    for entry in evaluation.recordings:
-        on_stage(f"the recording {entry.name} with estimates")
-        path = evaluation.folder.path / ESTIMATE_RECORDINGS / entry.name
-        try:
-            recording = Recording(Path(entry.path), entry.topic)
-            runs = {topic_name(r.system, r.seed): r.rows for r in evaluation.of(entry.name)}
-            write_with_estimates(path, recording, runs, overwrite=True)
-            written.append(path)
-        except InputError as error:
-            notify(f"there is no recording of {entry.name} with estimates: {error}")
-    return written
-
-
-def topic_name(system: str, seed: int) -> str:
-    """Return the namespace of a run."""
-    return f"{as_token(system)}/seed_{seed}"

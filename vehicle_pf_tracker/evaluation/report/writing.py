@@ -45,7 +45,6 @@ from vehicle_pf_tracker.evaluation.report.page_tables import (
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
     score_folder,
-    write_estimate_recordings,
 )
 from vehicle_pf_tracker.evaluation.report.toolkits import write_toolkits
 from vehicle_pf_tracker.evaluation.tables import csv_text, markdown
@@ -150,10 +149,8 @@ def write_report(
     folder: Path,
     *,
     images: bool = True,
-    recordings: bool = False,
     figures: Sequence[str] = (),
     toolkits: Sequence[str] = (),
-    notify: Callable[[str], object] = lambda _: None,
     on_stage: Callable[[str], object] = lambda _: None,
 ) -> Report:
     """Write the report of the evaluation in `folder` there.
@@ -166,14 +163,10 @@ def write_report(
         Folder of an evaluation.
     images : bool
         True for stills of the recordings in the page.
-    recordings : bool
-        True for recordings with truth and all estimates, in ``estimates/``.
     figures : sequence of str
         Formats of the figures in ``figures/``: ``pdf``, ``svg`` and ``png``.
     toolkits : sequence of str
         Formats of the runs in ``results/``: ``otb``, ``vot`` and ``mot``.
-    notify : callable
-        Called with a sentence for each file that could not be made.
     on_stage : callable
         Called with a few words when a part is begun.
 
@@ -193,8 +186,6 @@ def write_report(
         on_stage("drawing the figures")
         written += write_figures(evaluation, aggregates, styled(aggregates), figures)
     written += write_toolkits(evaluation, toolkits)
-    if recordings:
-        written += write_estimate_recordings(evaluation, notify, on_stage)
     return Report(written, evaluation, aggregates)
 
 

@@ -1,0 +1,37 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Shading of occlusions, and outlines of lines over scenery."""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+from matplotlib.patheffects import Normal, Stroke
+
+from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.evaluation.plots import stretches
+from vehicle_pf_tracker.evaluation.scores import Scores
+
+_SHADES = {Occlusion.PARTIAL: ("0.93", "partly hidden"), Occlusion.TOTAL: ("0.78", "hidden")}
+OUTLINE = (Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal())
+"""Keeps lines visible on any scenery."""
+
+
+def shade_occlusions(axes: Axes, scores: Scores) -> None:
+    """Shade the frames in which the vehicle is partly or totally hidden."""
+    truths = {frame.row.frame: frame.truth for frame in scores.frames if frame.truth is not None}
+    for occlusion, (shade, label) in _SHADES.items():
+        for index, (first, last) in enumerate(stretches(truths, {occlusion})):
+            shown = None if index else label
+            axes.axvspan(first - 0.5, last + 0.5, color=shade, lw=0, label=shown)

@@ -1,0 +1,58 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""evo, which reads recordings of runs, agrees with the scorer."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from evaluation_samples import HIDDEN, SEEDS, VARIANTS
+from rosbags.rosbag2 import Reader
+
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
+from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
+from vehicle_pf_tracker.offline.estimates_recording import run_recording
+from vehicle_pf_tracker.recordings.reader import Recording
+
+
+@pytest.fixture(scope="module")
+def evo():
+    """Names of evo that the tests use."""
+    names = ("core.metrics", "core.sync", "tools.file_interface")
+    reason = "evo is not installed"
+    modules = [pytest.importorskip(f"evo.{name}", reason=reason) for name in names]
+    return SimpleNamespace(metrics=modules[0], sync=modules[1], files=modules[2])
+
+
+def rmse(evo, true, estimated):
+    metrics, sync = evo.metrics, evo.sync
+    ape = metrics.APE(metrics.PoseRelation.translation_part)
+    ape.process_data(sync.associate_trajectories(true, estimated))
+    return ape.get_statistic(metrics.StatisticsType.rmse)
+
+
+def test_evo_agrees_on_the_rmse_of_a_recorded_run(evo, made_evaluation, tmp_path):
+    evaluation = score_folder(EvaluationFolder(made_evaluation))
+    paths = {entry.name: Path(entry.path) for entry in evaluation.recordings}
+    for number, run in enumerate(evaluation.runs):
+        source = Recording(paths[run.recording])
+        with run_recording(tmp_path / str(number), "node", ["car"], source.truth()) as keep:
+            for found, row in zip(source.frames(), run.rows, strict=True):
+                keep(found, {"car": row})
+        with Reader(tmp_path / str(number)) as reader:
+            true = evo.files.read_bag_trajectory(reader, "/ground_truth/position")
+            estimated = evo.files.read_bag_trajectory(reader, "/node/position")
+        assert rmse(evo, true, estimated) == pytest.approx(run.metrics.rmse_px, abs=1e-9)
+    assert len(evaluation.runs) == len(HIDDEN) * (len(VARIANTS) * len(SEEDS) - 1)
