@@ -65,6 +65,8 @@ class TrackEstimate:
         Identity of the vehicle that hides it, `SCENE`, or None where it is in sight.
     serial : int
         Number of its track, the same before and after it is confirmed.
+    is_likely : bool
+        Of a `TENTATIVE` one: its way and size are those of a vehicle, but do not prove it yet.
     """
 
     identity: int
@@ -77,6 +79,7 @@ class TrackEstimate:
     age: float
     hidden_by: int | str | None
     serial: int = 0
+    is_likely: bool = False
 
     @property
     def id(self) -> int:

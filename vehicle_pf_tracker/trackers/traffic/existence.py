@@ -57,6 +57,9 @@ _SURELY_DRIVES = 50.0
 _SMALLEST = 0.25
 """Size of the smallest vehicle on the road, of the usual one, by which large ones count more: a
 motorcycle among lorries. Smaller ones that drive are parts of vehicles."""
+_LIKELY_SIZE = 0.5
+"""The same, for a tentative vehicle to divide blobs of motion: pieces of a lorry drive straight,
+too, and would keep it in pieces. At 0.25 a close road's lorries fall apart."""
 _SIZE_MEMORY = 0.998
 """Weight of the detections before in the usual size: some minutes."""
 _STANDING_MATCHES = 30
@@ -174,6 +177,8 @@ class Existence:
             return False
         track.samples.append(sample)
         known = track.confirmed or track.log_odds >= self.parameters.birth.evidence
+        sized = self._is_sized(track, _LIKELY_SIZE, unknown=False)
+        track.is_likely = known and sized and track.drive()[1] > _DRIVES
         track.has_driven = known and self._drives(track)
         self._teach(track)
         proven = track.has_driven or track.strength > self._numbers.proven_by_scores
@@ -191,15 +196,18 @@ class Existence:
                 self._evidence.learn(oldest, False)
 
     def _drives(self, track: Track) -> bool:
-        if track.matches < self.parameters.birth.matches:
-            return False
-        total, squared = self._sizes.tolist()
-        if total > 0 and track.state.road_size < _SMALLEST * squared / total:
+        sized = self._is_sized(track, _SMALLEST, unknown=True)
+        if track.matches < self.parameters.birth.matches or not sized:
             return False
         straightness, evidence = track.drive()
         doubt = track.doubt if evidence < _SURELY_DRIVES else 0.0
         needed = self.parameters.birth.displacement * (1 + doubt / _DOUBTED)
         return track.way > needed and straightness > _STRAIGHT and evidence > _DRIVES
+
+    def _is_sized(self, track: Track, least: float, *, unknown: bool) -> bool:
+        """Compare its size with the usual one; `unknown` as long as there is none."""
+        total, squared = self._sizes.tolist()
+        return bool(track.state.road_size >= least * squared / total) if total > 0 else unknown
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
         """Take off evidence from tracks that a detector has not seen.

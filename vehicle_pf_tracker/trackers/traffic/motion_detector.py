@@ -227,7 +227,7 @@ class MotionDetector:
             self._restart()
         # Estimates are of the image before, and so is where the camera then was.
         tracked = [one for one in tracks if one.mode is TrackMode.TRACKING]
-        followed = [one for one in tracks if one.mode in (TrackMode.TRACKING, TrackMode.OCCLUDED)]
+        followed = [one for one in tracks if _is_followed(one)]
         covered = self._steadier.to_reference(_edges(tracked) * zoom)
         predicted = self._steadier.to_reference(_predicted(followed) * zoom)
         small, seen = self._steadier.steady(small)
@@ -254,6 +254,13 @@ class MotionDetector:
     def _restart(self) -> None:
         self._background = Background(self._shape, self._seed, self._numbers)
         self._steadier = Steadier()
+
+
+def _is_followed(track: TrackEstimate) -> bool:
+    """Tell whether a track divides blobs: waiting for its proof, it would stay in a merged one."""
+    if track.mode is TrackMode.TENTATIVE:
+        return track.is_likely
+    return track.mode is not TrackMode.LOST
 
 
 def _covered(boxes: Array, image: Colours) -> Pixels:

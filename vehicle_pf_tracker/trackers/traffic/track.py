@@ -137,6 +137,8 @@ class Track:
         Largest width and height of its latest detections, px.
     lost : bool
         It has been hidden for too long to be predicted.
+    is_likely : bool
+        Its latest detection left it likely to be a vehicle by way and size, if unproven.
     has_driven : bool
         Its way shows that it is no part of the scene.
     given : bool
@@ -174,6 +176,7 @@ class Track:
     crowded: int = 0
     sides: Array = field(default_factory=lambda: np.zeros(2))
     lost: bool = False
+    is_likely: bool = False
     has_driven: bool = False
     given: bool = False
     score: float = math.nan
@@ -301,6 +304,7 @@ class Track:
             score=self.score,
             age=self.age,
             hidden_by=(self.hidden_by or SCENE) if hidden else None,
+            is_likely=self.is_likely,
         )
 
 
