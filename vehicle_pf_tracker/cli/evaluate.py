@@ -171,7 +171,7 @@ def run(request: Request) -> int:
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
     plan = _plan(request, sources)
     with counting("evaluated", "runs") as on_progress:
-        complete(plan, request.output, on_this_machine(request.workers), on_progress, tell_notice)
+        complete(plan, request.output, on_this_machine(request.workers), on_progress)
     return _judge(report.write(request.output, request), request.max_rmse)
 
 
