@@ -192,9 +192,6 @@ class Sightings:
         self._responses = np.empty(0)
         self._camera_stood = math.inf
 
-    def __len__(self) -> int:
-        return len(self._ages)
-
     def add(self, position: Array, size: Array, response: float) -> None:
         """Add a sighting of the present frame."""
         self._ages = np.append(self._ages, 0.0)
