@@ -29,6 +29,11 @@ def fusion(**values):
 
 def texture(seed, width=320, height=240, blur=3.0, gain=6.0):
     noise = np.random.default_rng(seed).integers(0, 256, (height, width, 3)).astype(np.uint8)
+    return contrasted(noise, blur, gain)
+
+
+def contrasted(noise, blur=3.0, gain=6.0):
+    """Make a texture of noise."""
     smooth = cv2.GaussianBlur(noise, (0, 0), blur).astype(float)
     return np.clip(gain * (smooth - 128) + 128, 0, 255).astype(np.uint8)
 
