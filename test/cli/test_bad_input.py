@@ -188,7 +188,7 @@ def test_a_scene_setting_that_does_not_fit(fails, tmp_path, words, message):
 @pytest.mark.parametrize(
     ("words", "told", "status"),
     [
-        (("runn", "x"), "there is no verb 'runn' (did you mean 'run'?); the verbs are demo, import", 2),
+        (("runn", "x"), "no verb 'runn' (did you mean 'run'?); the verbs are demo, import", 2),
         (("dance",), "there is no verb 'dance'; the verbs are demo, import", 2),
         (("synth",), "synth needs SCENE and OUT", 2),
         (("synth", "moon", "out"), "no scene 'moon'; choose one of bar, ", 1),

@@ -36,7 +36,6 @@ from vehicle_pf_tracker.scenes.models import Still
 from vehicle_pf_tracker.scenes.mot_folder import (
     SIMULATED_DETECTORS,
     SimulatedDetector,
-    detect,
     write_mot_folder,
 )
 from vehicle_pf_tracker.scenes.scene import Actor, Camera
@@ -201,7 +200,7 @@ SIZE = (700, 300)
 
 def found(seed=0, truths=TRUTHS, **changes):
     quiet = {"misses": 0.0, "false_alarms": 0.0, "noise": 0.0, **changes}
-    return detect(SimulatedDetector(**quiet), truths, SIZE, seed)
+    return SimulatedDetector(**quiet).detect(truths, SIZE, seed)
 
 
 def test_a_perfect_detector_finds_every_box():

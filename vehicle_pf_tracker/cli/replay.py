@@ -56,19 +56,12 @@ if TYPE_CHECKING:
 def shown_replay(
     stream: TextIO | None = None, clock: Clock = time.monotonic
 ) -> Iterator[Callable[[ReplayProgress], None]]:
-    """Return a function that shows a replay's progress; rates begin with its first image."""
+    """Return a function that shows a replay's progress."""
     with shown_progress(stream, clock) as show:
-        began = clock()
 
         def tell(progress: ReplayProgress) -> None:
-            nonlocal began
-            if progress.frames == 1:
-                began = clock()
-            count, seconds = progress.frames, clock() - began
-            words = f"{count} frame{'s' * (count > 1)}"
-            if count > 1 and seconds > 0:
-                words += f", {(count - 1) / seconds:.1f} frames/s"
-            show(words, progress.position / progress.length if progress.position else None)
+            share = progress.position / progress.length if progress.position else None
+            show(f"played {progress.frames} frame{'s' * (progress.frames > 1)}", share)
 
         yield tell
 

@@ -30,7 +30,6 @@ from vehicle_pf_tracker.cli.requests import (
     positional,
     positive,
 )
-from vehicle_pf_tracker.cli.tracking_options import with_file
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
@@ -56,7 +55,6 @@ from vehicle_pf_tracker.evaluation.tuning import (
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
-from vehicle_pf_tracker.parameters.table import parse_assignments
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100
@@ -115,7 +113,9 @@ class Request(MaxDiffOption, WorkersOption):
 def run(request: Request) -> int:
     """Search, compare, write all results, and print the comparison."""
     variant = find_variant(request.variant)
-    configuration = _configuration(variant, request)
+    given = [] if request.params is None else [request.params]
+    start = system_options.ParameterSet("", None, given, list(request.assignments))
+    configuration = system_options.configure(variant, start)
     base = system_options.make_system(variant, "", configuration, {})
     what, recordings = _search(variant, base, request)
     outputs = (Products(request.output, (f"{BEST}.yaml",)), Products(request.output / EVALUATION))
@@ -156,14 +156,6 @@ def _tune(
     print_rows(*texts(lines))
     print(f"{told}\nthe parameters are {file}")
     return 0
-
-
-def _configuration(variant: Variant, request: Request) -> Configuration:
-    configuration = Configuration.of(variant)
-    if request.params is not None:
-        configuration = with_file(configuration, variant, request.params)
-    values = parse_assignments(system_options.settable(variant), request.assignments)
-    return configuration.updated(values)
 
 
 def _search(

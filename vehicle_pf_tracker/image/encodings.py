@@ -102,6 +102,14 @@ def to_rgb(
     return frame
 
 
+def frame_of_message(message: Any) -> Frame:
+    """Read a `sensor_msgs/Image`; errors are those of `to_rgb`."""
+    return to_rgb(
+        message.encoding, message.height, message.width, message.step, message.is_bigendian,
+        message.data,
+    )  # fmt: skip
+
+
 def flat_bytes(data: Buffer) -> Bytes:
     """View a buffer as an array of its bytes."""
     if isinstance(data, np.ndarray):

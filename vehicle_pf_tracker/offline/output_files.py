@@ -34,22 +34,17 @@ PICTURES = (".png", ".jpg", ".jpeg")
 
 
 def make_folder(path: Path) -> Path:
-    """Make the folder `path` where it is missing, and make sure that files can be put in it.
+    """Make the folder `path` where it is missing.
 
     Raises
     ------
     InputError
-        If it is a file, or may not be made or written to.
+        If it is a file, or may not be made.
     """
     with output_errors(path):
         if path.exists() and not path.is_dir():
             raise InputError(f"the output {path} is a file; name a folder")
         path.mkdir(parents=True, exist_ok=True)
-        probe = _partial(path / "probe")
-        try:
-            probe.touch()
-        finally:
-            probe.unlink(missing_ok=True)
     return path
 
 
@@ -66,9 +61,9 @@ def replacing(path: Path) -> Iterator[Path]:
     with output_errors(path):
         try:
             yield partial
-            _flush(partial)
+            flush(partial)
             partial.replace(path)
-            flush_folder(path.parent)
+            flush(path.parent)
         finally:
             partial.unlink(missing_ok=True)
 
@@ -101,12 +96,8 @@ def write_json(path: Path, document: Any) -> None:
     write_text(path, text + "\n")
 
 
-def flush_folder(folder: Path) -> None:
-    """Wait until the names in `folder` are on the disk: a rename may otherwise outrun the data."""
-    _flush(folder)
-
-
-def _flush(path: Path) -> None:
+def flush(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are on the disk: a rename may outrun them."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -20,7 +20,7 @@ import dataclasses
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -139,15 +139,6 @@ class SessionParameters:
             )
 
 
-class Parametrised(Protocol):
-    """Part of a variant that the configuration uses."""
-
-    @property
-    def parameters(self) -> type[Any]:
-        """Parameter dataclass, all of whose fields have defaults."""
-        ...
-
-
 @dataclass(frozen=True, slots=True)
 class Configuration:
     """The three parameter tables with their values; the names are distinct over all of them.
@@ -167,8 +158,8 @@ class Configuration:
     node: NodeParameters
 
     @classmethod
-    def of(cls, variant: Parametrised) -> Configuration:
-        """Return the defaults of `variant`."""
+    def of(cls, variant: Any) -> Configuration:
+        """Return the defaults of `variant`, an entry of the registry."""
         return cls(variant.parameters(), SessionParameters(), NodeParameters())
 
     def specs(self) -> dict[str, ParameterSpec]:

@@ -25,7 +25,7 @@ from typing import Any
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
-from vehicle_pf_tracker.image.encodings import to_rgb
+from vehicle_pf_tracker.image.encodings import frame_of_message
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings import topics as names
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
@@ -279,14 +279,7 @@ def _decode(type_name: str, data: memoryview) -> StampedFrame:
     if type_name == names.COMPRESSED_IMAGE:
         frame = decode_compressed(message.format, message.data)
     else:
-        frame = to_rgb(
-            message.encoding,
-            message.height,
-            message.width,
-            message.step,
-            bool(message.is_bigendian),
-            message.data,
-        )
+        frame = frame_of_message(message)
     return StampedFrame(messages.stamp_ns(message), frame)
 
 

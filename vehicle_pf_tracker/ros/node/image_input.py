@@ -30,7 +30,7 @@ from sensor_msgs.msg import CompressedImage, Image
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage, read_compressed
-from vehicle_pf_tracker.image.encodings import to_rgb
+from vehicle_pf_tracker.image.encodings import frame_of_message
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError
 
 ImageCallback = Callable[[Any, Mapping[str, Any]], None]
@@ -171,11 +171,4 @@ def read_image(message: Image | CompressedImage) -> Frame | CodedImage:
     """
     if isinstance(message, CompressedImage):
         return read_compressed(message.format, message.data)
-    return to_rgb(
-        message.encoding,
-        message.height,
-        message.width,
-        message.step,
-        bool(message.is_bigendian),
-        message.data,
-    )
+    return frame_of_message(message)
