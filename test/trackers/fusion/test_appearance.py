@@ -14,9 +14,9 @@
 
 """The target's appearance: where the filter finds it, and what it learns."""
 
-import cv2
 import numpy as np
 import pytest
+from fusion_samples import texture
 
 from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
@@ -27,13 +27,9 @@ SIZE = np.array([48.0, 30.0])
 PLACE = np.array([160.0, 120.0])
 
 
-def texture(seed, shape, blur=2.0):
-    noise = np.random.default_rng(seed).integers(0, 256, (*shape, 3)).astype(np.uint8)
-    smooth = cv2.GaussianBlur(noise, (0, 0), blur).astype(float)
-    return np.clip(3 * (smooth - 128) + 128, 0, 255).astype(np.uint8)
-
-
-ROAD, VEHICLE, OTHER = texture(1, (240, 320)), texture(2, (30, 48)), texture(3, (30, 48))
+SMOOTH = {"blur": 2.0, "gain": 3.0}
+ROAD = texture(1, **SMOOTH)
+VEHICLE, OTHER = (texture(seed, 48, 30, **SMOOTH) for seed in (2, 3))
 
 
 def frame(x=PLACE[0], y=PLACE[1], vehicle=VEHICLE):
