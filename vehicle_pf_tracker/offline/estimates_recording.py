@@ -91,8 +91,7 @@ class ImageAnnotator:
             self._path.clear()
         else:
             self._path.append(box.centre)
-        seconds, nanoseconds = divmod(row.stamp_ns, 1_000_000_000)
-        stamp = message_class("builtin_interfaces/msg/Time")(sec=seconds, nanosec=nanoseconds)
+        stamp = messages.header(row.stamp_ns).stamp
         lines = () if box is None else self._lines(row, box)
         return message_class(IMAGE_ANNOTATIONS)(
             circles=[],
