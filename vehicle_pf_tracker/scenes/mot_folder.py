@@ -22,7 +22,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 import cv2
 import numpy as np
@@ -97,18 +96,16 @@ class SimulatedDetector:
         return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
-SIMULATED_DETECTORS: Mapping[str, SimulatedDetector] = MappingProxyType(
-    {
-        "good": SimulatedDetector(),
-        "misses": SimulatedDetector(misses=0.25, miss_length=5.0),
-        "false_alarms": SimulatedDetector(false_alarms=2.0),
-        "noisy": SimulatedDetector(noise=0.1),
-        "merged": SimulatedDetector(merges=0.7),
-        "poor": SimulatedDetector(
-            misses=0.15, miss_length=4.0, false_alarms=0.7, noise=0.07, merges=0.4
-        ),
-    }
-)
+SIMULATED_DETECTORS: Mapping[str, SimulatedDetector] = {
+    "good": SimulatedDetector(),
+    "misses": SimulatedDetector(misses=0.25, miss_length=5.0),
+    "false_alarms": SimulatedDetector(false_alarms=2.0),
+    "noisy": SimulatedDetector(noise=0.1),
+    "merged": SimulatedDetector(merges=0.7),
+    "poor": SimulatedDetector(
+        misses=0.15, miss_length=4.0, false_alarms=0.7, noise=0.07, merges=0.4
+    ),
+}
 """The simulated detectors by name."""
 
 

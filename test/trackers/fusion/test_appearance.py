@@ -46,6 +46,13 @@ def learnt(*, colour=True, penalty=0.1):
     return appearance
 
 
+def usual():
+    """An appearance that has seen its vehicle once, so that responses are relative to that."""
+    appearance = learnt()
+    view_at(appearance, frame(), PLACE)
+    return appearance
+
+
 def view_at(appearance, picture, position, size=SIZE, *, wide=False):
     return appearance.view(appearance.patch(picture, np.array(position, float), size, wide=wide))
 
@@ -88,28 +95,24 @@ def test_the_peak_is_where_the_target_is(colour, offset):
 
 
 def test_a_large_box_is_found_in_a_wide_patch_only():
-    appearance = learnt()
-    view_at(appearance, frame(), PLACE)
+    appearance = usual()
     away = PLACE + np.array([70, 45])
     wide = view_at(appearance, frame(*away), PLACE, wide=True)
     assert wide.spectrum is None
     assert wide.patch.side == 256
     rows, columns = np.unravel_index(wide.response.argmax(), wide.response.shape)
     assert wide.places(away) == pytest.approx([columns, rows], abs=1)
-    usual = appearance.usual_patch(wide.patch)
-    assert usual.side == 128
-    assert appearance.usual_patch(usual) is usual
+    inner = appearance.usual_patch(wide.patch)
+    assert inner.side == 128
+    assert appearance.usual_patch(inner) is inner
 
 
 def test_another_vehicle_answers_less():
-    appearance = learnt()
-    view_at(appearance, frame(), PLACE)
-    assert view_at(appearance, frame(vehicle=OTHER), PLACE).response.max() < 0.5
+    assert view_at(usual(), frame(vehicle=OTHER), PLACE).response.max() < 0.5
 
 
 def test_a_wrong_size_answers_less():
-    appearance = learnt()
-    view_at(appearance, frame(), PLACE)
+    appearance = usual()
     answers = [
         appearance.response_at(frame(), PLACE, factor * SIZE)
         for factor in (0.85, 0.93, 1.0, 1.08, 1.18)
@@ -133,8 +136,7 @@ def test_the_response_at_a_box_is_that_of_the_whole_view_there():
 
 @pytest.mark.parametrize("away", [2.0, 14.0], ids=["shifted cells", "measured again"])
 def test_learning_adapts_the_filter_to_a_new_look(away):
-    appearance = learnt()
-    view_at(appearance, frame(), PLACE)
+    appearance = usual()
     mixed = (0.5 * VEHICLE + 0.5 * OTHER).astype(np.uint8)
     picture = frame(vehicle=mixed)
     before = view_at(appearance, picture, PLACE).response.max()
@@ -192,8 +194,7 @@ def test_an_image_without_any_contrast_gives_finite_responses(level, colour):
 
 def turned_into_another():
     """A filter that remembers `VEHICLE`, and has learnt `OTHER` since."""
-    appearance = learnt()
-    appearance.view(appearance.patch(frame(), PLACE, SIZE))
+    appearance = usual()
     appearance.remember(3)
     for _ in range(12):
         view = view_at(appearance, frame(vehicle=OTHER), PLACE)

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -33,18 +32,16 @@ _LOW = 0.25
 chosen by hand for that detector; the defaults of 0.6 and 0.7 discard nearly all of its boxes."""
 
 _BOTH_LOW = {"track_activation_threshold": _LOW, "high_conf_det_threshold": _LOW}
-TRAFFIC_BASELINES: Mapping[str, Mapping[str, float]] = MappingProxyType(
-    {
-        "sort": {},
-        "sort-low": {"track_activation_threshold": 0.15},
-        "bytetrack": {},
-        "bytetrack-low": _BOTH_LOW,
-        "ocsort": {},
-        "ocsort-low": {"high_conf_det_threshold": _LOW},
-        "cbiou": {},
-        "cbiou-low": _BOTH_LOW,
-    }
-)
+TRAFFIC_BASELINES: Mapping[str, Mapping[str, float]] = {
+    "sort": {},
+    "sort-low": {"track_activation_threshold": 0.15},
+    "bytetrack": {},
+    "bytetrack-low": _BOTH_LOW,
+    "ocsort": {},
+    "ocsort-low": {"high_conf_det_threshold": _LOW},
+    "cbiou": {},
+    "cbiou-low": _BOTH_LOW,
+}
 """Options of trackers of PyPI `trackers`: as they come, and with thresholds lowered by hand."""
 
 

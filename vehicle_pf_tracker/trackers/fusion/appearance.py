@@ -180,11 +180,9 @@ class Appearance:
 
     def view(self, patch: Patch, *, recall: bool = False) -> View:
         """Respond to a patch; with `recall`, by the best of the present and the dated filters."""
-        features = self._features(patch.image, patch.grey)
         wide = patch.side > self._side
         respond = self._filter.respond_wide if wide else self._filter.respond
-        transform = self._filter.wide_spectrum if wide else self._filter.spectrum
-        spectrum = transform(features)
+        spectrum = self._spectrum(patch)
         response = respond(spectrum)
         if not self.usual_response:
             least = max(self._least_usual, _LEAST_USUAL)
@@ -214,7 +212,7 @@ class Appearance:
 
     def learn_first(self, patch: Patch) -> None:
         """Train the filter on the first patch, in whose middle the target is."""
-        spectrum = self._filter.spectrum(self._features(patch.image, patch.grey))
+        spectrum = self._spectrum(patch)
         self._filter.train(spectrum, 0.0)
         self._least_usual = _USUAL_SHARE * float(self._filter.respond(spectrum).max())
 
@@ -225,13 +223,17 @@ class Appearance:
             x, y = (-offset / CELL).tolist()
             spectrum = shifted(view.spectrum, x, y)
         else:
-            again = self.patch(frame, position, size)
-            spectrum = self._filter.spectrum(self._features(again.image, again.grey))
+            spectrum = self._spectrum(self.patch(frame, position, size))
         self._filter.train(spectrum, stiff)
 
     def learn_usual(self, response: float, rate: float) -> None:
         """Let the usual response follow one of a visible frame, given relative to it."""
         self.usual_response *= 1 + rate * (response - 1)
+
+    def _spectrum(self, patch: Patch) -> Spectrum:
+        wide = patch.side > self._side
+        transform = self._filter.wide_spectrum if wide else self._filter.spectrum
+        return transform(self._features(patch.image, patch.grey))
 
     def _features(self, image: Frame, grey: Grey) -> CellFeatures:
         features = self._kernels.gradient_cells(grey, _COLOURS if self._colour else 0)

@@ -187,8 +187,8 @@ _ACROSS = 0.25
 of an outline may lie aside, but it does not move there."""
 _CONFIRMED = 2
 """Frames in a row that prove it: single outlines jump with the noise at their rim."""
-_LARGEST_CHANGE = 1.3
-"""Largest change of width or height in a frame; a merged outline changes by more."""
+_LARGEST_LOG_CHANGE = np.log(1.3)
+"""Largest change of a side's logarithm in a frame; a merged outline changes by more."""
 _LEAST_COVERED, _MOST_COVERED = 0.6, 2.0
 """Area of the outline in the last clear sighting, of the box, between which it is the vehicle's."""
 _FURTHEST = 40.0
@@ -278,15 +278,12 @@ class TurningBranch:
         position, size = _box(branch.outline, branch.margins)
         branch.aside = branch.aside + 1 if _leaves(branch, position, size) else 0
         branch.proven |= branch.aside >= _CONFIRMED
-        if not branch.proven:
-            if branch.age > _FURTHEST:
-                self._branch = None
-            return None
-        branch.calm = branch.calm + 1 if view.at(position) > CLEAR_RESPONSE else 0
-        if branch.calm > _CALM:
+        if branch.proven:
+            branch.calm = branch.calm + 1 if view.at(position) > CLEAR_RESPONSE else 0
+        if branch.calm > _CALM or (not branch.proven and branch.age > _FURTHEST):
             self._branch = None
             return None
-        return Turned(position, size, branch.velocity)
+        return Turned(position, size, branch.velocity) if branch.proven else None
 
     def end(self) -> None:
         """End the branch: the vehicle was found another way."""
@@ -300,8 +297,7 @@ class TurningBranch:
         branch.age += elapsed
         centre = before.centre + branch.velocity * elapsed
         after = self._foreground.outline(centre, before.size, ago)
-        change = None if after is None else np.abs(np.log(after.size / before.size)).max()
-        if after is None or change is None or change > np.log(_LARGEST_CHANGE):
+        if after is None or np.abs(np.log(after.size / before.size)).max() > _LARGEST_LOG_CHANGE:
             self._branch = None
             return
         if elapsed:
