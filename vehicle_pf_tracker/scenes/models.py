@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from itertools import pairwise
 from typing import TypeAlias, TypeVar
 
@@ -264,13 +264,10 @@ class Model:
         return Actor(look, path, hides=not shade)
 
     def _box(self, pose: Pose, *, shade: bool) -> Box:
-        bounds, scale = self._extent(pose.heading, shade=shade), pose.scale
-        return Box(
-            pose.x + bounds.x * scale,
-            pose.y + bounds.y * scale,
-            bounds.width * scale,
-            bounds.height * scale,
+        left, top, *size = (
+            pose.scale * side for side in astuple(self._extent(pose.heading, shade=shade))
         )
+        return Box(pose.x + left, pose.y + top, *size)
 
     def _sprite(self, heading: float, *, shade: bool) -> Sprite:
         key = round(heading / HEADING_STEP), shade
