@@ -31,13 +31,6 @@ from benchmarks.bench.root import ROOT
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.processes import wait_or_kill
 
-ALLOCATOR = {
-    "MALLOC_MMAP_THRESHOLD_": "1073741824",
-    "MALLOC_TRIM_THRESHOLD_": "1073741824",
-    "MALLOC_TOP_PAD_": "67108864",
-}
-"""Environment that the launch files set, for the floor and the tracker nodes alike."""
-
 _READY = "ready:"
 
 
@@ -59,7 +52,7 @@ class NodeProcess:
 
     def __init__(self, words: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
         self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - open as long as the process
-        variables = {**os.environ, **ALLOCATOR, **(environment or {})}
+        variables = {**os.environ, **(environment or {})}
         self._process = subprocess.Popen(
             [sys.executable, *words],
             env=variables,

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, overlap, stream
 from vehicle_pf_tracker.scenes.drive import LANE, PAINTS, Drive, DriveParameters
-from vehicle_pf_tracker.scenes.models import Bend, Model, Pace, Pose, Still
+from vehicle_pf_tracker.scenes.models import Bend, Model, Pace, Pose, standing
 from vehicle_pf_tracker.scenes.roads import convoy, side_road
 from vehicle_pf_tracker.scenes.scene import DISTURBANCES, Actor, OutdoorCamera, Scene
 from vehicle_pf_tracker.scenes.scenery import value_noise
@@ -110,7 +110,7 @@ def tree_shadows(drive: Drive, shares: tuple[float, ...], depth: float) -> list[
         opacity = depth * np.clip(3 * (0.9 - rim), 0, 1) * np.clip(1.5 - 2.2 * sunflecks, 0, 1)
         place = Box(drive.x(drive.along(share)) - columns / 2, top, columns, rows)
         sprite = Sprite(np.tile(SHADE, (rows, columns, 1)), opacity)
-        actors.append(Actor(sprite, Still(place), hides=False))
+        actors.append(Actor(sprite, standing(place), hides=False))
     return actors
 
 

@@ -19,19 +19,7 @@ import importlib
 from pathlib import Path
 
 from benchmarks.bench.metered_node import METER
-from benchmarks.bench.processes import ALLOCATOR, StepMeter, tracker_words
-
-ROOT = Path(__file__).resolve().parents[2]
-
-
-def test_nodes_have_the_allocator_settings_of_the_launch_files():
-    tree = ast.parse((ROOT / "launch" / "tracker.launch.py").read_text())
-    found = [
-        ast.literal_eval(node.value)
-        for node in tree.body
-        if isinstance(node, ast.Assign) and node.targets[0].id == "ALLOCATOR"
-    ]
-    assert found == [ALLOCATOR]
+from benchmarks.bench.processes import StepMeter, tracker_words
 
 
 def test_a_metered_node_gets_target_image_and_parameters():

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.offline.drawing import COLOURS, Annotator, annotated
+from vehicle_pf_tracker.offline.drawing import COLOURS, Annotator, annotated, estimate_words
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.pictures import THUMB_WIDTH, ContactSheet
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
@@ -81,7 +81,7 @@ def test_a_frame_gets_its_time_and_a_line_for_each_target_and_stays_as_it_was():
     picture = annotated(frame, 1_500_000_000, [(Annotator("van"), row, None)])
     assert not frame.any()
     assert picture[:20].any() and picture[20:40].any()
-    assert Annotator("van").words(row) == "van LOST"
+    assert estimate_words("van", row) == "van LOST"
 
 
 @pytest.mark.parametrize(

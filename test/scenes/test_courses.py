@@ -22,14 +22,13 @@ from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.models import (
-    Attached,
     Bend,
     Model,
     Pace,
     Pose,
-    Straight,
-    Swaying,
-    Wave,
+    moving,
+    swaying,
+    wave,
 )
 from vehicle_pf_tracker.scenes.solids import ELEVATION
 from vehicle_pf_tracker.scenes.vehicles import car
@@ -71,9 +70,9 @@ def test_a_right_turn_of_one_who_drives_left_goes_away_too():
 
 
 def test_swaying_adds_its_swings():
-    pose = Swaying(Bend(START, Pace.steady(1.0)), Wave(2, 40, 0), Wave(0.5, 20, math.pi / 2))(10)
+    pose = swaying(Bend(START, Pace.steady(1.0)), wave(2, 40, 0), wave(0.5, 20, math.pi / 2))(10)
     assert (pose.x, pose.y) == pytest.approx((112, 199.5))
-    box = Swaying(Straight(BOX, (1, 0)), Wave(2, 40, 0), Wave(0.5, 20, math.pi / 2))(10)
+    box = swaying(moving(BOX, 1), wave(2, 40, 0), wave(0.5, 20, math.pi / 2))(10)
     assert (box.x, box.y, box.width) == pytest.approx((22, 19.5, 4))
 
 
@@ -89,7 +88,3 @@ def test_the_box_of_a_model_is_tight_at_any_heading(degrees):
     assert box.width == pytest.approx(across, abs=1.2)
     assert box.x + box.width / 2 == pytest.approx(50.3, abs=0.8)
     assert 0.55 < sprite.area(box) / box.area <= 1
-
-
-def test_attached_keeps_its_offset_and_its_own_size():
-    assert Attached(Straight(BOX, (1, 0)), (-3, 2), (8, 1))(5) == Box(12, 22, 8, 1)

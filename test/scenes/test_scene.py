@@ -20,14 +20,14 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.scenes.compositing import Sprite
-from vehicle_pf_tracker.scenes.models import Still, Straight
+from vehicle_pf_tracker.scenes.models import moving, standing
 from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene
 
 RED, BLUE, BLACK = (Sprite.plain(c) for c in ((200.0, 0, 0), (0, 0, 200.0), (0, 0, 0)))
 
 
 def scene(*after, before=(), rate=30.0, noise=0.0):
-    target = Actor(RED, Straight(Box(2, 3, 10, 4), (2.0, 0.0)))
+    target = Actor(RED, moving(Box(2, 3, 10, 4), 2.0))
     return Scene(
         40, 12, rate, 8, lambda: np.full((12, 40, 3), 90, np.float32),
         (*before, target, *after), len(before), Camera(noise, seed=1),
@@ -41,7 +41,7 @@ def test_stamps_start_at_one_second_and_do_not_drift():
 
 
 def test_what_is_painted_later_hides_and_what_is_painted_earlier_does_not():
-    wall = Actor(BLUE, Still(Box(0, 0, 5, 12)))
+    wall = Actor(BLUE, standing(Box(0, 0, 5, 12)))
     assert scene(wall).truth(0).visible_fraction == pytest.approx(0.7)
     assert scene(wall).truth(0).occlusion is Occlusion.PARTIAL
     assert scene(before=[wall]).truth(0).visible_fraction == 1.0
@@ -50,7 +50,7 @@ def test_what_is_painted_later_hides_and_what_is_painted_earlier_does_not():
 
 
 def test_a_shadow_darkens_and_does_not_hide():
-    shade = Actor(Sprite.plain((0.0, 0.0, 0.0), 0.5), Still(Box(0, 0, 40, 12)), hides=False)
+    shade = Actor(Sprite.plain((0.0, 0.0, 0.0), 0.5), standing(Box(0, 0, 40, 12)), hides=False)
     first = next(scene(shade).frames())
     assert first.truth.occlusion is Occlusion.NONE
     np.testing.assert_array_equal(first.frame[4, 3], (100, 0, 0))
@@ -58,7 +58,7 @@ def test_a_shadow_darkens_and_does_not_hide():
 
 def test_a_tenth_visible_is_partial_and_less_is_total():
     def seen(width):
-        return scene(Actor(BLACK, Still(Box(0, 0, 2 + width, 12)))).truth(0).occlusion
+        return scene(Actor(BLACK, standing(Box(0, 0, 2 + width, 12)))).truth(0).occlusion
 
     assert [seen(width) for width in (8.9, 9.1, 12)] == [
         Occlusion.PARTIAL,

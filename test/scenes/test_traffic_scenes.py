@@ -32,11 +32,10 @@ from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.compositing import Sprite
 from vehicle_pf_tracker.scenes.flow import Driver, Hold, simulate
-from vehicle_pf_tracker.scenes.models import Still
+from vehicle_pf_tracker.scenes.models import standing
 from vehicle_pf_tracker.scenes.mot_folder import (
     SIMULATED_DETECTORS,
     SimulatedDetector,
-    detect,
     write_mot_folder,
 )
 from vehicle_pf_tracker.scenes.scene import Actor, Camera
@@ -45,8 +44,8 @@ from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, VehicleTruth
 
 def block(box, colour=(200, 0, 0)):
     """Shadow and body of a vehicle that stands still."""
-    shadow = Actor(Sprite.plain((0, 0, 0), 0.0), Still(box), hides=False)
-    return shadow, Actor(Sprite.plain(colour), Still(box))
+    shadow = Actor(Sprite.plain((0, 0, 0), 0.0), standing(box), hides=False)
+    return shadow, Actor(Sprite.plain(colour), standing(box))
 
 
 def still(*boxes, obstacles=()):
@@ -74,7 +73,7 @@ def test_the_nearer_vehicle_hides_the_farther_one():
 
 
 def test_obstacles_hide_all_and_the_border_hides_none():
-    bridge = Actor(Sprite.plain((9, 9, 9)), Still(Box(0, 0, 10, 40)))
+    bridge = Actor(Sprite.plain((9, 9, 9)), standing(Box(0, 0, 10, 40)))
     (one,) = still(Box(-10, 10, 40, 10), obstacles=(bridge,)).truth(0)
     assert one.box == Box(0, 10, 30, 10)
     assert one.whole == Box(-10, 10, 40, 10)
@@ -201,7 +200,7 @@ SIZE = (700, 300)
 
 def found(seed=0, truths=TRUTHS, **changes):
     quiet = {"misses": 0.0, "false_alarms": 0.0, "noise": 0.0, **changes}
-    return detect(SimulatedDetector(**quiet), truths, SIZE, seed)
+    return SimulatedDetector(**quiet).detect(truths, SIZE, seed)
 
 
 def test_a_perfect_detector_finds_every_box():

@@ -48,10 +48,9 @@ from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report import Report
     from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
-    from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
 _GRID_ONLY = (
-    "params", "without_defaults", "baseline_model", "max_rmse", "topic", "recordings",
+    "params", "without_defaults", "baseline_model", "max_rmse", "topic",
     "shifted_starts", "figures", "write",
 )  # fmt: skip
 """Options of the grid that do not apply."""
@@ -99,10 +98,13 @@ def run_traffic(request: TrafficRequest) -> int:
         write_traffic_report,
     )
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
+    from vehicle_pf_tracker.parameters.configuration import Configuration
+    from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
     sequences = [read_sequence(Path(source)) for source in request.sources]
     cases = cases_of(sequences, _sources(request, sequences))
-    parameters = _parameters(request)
+    assigned = parse_assignments(specs(TRAFFIC.parameters), request.assignments)
+    parameters = Configuration.of(TRAFFIC).updated(assigned).tracker
     seeds = range(request.first_seed, request.first_seed + (request.seeds or FEW_SEEDS))
     with TrafficWorker(request.baselines_python) as worker, counting("compared") as progress:
         results = list(compare(cases, worker, parameters, seeds, on_progress=progress))
@@ -133,16 +135,6 @@ def _sources(request: TrafficRequest, sequences: Sequence[TrafficSequence]) -> l
                 f"{', '.join(sorted(known))}"
             )
     return names
-
-
-def _parameters(request: TrafficRequest) -> TrafficParameters:
-    from vehicle_pf_tracker.parameters.configuration import Configuration
-    from vehicle_pf_tracker.trackers.registry import TRAFFIC
-
-    table = specs(TRAFFIC.parameters)
-    configuration = Configuration.of(TRAFFIC).updated(parse_assignments(table, request.assignments))
-    parameters: TrafficParameters = configuration.tracker
-    return parameters
 
 
 _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")
@@ -179,7 +171,7 @@ def run(request: Request) -> int:
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
     plan = _plan(request, sources)
     with counting("evaluated", "runs") as on_progress:
-        complete(plan, request.output, on_this_machine(request.workers), on_progress, tell_notice)
+        complete(plan, request.output, on_this_machine(request.workers), on_progress)
     return _judge(report.write(request.output, request), request.max_rmse)
 
 

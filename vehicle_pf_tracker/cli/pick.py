@@ -87,11 +87,6 @@ class Tool(Generic[PickedT]):
     use: str
     words: Callable[[PickedT], str]
 
-    def write(self, path: Path, picked: Sequence[PickedT]) -> None:
-        """Write a file that `use` reads."""
-        entries = {self.key: [self.entry(one) for one in picked]}
-        write_text(path, yaml.safe_dump(entries, sort_keys=False, default_flow_style=None))
-
 
 def _numbers(values: Any) -> list[float]:
     numbers = [float(value) for value in values]
@@ -196,6 +191,13 @@ class PickingServer(ThreadingHTTPServer, Generic[PickedT]):
         What is picked.
     first : int
         Number of the frame shown first.
+
+    Attributes
+    ----------
+    base : str
+        Path under which everything is; nobody else can guess it.
+    url : str
+        Address of the page.
     """
 
     daemon_threads = True
@@ -207,26 +209,13 @@ class PickingServer(ThreadingHTTPServer, Generic[PickedT]):
         self.tool = tool
         self.first = first
         self._picked: Sequence[PickedT] | None = None
-        self._token = secrets.token_urlsafe(16)
-
-    @property
-    def base(self) -> str:
-        """Path under which everything is; nobody else can guess it."""
-        return f"/{self._token}/"
-
-    @property
-    def url(self) -> str:
-        """Address of the page."""
-        return f"http://127.0.0.1:{self.server_port}{self.base}"
+        self.base = f"/{secrets.token_urlsafe(16)}/"
+        self.url = f"http://127.0.0.1:{self.server_port}{self.base}"
 
     def pick(self) -> Sequence[PickedT]:
         """Serve until the user is done; empty if they cancel."""
         self.serve_forever(poll_interval=0.1)
         return self._picked or ()
-
-    def read(self, text: bytes) -> Sequence[PickedT]:
-        """Read the page's answer; raises as `json` and `Tool.read` do."""
-        return [self.tool.read(entry) for entry in json.loads(text) or ()]
 
     def finish(self, answer: Sequence[PickedT]) -> None:
         """End `pick`, from another thread."""
@@ -276,7 +265,8 @@ class PageHandler(BaseHTTPRequestHandler):
             self._answer("", None)
             return
         try:
-            answer = self.server.read(self.rfile.read(int(length)))
+            entries = json.loads(self.rfile.read(int(length))) or ()
+            answer = [self.server.tool.read(entry) for entry in entries]
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
             self._answer("", None)
             return
@@ -346,7 +336,8 @@ def _pick(request: Request, source: Source) -> int:
     if request.output is None:
         print(" ".join(map(tool.words, picked)))
         return 0
-    tool.write(request.output, picked)
+    entries = {tool.key: [tool.entry(one) for one in picked]}
+    write_text(request.output, yaml.safe_dump(entries, sort_keys=False, default_flow_style=None))
     words = f"what was picked ({len(picked)}) is in {request.output}"
     print(f"{words}; use {tool.use} {request.output}")
     return 0

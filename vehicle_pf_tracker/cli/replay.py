@@ -58,12 +58,10 @@ def shown_replay(
 ) -> Iterator[Callable[[ReplayProgress], None]]:
     """Return a function that shows a replay's progress."""
     with shown_progress(stream, clock) as show:
-
-        def tell(progress: ReplayProgress) -> None:
-            share = progress.position / progress.length if progress.position else None
-            show(f"played {progress.frames} frame{'s' * (progress.frames > 1)}", share)
-
-        yield tell
+        yield lambda now: show(
+            f"played {now.frames} frame{'s' * (now.frames > 1)}",
+            now.position / now.length if now.position else None,
+        )
 
 
 ANSWERS = ("estimates.csv", "*/estimates.csv")

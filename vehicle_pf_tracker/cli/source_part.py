@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import itertools
-import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -53,17 +53,12 @@ class Moment:
         InputError
             If it is neither.
         """
-        if text.isdecimal() and 1 <= len(text) <= 9 and int(text) >= 1:
-            return cls(frame=int(text))
-        try:
-            seconds = float(text.removesuffix("s")) if text.endswith("s") else math.nan
-        except ValueError:
-            seconds = math.nan
-        if not (math.isfinite(seconds) and seconds >= 0):
+        found = re.fullmatch(r"0*([1-9]\d{0,8})|(\d{1,9}\.?\d*|\.\d+)s", text, re.ASCII)
+        if found is None:
             raise InputError(
                 f"{text!r} is neither a frame (an integer >= 1) nor a time in seconds, as 4.3s"
             )
-        return cls(seconds=seconds)
+        return cls(int(found[1])) if found[1] else cls(seconds=float(found[2]))
 
     def after(self, number: int, elapsed: float) -> float:
         """Return by how much the moment is later than frame `number`, `elapsed` s from the first.

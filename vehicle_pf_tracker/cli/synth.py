@@ -25,7 +25,6 @@ from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notice
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional, switch
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
-from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.offline.pictures import NO_ENCODER, SUFFIX, has_encoder, video_writer
@@ -125,7 +124,10 @@ def record_scene(scene: Scene, out: Path, form: str = "raw", *, overwrite: bool 
     """
     with RecordingWriter(out, overwrite=overwrite) as writer, counting("rendered") as progress:
         for number, rendered in enumerate(scene.frames(), start=1):
-            _write_image(writer, rendered.truth.stamp_ns, rendered.frame, form)
+            if form == "raw":
+                writer.write_image(rendered.truth.stamp_ns, rendered.frame)
+            else:
+                writer.write_compressed(rendered.truth.stamp_ns, "jpeg", jpeg(rendered.frame))
             writer.write_truth(rendered.truth)
             progress(number, scene.frame_count)
 
@@ -171,10 +173,3 @@ def _settings(parameters: type[Any]) -> Iterator[str]:
     for spec in specs(parameters).values():
         facts = ", ".join(filter(None, (spec.unit, spec.bounds_text, " | ".join(spec.choices))))
         yield f"  {spec.name}={spec.default} [{facts}]: {spec.doc}"
-
-
-def _write_image(writer: RecordingWriter, stamp_ns: int, frame: Frame, form: str) -> None:
-    if form == "raw":
-        writer.write_image(stamp_ns, frame)
-        return
-    writer.write_compressed(stamp_ns, "jpeg", jpeg(frame))

@@ -102,32 +102,32 @@ def read_sets(
     return everywhere, list(sets.values())
 
 
-def fitting_sets(
-    variants: Sequence[Variant], sets: Iterable[ParameterSet]
-) -> tuple[dict[str, list[ParameterSet]], list[str]]:
-    """Return the sets that each variant can run with, and notes on those that it cannot.
+def _fitting_systems(
+    variants: Sequence[Variant], sets: Iterable[ParameterSet], everywhere: Sequence[str]
+) -> tuple[dict[str, list[System]], list[str]]:
+    """Return each variant with the sets that fit it, and notes on those that do not.
 
     Raises
     ------
     InputError
         If a set fits no variant.
     """
-    fitting: dict[str, list[ParameterSet]] = {variant.name: [] for variant in variants}
+    systems: dict[str, list[System]] = {variant.name: [] for variant in variants}
     notes: list[str] = []
     for each in sets:
-        misfits = {}
+        misfits, is_fitting = [], False
         for variant in variants:
             if each.variant in {None, variant.name}:
                 try:
-                    configure(variant, each)
-                    fitting[variant.name].append(each)
+                    systems[variant.name].append(_variant_system(variant, each, everywhere))
+                    is_fitting = True
                 except InputError as error:
-                    misfits[variant.name] = f"{variant.name} is not run with {each.name}: {error}"
-        if not any(each in found for found in fitting.values()):
+                    misfits.append(f"{variant.name} is not run with {each.name}: {error}")
+        if not is_fitting:
             missing = f"the parameter set {each.name} is for no variant among --variants"
-            raise InputError(next(iter(misfits.values()), missing))
-        notes += misfits.values()
-    return fitting, notes
+            raise InputError(misfits[0] if misfits else missing)
+        notes += misfits
+    return systems, notes
 
 
 def configure(variant: Variant, parameter_set: ParameterSet) -> Configuration:
@@ -213,12 +213,13 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
     for name in (word.partition("=")[0] for word in everywhere):
         if name not in known:
             raise InputError(unknown_name(name, known))
-    fitting, notes = fitting_sets(variants, sets)
+    fitting, notes = _fitting_systems(variants, sets, everywhere)
     systems: list[System] = []
     for variant in variants:
         own = fitting[variant.name]
-        defaults = [] if own and request.without_defaults else [ParameterSet("")]
-        systems += [_variant_system(variant, each, everywhere) for each in [*defaults, *own]]
+        if not (own and request.without_defaults):
+            systems.append(_variant_system(variant, ParameterSet(""), everywhere))
+        systems += own
     models = _models(request.baseline_model)
     for word in words:
         if word.startswith(BASELINE):

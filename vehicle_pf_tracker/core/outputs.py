@@ -219,54 +219,30 @@ def _lock(path: Path) -> int | None:
         os.close(descriptor)
 
 
-class OutputFolder:
-    """Collects files in a hidden folder beside `target`, which takes its place at the end.
+@contextmanager
+def whole_folder(target: Path) -> Iterator[Path]:
+    """Give a hidden folder beside `target` to fill; if the block ends well it takes its place.
 
-    Parameters
-    ----------
-    target : Path
-        The folder to make; what is there under its name is replaced.
-
-    Attributes
-    ----------
-    partial : Path
-        The hidden folder.
+    What is there under its name is replaced; after an error the hidden folder is removed.
 
     Raises
     ------
     OSError
-        If it cannot be written; also from `publish`.
+        If it cannot be written.
     """
-
-    def __init__(self, target: Path) -> None:
-        self.target = target.expanduser().resolve()
-        self.partial = self.target.parent / f".{self.target.name}.{os.getpid()}.partial"
-        self.partial.mkdir(parents=True)
-
-    def publish(self) -> None:
-        """Put the finished folder in its place; a former one goes when it is there."""
-        former = self.partial.with_suffix(".former")
-        try:
-            if self.target.exists():
-                self.target.rename(former)
-            self.partial.rename(self.target)
-        except BaseException:  # a signal too
-            if former.exists() and not self.target.exists():
-                former.rename(self.target)
-            raise
-        shutil.rmtree(former, ignore_errors=True)
-
-    def discard(self) -> None:
-        """Remove what was collected."""
-        shutil.rmtree(self.partial, ignore_errors=True)
-
-
-@contextmanager
-def whole_folder(target: Path) -> Iterator[Path]:
-    """Give an `OutputFolder` to fill; it is published if the block ends well, else removed."""
-    output = OutputFolder(target)
+    target = target.expanduser().resolve()
+    partial = target.parent / f".{target.name}.{os.getpid()}.partial"
+    former = partial.with_suffix(".former")
+    partial.mkdir(parents=True)
     try:
-        yield output.partial
-        output.publish()
+        yield partial
+        if target.exists():
+            target.rename(former)
+        partial.rename(target)
+    except BaseException:  # a signal too
+        if former.exists() and not target.exists():
+            former.rename(target)
+        raise
     finally:
-        output.discard()
+        shutil.rmtree(former, ignore_errors=True)
+        shutil.rmtree(partial, ignore_errors=True)

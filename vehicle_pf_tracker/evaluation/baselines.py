@@ -177,16 +177,14 @@ class Worker:
         )
 
 
-MODELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "csrt": (),
-        "kcf": (),
-        "mil": (),
-        "vit": ("net",),
-        "nano": ("backbone", "neckhead"),
-        "dasiamrpn": ("model", "kernel_cls1", "kernel_r1"),
-    }
-)
+MODELS: Mapping[str, tuple[str, ...]] = {
+    "csrt": (),
+    "kcf": (),
+    "mil": (),
+    "vit": ("net",),
+    "nano": ("backbone", "neckhead"),
+    "dasiamrpn": ("model", "kernel_cls1", "kernel_r1"),
+}
 """Model files that the user brings, by the name of the baseline."""
 
 

@@ -138,15 +138,10 @@ def _mean_error(frames: Sequence[FrameScore]) -> float | None:
     return statistics.fmean(errors) if errors else None
 
 
-def is_failure(frame: FrameScore) -> bool:
-    """Return whether the estimate misses a visible vehicle; False where nothing is scored."""
-    return frame.counts and not frame.hidden and not frame.overlap
-
-
 def count_failures(frames: Sequence[FrameScore]) -> int:
-    """Count the stretches of failures in a run.
+    """Count the stretches of frames in which the estimate misses a visible vehicle.
 
     Frames in which the vehicle is hidden or the truth is unknown do not end a stretch.
     """
-    judged = (is_failure(frame) for frame in frames if frame.counts and not frame.hidden)
-    return sum(failed for failed, _ in itertools.groupby(judged))
+    missed = (not frame.overlap for frame in frames if frame.counts and not frame.hidden)
+    return sum(failed for failed, _ in itertools.groupby(missed))

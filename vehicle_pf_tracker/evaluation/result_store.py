@@ -20,6 +20,7 @@ The cache key of a result is a digest of everything that determines it, its code
 from __future__ import annotations
 
 import ast
+import contextlib
 import functools
 import hashlib
 import json
@@ -36,14 +37,12 @@ from vehicle_pf_tracker.trackers.registry import Variant
 
 Result: TypeAlias = dict[str, Any]
 """Plain values that JSON knows."""
-_DIGEST_LENGTH = 16
-"""Hexadecimal digits of a line's digest: 64 bits find accidents, and keep the lines short."""
 
 
 class ResultStore:
     """A file with one line of JSON for each result.
 
-    A line that a killed run left unfinished, or that fails its digest, is dropped. Lines under keys
+    A line that a killed run left unfinished, or that is no result, is dropped. Lines under keys
     that are no longer requested stay; deleting the file only costs their time.
 
     Parameters
@@ -71,8 +70,7 @@ class ResultStore:
 
     def add(self, key: str, label: str, result: Result) -> None:
         """Keep `result` under `key`; `label` is for those who look into the file."""
-        entry = {"key": key, "label": label, "digest": _digest(key, result), "result": result}
-        line = json.dumps(entry, allow_nan=False)
+        line = json.dumps({"key": key, "label": label, "result": result}, allow_nan=False)
         with output_errors(self._path), self._path.open("a", encoding="utf-8") as file:
             file.write(line + "\n")
             file.flush()
@@ -84,34 +82,18 @@ class ResultStore:
 def _read(path: Path) -> Iterator[tuple[str, Result]]:
     if not path.exists():
         return
-    text = path.read_bytes()
-    whole = text[: text.rfind(b"\n") + 1]
-    if len(whole) < len(text):
-        with path.open("r+b") as file:
-            file.truncate(len(whole))
+    whole, newline, unfinished = path.read_bytes().rpartition(b"\n")
+    if unfinished:
+        os.truncate(path, len(whole) + len(newline))
     for line in whole.splitlines():
-        entry = _parsed(line)
-        if entry is not None:
-            yield entry
-
-
-def _parsed(line: bytes) -> tuple[str, Result] | None:
-    try:
-        entry = json.loads(line)
-        key, result = entry["key"], entry["result"]
-        return (key, result) if entry["digest"] == _digest(key, result) else None
-    except (ValueError, KeyError, TypeError, RecursionError):
-        return None
-
-
-def _digest(key: str, result: Result) -> str:
-    text = json.dumps([key, result], sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()[:_DIGEST_LENGTH]
+        with contextlib.suppress(ValueError, KeyError, TypeError, RecursionError):
+            entry = json.loads(line)
+            yield entry["key"], entry["result"]
 
 
 def result_key(facts: Mapping[str, Any], modules: Iterable[str]) -> str:
     """Digest facts, the code of `modules`, and the versions of what it runs on."""
-    code = code_digest(frozenset(modules))
+    code = source_digest(frozenset(modules))
     made_by = {**versions(), "platform": platform.machine(), "code": code}
     text = json.dumps({**facts, "made by": made_by}, sort_keys=True, allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()[:32]
@@ -122,15 +104,9 @@ def variant_modules(variant: Variant) -> set[str]:
     return {variant.tracker.__module__, variant.parameters.__module__}
 
 
-@functools.cache
-def code_digest(modules: frozenset[str]) -> str:
-    """Digest the code of `modules`, and of all that they import from the package or their own."""
-    return source_digest(modules)
-
-
 def scoring_digest() -> str:
     """Digest the code that makes metrics of estimates."""
-    return code_digest(frozenset({"vehicle_pf_tracker.evaluation.metrics"}))
+    return source_digest(frozenset({"vehicle_pf_tracker.evaluation.metrics"}))
 
 
 _ROOT = Path(__file__).parents[2]
@@ -139,12 +115,13 @@ _TABLES = frozenset({f"{_PACKAGE}.trackers.registry"})
 """Modules that only list others: what is used of them has to be named as a start."""
 
 
-def source_digest(modules: Iterable[str], root: Path = _ROOT, package: str = _PACKAGE) -> str:
+@functools.cache
+def source_digest(modules: frozenset[str], root: Path = _ROOT, package: str = _PACKAGE) -> str:
     """Digest the sources of modules, and of all that they import from the package or their own.
 
     Parameters
     ----------
-    modules : iterable of str
+    modules : frozenset of str
         Full names, such as ``vehicle_pf_tracker.trackers.papers.apf``. The registry of variants
         does not count, so that a variant that comes or changes leaves the others' digests.
     root : Path

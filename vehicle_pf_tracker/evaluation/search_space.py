@@ -19,7 +19,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -36,18 +35,16 @@ class Objective:
     maximise: bool = True
 
 
-OBJECTIVES: Mapping[str, Objective] = MappingProxyType(
-    {
-        objective.metric: objective
-        for objective in (
-            Objective("success_auc", "area under the success curve"),
-            Objective("precision_auc", "area under the precision curve"),
-            Objective("on_target", "share of visible frames with an error below half the diagonal"),
-            Objective("p_error_lt_15px", "share of frames with an error below 15 px"),
-            Objective("rmse_px", "RMSE in px", maximise=False),
-        )
-    }
-)
+OBJECTIVES: Mapping[str, Objective] = {
+    objective.metric: objective
+    for objective in (
+        Objective("success_auc", "area under the success curve"),
+        Objective("precision_auc", "area under the precision curve"),
+        Objective("on_target", "share of visible frames with an error below half the diagonal"),
+        Objective("p_error_lt_15px", "share of frames with an error below 15 px"),
+        Objective("rmse_px", "RMSE in px", maximise=False),
+    )
+}
 """Objectives by the name of the metric."""
 
 

@@ -50,8 +50,6 @@ if TYPE_CHECKING:
 BATCH = 6
 """Trials proposed before the first of them is known: enough to keep a few workers busy, few enough
 for the sampler to learn (40 trials are 7 batches)."""
-START_UP = 10
-"""Random trials before the sampler uses what it learnt: Optuna's own default."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,9 +192,7 @@ def _study(what: SearchTask) -> optuna.Study:
     library = _optuna()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the options below count as experimental in some versions
-        sampler = library.samplers.TPESampler(
-            seed=what.sampler_seed, n_startup_trials=START_UP, constant_liar=True
-        )
+        sampler = library.samplers.TPESampler(seed=what.sampler_seed, constant_liar=True)
     direction = "maximize" if what.objective.maximise else "minimize"
     study: optuna.Study = library.create_study(sampler=sampler, direction=direction)
     base = dict(what.base.parameters)

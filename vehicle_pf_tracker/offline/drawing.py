@@ -128,7 +128,7 @@ class Annotator:
     """
 
     def __init__(self, name: str = "", *, particles: bool = False) -> None:
-        self._name = name
+        self.name = name
         self._shows_particles = particles
         self._path: deque[tuple[float, float]] = deque(maxlen=_PATH_LENGTH)
 
@@ -156,13 +156,9 @@ class Annotator:
         cv2.polylines(picture, [path], False, colour, width, cv2.LINE_AA)
         is_predicted = estimate.mode is Mode.OCCLUDED
         draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
-        if self._name:
+        if self.name:
             x, y = pixels_at(np.asarray(estimate.box.corners))[0]
-            write_words(picture, self._name, (x, max(y - 3 * width, 14 * width)), colour, width)
-
-    def words(self, row: EstimateRow) -> str:
-        """Return the target's name, mode and confidence in one line."""
-        return estimate_words(self._name, row)
+            write_words(picture, self.name, (x, max(y - 3 * width, 14 * width)), colour, width)
 
 
 def estimate_words(name: str, row: EstimateRow) -> str:
@@ -179,7 +175,7 @@ def annotated(
     number, lines = 0, []
     for annotator, row, estimate in states:
         annotator.draw(picture, estimate)
-        lines.append((annotator.words(row), COLOURS.get(row.mode, NEUTRAL)))
+        lines.append((estimate_words(annotator.name, row), COLOURS.get(row.mode, NEUTRAL)))
         number = row.frame
     width = line_width(picture)
     head = (f"{clock_words(elapsed_ns)}  frame {number}", NEUTRAL)

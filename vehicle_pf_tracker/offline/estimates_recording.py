@@ -91,8 +91,7 @@ class ImageAnnotator:
             self._path.clear()
         else:
             self._path.append(box.centre)
-        seconds, nanoseconds = divmod(row.stamp_ns, 1_000_000_000)
-        stamp = message_class("builtin_interfaces/msg/Time")(sec=seconds, nanosec=nanoseconds)
+        stamp = messages.header(row.stamp_ns).stamp
         lines = () if box is None else self._lines(row, box)
         return message_class(IMAGE_ANNOTATIONS)(
             circles=[],
@@ -150,47 +149,22 @@ _LEVELS = {Mode.OCCLUDED.value: messages.WARN, Mode.LOST.value: messages.ERROR}
 """Levels of the modes that are not OK."""
 
 
-class EstimateTopics:
-    """Writes estimates of several tracks to a recording, as nodes publish them, and annotations.
-
-    Those of the track ``apf_tracker`` go to ``/apf_tracker/position``, ``box`` and ``mode``, and
-    to ``/apf_tracker/annotations`` for Foxglove.
-
-    Parameters
-    ----------
-    writer : RecordingWriter
-        The recording.
-    labels : mapping of str to str
-        Names of the tracks as parts of topics, and the names that annotations show.
-    size : (int, int)
-        Width and height of the images, px.
-    """
-
-    def __init__(
-        self, writer: RecordingWriter, labels: Mapping[str, str], size: tuple[int, int]
-    ) -> None:
-        self._writer = writer
-        self._annotators = {
-            name: ImageAnnotator(label if len(labels) > 1 else "", size, position)
-            for position, (name, label) in enumerate(labels.items())
-        }
-
-    def write(self, name: str, row: EstimateRow) -> None:
-        """Write one estimate of the track `name`, at the stamp of its image."""
-        writer, stamp = self._writer, row.stamp_ns
-        numbers = {"x": row.x, "y": row.y, "confidence": row.confidence, "n_eff": row.n_eff}
-        values = {key: repr(value) for key, value in numbers.items() if value is not None}
-        level = _LEVELS.get(row.mode, messages.OK)
-        mode = messages.diagnostic_array(stamp, name, level, row.mode, values)
-        writer.write(f"/{name}/mode", DIAGNOSTIC_ARRAY, stamp, mode)
-        annotations = self._annotators[name].annotate(row)
-        writer.write(f"/{name}/annotations", IMAGE_ANNOTATIONS, stamp, annotations)
-        if row.position is None or row.box is None:
-            return
+def _write_estimate(
+    writer: RecordingWriter, topic: str, row: EstimateRow, annotator: ImageAnnotator
+) -> None:
+    """Write ``mode``, ``position`` and ``box`` under `topic` as a node does, and annotations."""
+    stamp = row.stamp_ns
+    numbers = {"x": row.x, "y": row.y, "confidence": row.confidence, "n_eff": row.n_eff}
+    values = {key: repr(value) for key, value in numbers.items() if value is not None}
+    level = _LEVELS.get(row.mode, messages.OK)
+    mode = messages.diagnostic_array(stamp, topic, level, row.mode, values)
+    writer.write(f"/{topic}/mode", DIAGNOSTIC_ARRAY, stamp, mode)
+    writer.write(f"/{topic}/annotations", IMAGE_ANNOTATIONS, stamp, annotator.annotate(row))
+    if row.position is not None and row.box is not None:
         point = messages.point_stamped(stamp, *row.position)
-        writer.write(f"/{name}/position", POINT_STAMPED, stamp, point)
+        writer.write(f"/{topic}/position", POINT_STAMPED, stamp, point)
         polygon = messages.polygon_stamped(stamp, row.box.corners)
-        writer.write(f"/{name}/box", POLYGON_STAMPED, stamp, polygon)
+        writer.write(f"/{topic}/box", POLYGON_STAMPED, stamp, polygon)
 
 
 OnFrame: TypeAlias = Callable[[StampedFrame, Mapping[str, EstimateRow]], None]
@@ -221,27 +195,24 @@ def run_recording(
     InputError
         If it cannot be written.
     """
-    labels = {name: f"{node}/{as_token(name)}" for name in targets}
-    if len(targets) == 1:
-        labels = dict.fromkeys(targets, node)
+    is_single = len(targets) == 1
+    topics = {name: node if is_single else f"{node}/{as_token(name)}" for name in targets}
+    annotators: dict[str, ImageAnnotator] = {}
+    waiting = list(reversed(truths))
     with RecordingWriter(folder, overwrite=True) as writer:
-        topics: EstimateTopics | None = None
-        waiting = list(reversed(truths))
 
         def keep(found: StampedFrame, rows: Mapping[str, EstimateRow]) -> None:
-            nonlocal topics
-            is_first = topics is None
             if found.frame is None:
                 return
-            if topics is None:
-                shown = {topic: name for name, topic in labels.items()}
-                topics = EstimateTopics(writer, shown, frame_size(found.frame))
+            is_first, size = not annotators, frame_size(found.frame)
+            for position, name in enumerate(targets if is_first else ()):
+                annotators[name] = ImageAnnotator("" if is_single else name, size, position)
             writer.write_compressed(found.stamp_ns, "jpeg", jpeg(found.frame))
             while waiting and waiting[-1].stamp_ns <= found.stamp_ns:
                 truth = waiting.pop()
                 if not is_first or truth.stamp_ns == found.stamp_ns:
                     writer.write_truth(truth)
             for name, row in rows.items():
-                topics.write(labels[name], row)
+                _write_estimate(writer, topics[name], row, annotators[name])
 
         yield keep

@@ -64,10 +64,10 @@ class NodeParameters:
         read_only=True,
     )  # fmt: skip
     output_frame_suffix: str = parameter(
-        "",
-        "Appended to the images' frame_id in outputs that are in pixels (`_px`, for instance), so "
-        "that nothing takes them for metres; ~/mode and ~/overlay keep the images' own.",
-    )
+        "", "Appended to the images' frame_id in outputs that are in pixels (`_px`, for "
+        "instance), so that nothing takes them for metres; ~/mode and ~/overlay keep the images' "
+        "own.",
+    )  # fmt: skip
     keep_target: bool = parameter(
         False, "Write the target's box to ~/.ros once a second, so that a node that was killed and "
         "starts again within 30 s goes on with it.",
@@ -117,10 +117,9 @@ class SessionParameters:
 
     target: TargetParameters = group(TargetParameters)
     reset_on_time_jump: bool = parameter(
-        True,
-        "Start again on the configured target when stamps go back and stay back (a recording that "
-        "loops).",
-    )
+        True, "Start again on the configured target when stamps go back and stay back (a "
+        "recording that loops).",
+    )  # fmt: skip
     road: RoadParameters = group(RoadParameters)
 
     def validate(self) -> None:

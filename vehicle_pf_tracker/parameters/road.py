@@ -37,11 +37,9 @@ class RoadParameters:
         "positions and speeds are then given on the road too.",
     )  # fmt: skip
     intrinsics: str = parameter(
-        "",
-        "Focal lengths and principal point of the camera, `fx,fy,cx,cy` as in CameraInfo: needed "
-        "to remove distortion, and for the road from the camera's pose.",
-        unit="px",
-    )
+        "", "Focal lengths and principal point of the camera, `fx,fy,cx,cy` as in CameraInfo: "
+        "needed to remove distortion, and for the road from the camera's pose.", unit="px",
+    )  # fmt: skip
     distortion_model: str = parameter(
         "none", "Model of the lens's distortion, by its name in CameraInfo.", choices=MODELS
     )
@@ -49,11 +47,9 @@ class RoadParameters:
         "", "Coefficients of the distortion, in the order of CameraInfo, apart by commas."
     )
     camera_pose: str = parameter(
-        "",
-        "Pose of the camera's optical frame in the road's, `x,y,z,qx,qy,qz,qw`: without pairs, the "
-        "road is the plane z = 0 there.",
-        unit="m",
-    )
+        "", "Pose of the camera's optical frame in the road's, `x,y,z,qx,qy,qz,qw`: without "
+        "pairs, the road is the plane z = 0 there.", unit="m",
+    )  # fmt: skip
     from_camera_info: bool = parameter(
         False, "Nodes: take the lens from the topic camera_info beside the images."
     )

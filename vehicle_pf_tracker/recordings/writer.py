@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,7 +26,7 @@ from mcap.writer import CompressionType, Writer
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, OutputFolder, check_free, output_errors
+from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, check_free, output_errors, whole_folder
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings import messages, topics
 from vehicle_pf_tracker.recordings.bag_folder import RELIABLE_QOS, bag_information, to_yaml
@@ -81,33 +81,34 @@ class RecordingWriter:
         overwrite: bool = False,
     ) -> None:
         self.folder = Path(folder)
-        with output_errors(self.folder):
-            _check_replaceable(self.folder.expanduser().resolve(), overwrite)
-            self._output = OutputFolder(self.folder)
-        self._file_name = f"{self._output.target.name}_0.mcap"
+        target = self.folder.expanduser().resolve()
+        self._file_name = f"{target.name}_0.mcap"
         self._channels: dict[str, _Channel] = {}
         self._schemas: dict[str, int] = {}
         self._times: tuple[int, int] | None = None
-        try:
-            self._stream = (self._output.partial / self._file_name).open("wb")
+        with output_errors(self.folder), ExitStack() as output:
+            _check_replaceable(target, overwrite)
+            self._partial = output.enter_context(whole_folder(target))
+            self._stream = (self._partial / self._file_name).open("wb")
+            output.callback(self._close)
             self._mcap = Writer(self._stream, compression=compression)
             self._mcap.start(profile=Profile.ROS2, library="vehicle_pf_tracker")
-        except BaseException:  # a signal too
-            self._output.discard()
-            raise
+            self._output = output.pop_all()
 
     def __enter__(self) -> RecordingWriter:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, *failure: object) -> None:
-        try:
-            if kind is None:
+    def __exit__(self, *failure: Any) -> None:
+        if failure[0] is None:
+            with output_errors(self.folder), self._output:
                 self._finish()
-        finally:
-            # What could not be written was told already; closing tries to flush it once more.
-            with suppress(OSError):
-                self._stream.close()
-            self._output.discard()
+        else:
+            self._output.__exit__(*failure)
+
+    def _close(self) -> None:
+        # What could not be written was told already; closing tries to flush it once more.
+        with suppress(OSError):
+            self._stream.close()
 
     def write_image(self, stamp_ns: int, frame: Frame) -> None:
         """Write an RGB frame as a raw image."""
@@ -173,11 +174,8 @@ class RecordingWriter:
         first, last = self._times or (0, 0)
         counts = {name: (one.type_name, one.count) for name, one in self._channels.items()}
         information = bag_information(self._file_name, first, last - first, counts)
-        with output_errors(self.folder):
-            self._mcap.add_metadata("rosbag2", {"serialized_metadata": to_yaml(information)})
-            self._mcap.finish()  # type: ignore[no-untyped-call]
-            self._stream.close()
-            text = to_yaml({"rosbag2_bagfile_information": information})
-            (self._output.partial / "metadata.yaml").write_text(text, encoding="utf-8")
-        with output_errors(self._output.target):
-            self._output.publish()
+        self._mcap.add_metadata("rosbag2", {"serialized_metadata": to_yaml(information)})
+        self._mcap.finish()  # type: ignore[no-untyped-call]
+        self._stream.close()
+        text = to_yaml({"rosbag2_bagfile_information": information})
+        (self._partial / "metadata.yaml").write_text(text, encoding="utf-8")

@@ -102,12 +102,10 @@ class Lens:
         return self._pixels(self._distorted(self._rays(points)))
 
     def _rays(self, points: Array) -> Array:
-        rays: Array = (points - self.matrix[:2, 2]) / self.focal
-        return rays
+        return np.asarray((points - self.matrix[:2, 2]) / self.focal)
 
     def _pixels(self, rays: Array) -> Array:
-        pixels: Array = rays * self.focal + self.matrix[:2, 2]
-        return pixels
+        return np.asarray(rays * self.focal + self.matrix[:2, 2])
 
     def _distorted(self, rays: Array) -> Array:
         if self.model == "equidistant":

@@ -57,8 +57,7 @@ class Homography:
 
     def nearness(self, points: Array) -> Array:
         """Return the inverse depth (…,) of pixels (…, 2), up to a factor; 0 on the horizon."""
-        near: Array = points @ self.matrix[2, :2] + self.matrix[2, 2]
-        return near
+        return np.asarray(points @ self.matrix[2, :2] + self.matrix[2, 2])
 
     def to_road(self, points: Array) -> Array:
         """Map pixels (…, 2) to metres (…, 2); pixels on the horizon are not finite."""
@@ -73,8 +72,7 @@ class Homography:
         """Return the derivative (2, 2) of metres by pixels at the pixel `point` (2,)."""
         near = self.nearness(point)
         road = self.to_road(point)
-        derivative: Array = (self.matrix[:2, :2] - np.outer(road, self.matrix[2, :2])) / near
-        return derivative
+        return np.asarray((self.matrix[:2, :2] - np.outer(road, self.matrix[2, :2])) / near)
 
 
 def _mapped(matrix: Array, points: Array) -> Array:
@@ -153,8 +151,7 @@ def _linear_fit(source: Array, target: Array) -> Array:
             "the pairs of the road do not determine the mapping: it takes four points of which no "
             "three lie on a line, in the image or on the road"
         )
-    scaled: Array = matrix / np.linalg.norm(matrix)
-    return scaled
+    return np.asarray(matrix / np.linalg.norm(matrix))
 
 
 def _refined(matrix: Array, source: Array, target: Array) -> Array:
@@ -178,8 +175,7 @@ def _derivatives(matrix: Array, source: Array) -> Array:
     zeros = np.zeros_like(near)
     along = np.hstack([near, zeros, -mapped[:, :1] * near])
     across = np.hstack([zeros, near, -mapped[:, 1:] * near])
-    derivatives: Array = np.stack([along, across], axis=1).reshape(-1, 9)
-    return derivatives
+    return np.asarray(np.stack([along, across], axis=1).reshape(-1, 9))
 
 
 _STEP = 0.01
@@ -280,8 +276,7 @@ class RoadPlane:
         steps = np.eye(2) * _STEP
         ahead, back = self.ideal(point + steps), self.ideal(point - steps)
         through_lens = (ahead - back).T / (2 * _STEP)
-        derivative: Array = at_ideal @ through_lens
-        return derivative
+        return np.asarray(at_ideal @ through_lens)
 
     def objection(self, ideal: Array) -> str:
         """Say why the ideal pixel (2,) is outside the calibrated area; empty where it is not."""
@@ -301,9 +296,8 @@ def residuals(plane: RoadPlane, pairs: Sequence[Pair]) -> tuple[Array, Array]:
     """Return the distances (N,) of each pair from the fit, in px of the image and in m."""
     pixels = np.array([pair.pixel for pair in pairs], np.float64)
     metres = np.array([pair.road for pair in pairs], np.float64)
-    in_image: Array = np.linalg.norm(plane.to_image(metres) - pixels, axis=1)
-    on_road: Array = np.linalg.norm(plane.to_road(pixels) - metres, axis=1)
-    return in_image, on_road
+    in_image = np.linalg.norm(plane.to_image(metres) - pixels, axis=1)
+    return in_image, np.linalg.norm(plane.to_road(pixels) - metres, axis=1)
 
 
 def convex_hull(points: Array) -> Array:

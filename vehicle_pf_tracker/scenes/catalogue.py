@@ -22,24 +22,10 @@ from typing import Any, Generic, TypeAlias, TypeVar
 
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
+from vehicle_pf_tracker.scenes import drives
 from vehicle_pf_tracker.scenes.compositing import check_seed
 from vehicle_pf_tracker.scenes.drive import DriveParameters, HighwayParameters, highway
-from vehicle_pf_tracker.scenes.drives import (
-    BarParameters,
-    BrakingParameters,
-    HidingParameters,
-    bar,
-    bars,
-    braking,
-    bridge,
-    bus,
-    clear,
-    signs,
-    trees,
-    turn,
-    turn_occluded,
-    twin,
-)
+from vehicle_pf_tracker.scenes.drives import BarParameters, BrakingParameters, HidingParameters
 from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters
 from vehicle_pf_tracker.scenes.scene import Scene
 from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, traffic
@@ -70,20 +56,28 @@ class SceneKind(Generic[SceneT]):
 
 
 SCENES: dict[str, SceneKind[Scene]] = {
-    "bar": SceneKind(BarParameters, bar, "a vehicle passes behind a dark vertical bar"),
+    "bar": SceneKind(BarParameters, drives.bar, "a vehicle passes behind a dark vertical bar"),
     "highway": SceneKind(
         HighwayParameters, highway, "traffic; a bridge, then a lorry that overtakes hide the target"
     ),
-    "bars": SceneKind(DriveParameters, bars, "four pillars of rising width in front of the road"),
-    "bridge": SceneKind(HidingParameters, bridge, "a bridge hides the target"),
-    "signs": SceneKind(HidingParameters, signs, "lamp posts, and a large sign hides the target"),
-    "trees": SceneKind(DriveParameters, trees, "thin crowns of trees hide parts of the target"),
-    "bus": SceneKind(HidingParameters, bus, "a coach overtakes and hides the target"),
-    "twin": SceneKind(DriveParameters, twin, "a vehicle of the same appearance drives alongside"),
-    "clear": SceneKind(DriveParameters, clear, "nothing in the way of the target"),
-    "braking": SceneKind(BrakingParameters, braking, "the speed changes under a bridge"),
-    "turn": SceneKind(DriveParameters, turn, "the target turns into a side road"),
-    "turn_occluded": SceneKind(DriveParameters, turn_occluded, "it turns behind a house"),
+    "bars": SceneKind(
+        DriveParameters, drives.bars, "four pillars of rising width in front of the road"
+    ),
+    "bridge": SceneKind(HidingParameters, drives.bridge, "a bridge hides the target"),
+    "signs": SceneKind(
+        HidingParameters, drives.signs, "lamp posts, and a large sign hides the target"
+    ),
+    "trees": SceneKind(
+        DriveParameters, drives.trees, "thin crowns of trees hide parts of the target"
+    ),
+    "bus": SceneKind(HidingParameters, drives.bus, "a coach overtakes and hides the target"),
+    "twin": SceneKind(
+        DriveParameters, drives.twin, "a vehicle of the same appearance drives alongside"
+    ),
+    "clear": SceneKind(DriveParameters, drives.clear, "nothing in the way of the target"),
+    "braking": SceneKind(BrakingParameters, drives.braking, "the speed changes under a bridge"),
+    "turn": SceneKind(DriveParameters, drives.turn, "the target turns into a side road"),
+    "turn_occluded": SceneKind(DriveParameters, drives.turn_occluded, "it turns behind a house"),
 }
 """The scenes with one target, by name."""
 

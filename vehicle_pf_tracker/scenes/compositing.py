@@ -25,7 +25,6 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
@@ -163,25 +162,6 @@ def paint(canvas: Image, sprite: Sprite, box: Box) -> None:
     region = canvas[window.slices]
     region *= 1 - layer[..., 3:]
     region += layer[..., :3]
-
-
-def visible_fraction(
-    target: tuple[Sprite, Box], covers: Iterable[tuple[Sprite, Box]], width: int, height: int
-) -> float:
-    """Share (0 to 1) of the target's silhouette that can be seen in a `width` x `height` px image.
-
-    Parts outside the image count as hidden. `covers` are what is painted after the target, as far
-    as they `overlap` it.
-    """
-    sprite, box = target
-    window = PixelWindow.of(box, width, height)
-    if window.empty:
-        return 0.0
-    seen = sprite.coverage(box, window)
-    for cover, place in covers:
-        seen = seen * (1 - cover.coverage(place, window))
-    # Rounded because sums of floats must not make a free vehicle look 1e-16 hidden.
-    return round(float(min(max(seen.sum() / sprite.area(box), 0.0), 1.0)), 9)
 
 
 def overlap(one: Box, other: Box) -> bool:

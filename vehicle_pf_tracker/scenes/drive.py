@@ -35,9 +35,10 @@ from vehicle_pf_tracker.scenes.models import (
     Model,
     Pace,
     Pose,
-    Straight,
-    Swaying,
     Wave,
+    moving,
+    swaying,
+    wave,
 )
 from vehicle_pf_tracker.scenes.roads import (
     FAR_LANES,
@@ -185,7 +186,7 @@ class Drive:
     def sways(self, course: Course, name: str = "sway") -> Course:
         """Add a human hand to a course: at most 1.5 px along the road and 0.5 across."""
         phases = stream(self.seed, name).uniform(0, 2 * math.pi, 2).tolist()
-        return Swaying(course, Wave(1.5, 90, phases[0]), Wave(0.5, 130, phases[1]))
+        return swaying(course, wave(1.5, 90, phases[0]), wave(0.5, 130, phases[1]))
 
     def meeting(
         self, faces: Sequence[Face], s: float, speed: float, lane: int = LANE + 1
@@ -321,17 +322,17 @@ def _slow_lane(rng: np.random.Generator) -> list[Actor]:
     lane = FAR_LANES[0]
     hatchback = Vehicle(car((38, 92, 168)), lane)
     start = hatchback.box(START - hatchback.size[0] / 2 + rng.uniform(-2, 2), lane)
-    course = Straight(start, (SPEED, 0.0))
-    own = hatchback.on(Swaying(course, _swing(2.0, 90, rng), _swing(0.7, 130, rng)))
+    course = moving(start, SPEED)
+    own = hatchback.on(swaying(course, _swing(2.0, 90, rng), _swing(0.7, 130, rng)))
     ahead = Vehicle(saloon((62, 84, 132)), lane)
-    leader = ahead.on(Straight(ahead.box(start.x + rng.uniform(105, 125), lane), (3.05, 0.0)))
+    leader = ahead.on(moving(ahead.box(start.x + rng.uniform(105, 125), lane), 3.05))
     behind = any_car(lane, rng)
-    follower = behind.on(Straight(behind.box(rng.uniform(-190, -150), lane), (2.75, 0.0)))
+    follower = behind.on(moving(behind.box(rng.uniform(-190, -150), lane), 2.75))
     return [*leader, *follower, *own]
 
 
 def _swing(amplitude: float, period: float, rng: np.random.Generator) -> Wave:
-    return Wave(amplitude, period, rng.uniform(0, 2 * math.pi))
+    return wave(amplitude, period, rng.uniform(0, 2 * math.pi))
 
 
 def _middle_lane(rng: np.random.Generator) -> list[Actor]:
@@ -341,10 +342,10 @@ def _middle_lane(rng: np.random.Generator) -> list[Actor]:
     speed = SPEED + OVERTAKING * rng.uniform(0.95, 1.05)
     meeting = START + SPEED * HIDDEN_AT + rng.uniform(-6, 6)
     left = meeting - LOAD_MIDDLE * truck.size[0] - speed * HIDDEN_AT
-    actors = list(truck.on(Straight(truck.box(left, lane), (speed, 0.0))))
+    actors = list(truck.on(moving(truck.box(left, lane), speed)))
     for model, place in (
         (Vehicle(saloon((216, 214, 208)), lane), left + truck.size[0] + rng.uniform(390, 480)),
         (Vehicle(car((150, 40, 38)), lane), left - rng.uniform(175, 265)),
     ):
-        actors += model.on(Straight(model.box(place, lane), (speed, 0.0)))
+        actors += model.on(moving(model.box(place, lane), speed))
     return actors

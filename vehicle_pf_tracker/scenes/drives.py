@@ -23,7 +23,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.compositing import Image, Sprite, stream
 from vehicle_pf_tracker.scenes.drive import LANE, RADIUS, Drive, DriveParameters
-from vehicle_pf_tracker.scenes.models import Pace, Still, Straight
+from vehicle_pf_tracker.scenes.models import Pace, moving, standing
 from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene
 from vehicle_pf_tracker.scenes.scenery import bridge as make_bridge
 from vehicle_pf_tracker.scenes.scenery import house, pillar, plain, post, sign, tree
@@ -71,7 +71,7 @@ def bar(parameters: BarParameters, seed: int) -> Scene:
     size = parameters.vehicle_width, parameters.vehicle_height
     vehicle = Actor(
         draw(car((196, 44, 36)), *size),
-        Straight(Box(BAR_MARGIN, (HEIGHT - size[1]) / 2, *size), (parameters.speed, 0.0)),
+        moving(Box(BAR_MARGIN, (HEIGHT - size[1]) / 2, *size), parameters.speed),
     )
     run = WIDTH - 2 * BAR_MARGIN - parameters.vehicle_width
     return Scene(
@@ -95,7 +95,7 @@ def _bars(width: float) -> tuple[Actor, ...]:
     if width == 0:
         return ()
     box = Box(WIDTH // 2 - width // 2, 0.0, width, HEIGHT)
-    return (Actor(Sprite.plain((34.0, 34.0, 38.0)), Still(box)),)
+    return (Actor(Sprite.plain((34.0, 34.0, 38.0)), standing(box)),)
 
 
 @dataclass(frozen=True, slots=True)

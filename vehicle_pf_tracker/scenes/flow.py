@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -44,8 +45,7 @@ _PATIENCE = 3.0
 """Shortest time between two changes of one driver, s."""
 
 
-@dataclass(frozen=True, slots=True)
-class Driver:
+class Driver(NamedTuple):
     """A driver in traffic.
 
     Attributes
@@ -66,8 +66,7 @@ class Driver:
     speed: float
 
 
-@dataclass(frozen=True, slots=True)
-class Hold:
+class Hold(NamedTuple):
     """A red light at `place` (m along the road), from `begin` to `end` (s)."""
 
     place: float
@@ -75,8 +74,7 @@ class Hold:
     end: float
 
 
-@dataclass(frozen=True, slots=True)
-class Flow:
+class Flow(NamedTuple):
     """Way of every driver.
 
     Attributes
@@ -96,11 +94,9 @@ class _Traffic:
 
     def __init__(self, drivers: Sequence[Driver], lanes: int, period: float) -> None:
         self.lanes, self.period = lanes, period
-        self.front = np.array([one.front for one in drivers])
-        self.length = np.array([one.length for one in drivers])
-        self.wanted = np.array([one.speed for one in drivers])
+        lanes_of, self.front, self.length, self.wanted = np.transpose(np.array(drivers))
         self.speed = self.wanted.copy()
-        self.origin = np.array([one.lane for one in drivers])
+        self.origin = lanes_of.astype(np.int64)
         self.goal = self.origin.copy()
         self.since = np.full(len(drivers), -math.inf)
         self.time = 0.0

@@ -21,9 +21,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from itertools import pairwise
-from typing import Generic, TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
@@ -39,56 +39,23 @@ from vehicle_pf_tracker.scenes.solids import (
 from vehicle_pf_tracker.scenes.vehicles import HEAD_LAMP, SILL, TAIL_LAMP
 
 
-@dataclass(frozen=True, slots=True)
-class Still:
-    """Stands for ever in `box`."""
-
-    box: Box
-
-    def __call__(self, frame: float) -> Box:
-        """Give the same box for every `frame`."""
-        return self.box
+def standing(box: Box) -> Path:
+    """Return the path of what stands for ever in `box`."""
+    return lambda _: box
 
 
-@dataclass(frozen=True, slots=True)
-class Straight:
-    """Moves from `start` (its box in frame 0) with `velocity` (px/frame, in x and y)."""
-
-    start: Box
-    velocity: tuple[float, float]
-
-    def __call__(self, frame: float) -> Box:
-        """Give the box in `frame`."""
-        dx, dy = self.velocity
-        start = self.start
-        return Box(start.x + dx * frame, start.y + dy * frame, start.width, start.height)
+def moving(start: Box, speed: float) -> Path:
+    """Return the path from `start`, the box in frame 0, along x with `speed` (px/frame)."""
+    return lambda frame: Box(start.x + speed * frame, start.y, start.width, start.height)
 
 
-@dataclass(frozen=True, slots=True)
-class Wave:
-    """A slow swing: `amplitude` (px), `period` (frames) and `phase` (rad)."""
-
-    amplitude: float
-    period: float
-    phase: float
-
-    def __call__(self, frame: float) -> float:
-        """Give the displacement in `frame`, px."""
-        return self.amplitude * math.sin(2 * math.pi * frame / self.period + self.phase)
+Wave: TypeAlias = Callable[[float], float]
+"""A displacement, px, by frame number."""
 
 
-@dataclass(frozen=True, slots=True)
-class Attached:
-    """Stays with `leader`: `offset` (px) from its corner, of its own `size` (px)."""
-
-    leader: Path
-    offset: tuple[float, float]
-    size: tuple[float, float]
-
-    def __call__(self, frame: float) -> Box:
-        """Give the box in `frame`."""
-        box = self.leader(frame)
-        return Box(box.x + self.offset[0], box.y + self.offset[1], *self.size)
+def wave(amplitude: float, period: float, phase: float) -> Wave:
+    """Return a slow swing: `amplitude` (px), `period` (frames) and `phase` (rad)."""
+    return lambda frame: amplitude * math.sin(2 * math.pi * frame / period + phase)
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,18 +155,16 @@ class Bend:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Swaying(Generic[Placed]):
-    """Follows a path or a course as a human drives: `surge` along x, `weave` along y."""
+def swaying(
+    course: Callable[[float], Placed], surge: Wave, weave: Wave
+) -> Callable[[float], Placed]:
+    """Follow a path or a course as a human drives: `surge` along x, `weave` along y."""
 
-    course: Callable[[float], Placed]
-    surge: Wave
-    weave: Wave
+    def swayed(frame: float) -> Placed:
+        placed = course(frame)
+        return replace(placed, x=placed.x + surge(frame), y=placed.y + weave(frame))
 
-    def __call__(self, frame: float) -> Placed:
-        """Give the box or pose in `frame`."""
-        placed = self.course(frame)
-        return replace(placed, x=placed.x + self.surge(frame), y=placed.y + self.weave(frame))
+    return swayed
 
 
 def _rotated(along: float, across: float, heading: float) -> tuple[float, float]:
@@ -299,13 +264,10 @@ class Model:
         return Actor(look, path, hides=not shade)
 
     def _box(self, pose: Pose, *, shade: bool) -> Box:
-        bounds, scale = self._extent(pose.heading, shade=shade), pose.scale
-        return Box(
-            pose.x + bounds.x * scale,
-            pose.y + bounds.y * scale,
-            bounds.width * scale,
-            bounds.height * scale,
+        left, top, *size = (
+            pose.scale * side for side in astuple(self._extent(pose.heading, shade=shade))
         )
+        return Box(pose.x + left, pose.y + top, *size)
 
     def _sprite(self, heading: float, *, shade: bool) -> Sprite:
         key = round(heading / HEADING_STEP), shade

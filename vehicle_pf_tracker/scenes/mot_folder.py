@@ -22,7 +22,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 import cv2
 import numpy as np
@@ -38,8 +37,6 @@ _BLIND, _SURE = 0.25, 0.75
 """Visible shares below which a vehicle is never detected, and above which like a free one."""
 _CONCENTRATION = 12.0
 """Concentration of the beta distribution of scores: a standard deviation of about 0.13."""
-_SPOT_RATE = 0.4
-"""Share of the frames in which a standing spot is taken for a vehicle."""
 _FALSE_SCORE = 0.35
 """Mean score of false alarms: some are as high as those of vehicles."""
 
@@ -60,8 +57,6 @@ class SimulatedDetector:
         Standard deviation of each edge, as a share of the side.
     merges : float
         Share of overlapping pairs that are detected as one.
-    spots : int
-        Standing spots of the background that are often taken for vehicles, with low scores.
     """
 
     misses: float = 0.02
@@ -69,61 +64,49 @@ class SimulatedDetector:
     false_alarms: float = 0.05
     noise: float = 0.03
     merges: float = 0.0
-    spots: int = 0
+
+    def detect(
+        self, truths: Sequence[Sequence[VehicleTruth]], size: tuple[int, int], seed: int
+    ) -> Array:
+        """Simulate the detector on all frames of a scene.
+
+        Parameters
+        ----------
+        truths : sequence of sequence of VehicleTruth
+            Truth of every frame.
+        size : (int, int)
+            Width and height of the image, px.
+        seed : int
+            Seed of the detector.
+
+        Returns
+        -------
+        array, shape (N, 6)
+            Frame from 1, left, top, width, height (px), score.
+        """
+        missed: dict[int, bool] = {}
+        rows: list[list[float]] = []
+        for frame, now in enumerate(truths, start=1):
+            rng = stream(seed, "detector", frame)
+            seen = [one for one in now if _found(one, self, missed, rng)]
+            found = [(_noisy(boxes, self.noise, rng), _score(share, rng))
+                     for boxes, share in _merged(seen, self.merges, rng)]  # fmt: skip
+            found += [false_alarm(size, rng) for _ in range(rng.poisson(self.false_alarms))]
+            rows += [[frame, *box.tolist(), score] for box, score in found]
+        return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
-SIMULATED_DETECTORS: Mapping[str, SimulatedDetector] = MappingProxyType(
-    {
-        "good": SimulatedDetector(),
-        "misses": SimulatedDetector(misses=0.25, miss_length=5.0),
-        "false_alarms": SimulatedDetector(false_alarms=2.0),
-        "noisy": SimulatedDetector(noise=0.1),
-        "merged": SimulatedDetector(merges=0.7),
-        "poor": SimulatedDetector(
-            misses=0.15, miss_length=4.0, false_alarms=0.7, noise=0.07, merges=0.4
-        ),
-    }
-)
+SIMULATED_DETECTORS: Mapping[str, SimulatedDetector] = {
+    "good": SimulatedDetector(),
+    "misses": SimulatedDetector(misses=0.25, miss_length=5.0),
+    "false_alarms": SimulatedDetector(false_alarms=2.0),
+    "noisy": SimulatedDetector(noise=0.1),
+    "merged": SimulatedDetector(merges=0.7),
+    "poor": SimulatedDetector(
+        misses=0.15, miss_length=4.0, false_alarms=0.7, noise=0.07, merges=0.4
+    ),
+}
 """The simulated detectors by name."""
-
-
-def detect(
-    detector: SimulatedDetector,
-    truths: Sequence[Sequence[VehicleTruth]],
-    size: tuple[int, int],
-    seed: int,
-) -> Array:
-    """Simulate a detector on all frames of a scene.
-
-    Parameters
-    ----------
-    detector : SimulatedDetector
-        The detector, by its errors.
-    truths : sequence of sequence of VehicleTruth
-        Truth of every frame.
-    size : (int, int)
-        Width and height of the image, px.
-    seed : int
-        Seed of the detector.
-
-    Returns
-    -------
-    array, shape (N, 6)
-        Frame from 1, left, top, width, height (px), score.
-    """
-    missed: dict[int, bool] = {}
-    rows: list[list[float]] = []
-    for frame, now in enumerate(truths, start=1):
-        rng = stream(seed, "detector", frame)
-        seen = [one for one in now if _found(one, detector, missed, rng)]
-        found = [(_noisy(boxes, detector.noise, rng), _score(share, rng))
-                 for boxes, share in _merged(seen, detector.merges, rng)]  # fmt: skip
-        found += [_false_alarm(size, rng) for _ in range(rng.poisson(detector.false_alarms))]
-        for box, score in found:
-            rows.append([frame, *box.tolist(), score])
-    for spot in range(detector.spots):
-        rows += _standing_spot(len(truths), size, stream(seed, "spot", spot))
-    return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
 def _found(
@@ -186,25 +169,13 @@ def _score(visible: float, rng: np.random.Generator) -> float:
     return float(rng.beta(_CONCENTRATION * mean, _CONCENTRATION * (1 - mean)))
 
 
-def _false_alarm(size: tuple[int, int], rng: np.random.Generator) -> tuple[Array, float]:
+def false_alarm(size: tuple[int, int], rng: np.random.Generator) -> tuple[Array, float]:
     """Place a box of a vehicle's size anywhere."""
     width, height = rng.uniform(15, 60), rng.uniform(10, 30)
     left, top = rng.uniform(0, size[0] - width), rng.uniform(0, size[1] - height)
     mean = _FALSE_SCORE
     score = rng.beta(_CONCENTRATION * mean, _CONCENTRATION * (1 - mean))
     return np.array([left, top, width, height]), float(score)
-
-
-def _standing_spot(
-    frames: int, size: tuple[int, int], rng: np.random.Generator
-) -> list[list[float]]:
-    """Report a place of the background in every second or third frame, about the same box."""
-    box, _ = _false_alarm(size, rng)
-    seen = 1 + np.flatnonzero(rng.uniform(size=frames) < _SPOT_RATE)
-    return [
-        [float(frame), *(box + rng.normal(0.0, 1.0, 4)).tolist(), float(rng.uniform(0.05, 0.3))]
-        for frame in seen.tolist()
-    ]
 
 
 OCCLUDERS_HEADER = "frame,id,depth,hidden_by,share"
@@ -283,19 +254,18 @@ def _write_tables(
     detectors: Mapping[str, SimulatedDetector],
 ) -> None:
     boxes = [(frame, one) for frame, now in enumerate(truths, start=1) for one in now]
-    _write(folder / "gt" / "gt.txt", (truth_row(*one) for one in boxes if _is_judged(one[1])))
     judged = [pair for pair in boxes if _is_judged(pair[1])]
-    _write(
-        folder / "gt" / "occluders.csv",
-        (OCCLUDERS_HEADER, *(_occluder(*pair) for pair in judged)),
-    )
-    _write(folder / "ignore.txt", (_ignored(*one) for one in boxes if not _is_judged(one[1])))
+    ignored = (_ignored(*pair) for pair in boxes if not _is_judged(pair[1]))
+    occluders = (_occluder(*pair) for pair in judged)
+    _write(folder / "gt" / "gt.txt", (_truth(*pair) for pair in judged))
+    _write(folder / "gt" / "occluders.csv", (OCCLUDERS_HEADER, *occluders))
+    _write(folder / "ignore.txt", ignored)
     for name, detector in detectors.items():
-        found = detect(detector, truths, (scene.width, scene.height), seed)
+        found = detector.detect(truths, (scene.width, scene.height), seed)
         _write(folder / "det" / f"{name}.txt", map(_detection, found))
 
 
-def truth_row(frame: int, one: VehicleTruth) -> str:
+def _truth(frame: int, one: VehicleTruth) -> str:
     """Return the row of `gt.txt`: a vehicle of class 1, and how much of it is visible."""
     box = one.box
     place = f"{box.x:.2f},{box.y:.2f},{box.width:.2f},{box.height:.2f}"

@@ -30,7 +30,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, cells_inside
-from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY, Attached, Straight
+from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY, moving
 from vehicle_pf_tracker.scenes.scene import Actor, Path
 from vehicle_pf_tracker.scenes.scenery import PAINT, asphalt, concrete, foliage, grass, value_noise
 from vehicle_pf_tracker.scenes.solids import (
@@ -274,7 +274,12 @@ class Vehicle:
 
     def on(self, path: Path) -> tuple[Actor, Actor]:
         """Send it along `path`; returns shadow and body, in the order to paint them."""
-        follow = Attached(path, self._shade_offset, self._shade_size)
+        (right, down), size = self._shade_offset, self._shade_size
+
+        def follow(frame: float) -> Box:
+            body = path(frame)
+            return Box(body.x + right, body.y + down, *size)
+
         return (
             Actor(lambda _: self._shade, follow, hides=False),
             Actor(lambda _: self._body, path),
@@ -322,6 +327,6 @@ def convoy(
         model = models[rng.integers(len(models))]
         # `ahead` counts backwards from the end of the lane that vehicles leave by.
         left = width - ahead - model.size[0] if lane.rightward else ahead
-        actors += model.on(Straight(model.box(left, lane), (velocity, 0.0)))
+        actors += model.on(moving(model.box(left, lane), velocity))
         ahead += model.size[0] + rng.uniform(*gaps)
     return actors

@@ -24,7 +24,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from statistics import NormalDist
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -40,7 +40,6 @@ from vehicle_pf_tracker.scenes.compositing import (
     overlap,
     paint,
     stream,
-    visible_fraction,
 )
 
 FIRST_STAMP_NS = 1_000_000_000
@@ -50,18 +49,6 @@ Path: TypeAlias = Callable[[float], Box]
 """Gives the box (px) a sprite fills at a frame number, counted from 0."""
 Look: TypeAlias = Callable[[float], Sprite]
 """Sprite by frame number, of an actor whose appearance changes (by turning)."""
-
-
-class Eye(Protocol):
-    """Interface of the cameras."""
-
-    def offset(self, index: int) -> tuple[float, float]:
-        """Return the image's top-left corner on the stage in frame `index`, px."""
-        ...
-
-    def capture(self, picture: Image, index: int) -> Frame:
-        """Turn the composed stage of frame `index` into an 8-bit frame; may alter `picture`."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +109,7 @@ class Scene:
         All actors in painting order, far to near.
     target : int
         Index in `actors` of the vehicle the truth is about.
-    camera : Eye
+    camera : Camera or OutdoorCamera
         Takes the picture.
     """
 
@@ -133,7 +120,7 @@ class Scene:
     backdrop: Callable[[], Image]
     actors: tuple[Actor, ...]
     target: int
-    camera: Eye
+    camera: Camera | OutdoorCamera
 
     def frames(self) -> Iterator[SceneFrame]:
         """Render every frame in order, with its truth."""
@@ -159,13 +146,17 @@ class Scene:
         return FIRST_STAMP_NS + round(index * 1e9 / self.frame_rate)
 
     def _visible_fraction(self, index: int, box: Box) -> float:
-        covers = (
-            (actor.seen(index), place)
-            for actor in self.actors[self.target + 1 :]
-            if actor.hides and overlap(place := self._in_image(actor.path(index), index), box)
-        )
-        target = (self.actors[self.target].seen(index), box)
-        return visible_fraction(target, covers, self.width, self.height)
+        """Share (0 to 1) of the target's silhouette in `box` that is inside and not covered."""
+        window = PixelWindow.of(box, self.width, self.height)
+        if window.empty:
+            return 0.0
+        sprite = self.actors[self.target].seen(index)
+        seen = sprite.coverage(box, window)
+        for actor in self.actors[self.target + 1 :]:
+            if actor.hides and overlap(place := self._in_image(actor.path(index), index), box):
+                seen = seen * (1 - actor.seen(index).coverage(place, window))
+        # Rounded because sums of floats must not make a free vehicle look 1e-16 hidden.
+        return round(float(min(max(seen.sum() / sprite.area(box), 0.0), 1.0)), 9)
 
     def _in_image(self, box: Box, index: int) -> Box:
         left, top = self.camera.offset(index)

@@ -24,7 +24,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite
-from vehicle_pf_tracker.scenes.models import Still
+from vehicle_pf_tracker.scenes.models import standing
 from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.solids import SHADE
 
@@ -118,7 +118,7 @@ def concrete(shape: tuple[int, int], rng: np.random.Generator) -> Image:
 
 def _standing(colour: Array, box: Box) -> Actor:
     """Make an opaque thing that stands in `box` for ever."""
-    return Actor(Sprite(colour.clip(0, 255), np.ones(colour.shape[:2])), Still(box))
+    return Actor(Sprite(colour.clip(0, 255), np.ones(colour.shape[:2])), standing(box))
 
 
 def pillar(middle: float, width: float, height: int, rng: np.random.Generator) -> list[Actor]:
@@ -220,7 +220,7 @@ def tree(
     return [
         *(Actor(bark, part.path) for part in trunk),
         Actor(Sprite(colour.clip(0, 255), leaves.astype(float)),
-              Still(Box(middle - width / 2, top, width, bottom - top))),
+              standing(Box(middle - width / 2, top, width, bottom - top))),
     ]  # fmt: skip
 
 
@@ -253,9 +253,9 @@ def bridge(left: float, width: float, height: int, rng: np.random.Generator) -> 
         Source of the textures.
     """
     box = Box(left, 0.0, width, height)
-    deck = Actor(_deck(round(width), height, rng), Still(box))
+    deck = Actor(_deck(round(width), height, rng), standing(box))
     shade = Box(left - SHADOW_REACH, 0.0, width, height)
-    return Actor(_soft_band(round(width)), Still(shade), hides=False), deck
+    return Actor(_soft_band(round(width)), standing(shade), hides=False), deck
 
 
 def _deck(width: int, height: int, rng: np.random.Generator) -> Sprite:

@@ -27,7 +27,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.scenes.compositing import Image, PixelWindow, overlap, stream
 from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.scenes.roads import PAINTS, Carriageway, Lane, Vehicle, any_car, countryside
-from vehicle_pf_tracker.scenes.scene import Actor, Camera, Eye, Path
+from vehicle_pf_tracker.scenes.scene import Actor, Camera, OutdoorCamera, Path
 from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.vehicles import lorry
 
@@ -84,7 +84,7 @@ class TrafficScene:
         Shadow and body of each vehicle.
     obstacles : tuple of Actor
         What stands in front of all vehicles, in painting order.
-    camera : Eye
+    camera : Camera or OutdoorCamera
         Takes the picture; it must not move.
     order : callable or None
         Indices of the vehicles of a frame, far to near; None: the lower a body stands, the
@@ -98,7 +98,7 @@ class TrafficScene:
     backdrop: Callable[[], Image]
     vehicles: tuple[tuple[Actor, Actor], ...]
     obstacles: tuple[Actor, ...]
-    camera: Eye
+    camera: Camera | OutdoorCamera
     order: Callable[[int], list[int]] | None = None
 
     def frames(self) -> Iterator[tuple[Frame, tuple[VehicleTruth, ...]]]:

@@ -138,24 +138,13 @@ def _change_a_number(cell):
         lambda cell: (cell / "digests.json").write_text("{}"),
     ],
 )
-def test_a_damaged_cell_is_run_again_and_said(plan, out, harm):
+def test_a_damaged_cell_is_said_and_run_again(plan, out, harm):
     complete(plan, out, here, silent)
     whole = results(out)
     harm(out / "cells" / "free" / "pf" / "seed-1")
     assert "is damaged: " in EvaluationFolder(out).cell("free", "pf", 1).reason
-    notices = []
-    assert complete(plan, out, here, silent, notices.append) == 1
-    assert notices == ["stored results that were changed or damaged are run again: free pf seed 1"]
+    assert complete(plan, out, here, silent) == 1
     assert results(out) == whole
-
-
-def test_a_notice_of_many_damaged_cells_stays_short(plan, out):
-    complete(plan, out, here, silent)
-    for path in out.glob("cells/*/*/*/estimates.csv"):
-        path.write_text("")
-    notices = []
-    assert complete(plan, out, here, silent, notices.append) == 6
-    assert [notice.endswith(" and 1 more") for notice in notices] == [True]
 
 
 def test_only_what_changed_is_run_anew(recordings, plan, out):

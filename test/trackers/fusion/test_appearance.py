@@ -14,9 +14,9 @@
 
 """The target's appearance: where the filter finds it, and what it learns."""
 
-import cv2
 import numpy as np
 import pytest
+from fusion_samples import texture
 
 from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.kernels.choice import load_kernels
@@ -27,13 +27,9 @@ SIZE = np.array([48.0, 30.0])
 PLACE = np.array([160.0, 120.0])
 
 
-def texture(seed, shape, blur=2.0):
-    noise = np.random.default_rng(seed).integers(0, 256, (*shape, 3)).astype(np.uint8)
-    smooth = cv2.GaussianBlur(noise, (0, 0), blur).astype(float)
-    return np.clip(3 * (smooth - 128) + 128, 0, 255).astype(np.uint8)
-
-
-ROAD, VEHICLE, OTHER = texture(1, (240, 320)), texture(2, (30, 48)), texture(3, (30, 48))
+SMOOTH = {"blur": 2.0, "gain": 3.0}
+ROAD = texture(1, **SMOOTH)
+VEHICLE, OTHER = (texture(seed, 48, 30, **SMOOTH) for seed in (2, 3))
 
 
 def frame(x=PLACE[0], y=PLACE[1], vehicle=VEHICLE):
@@ -47,6 +43,13 @@ def frame(x=PLACE[0], y=PLACE[1], vehicle=VEHICLE):
 def learnt(*, colour=True, penalty=0.1):
     appearance = Appearance(KERNELS, SIZE, penalty, colour=colour)
     appearance.learn_first(appearance.patch(frame(), PLACE, SIZE))
+    return appearance
+
+
+def usual():
+    """An appearance that has seen its vehicle once, so that responses are relative to that."""
+    appearance = learnt()
+    view_at(appearance, frame(), PLACE)
     return appearance
 
 
@@ -92,28 +95,24 @@ def test_the_peak_is_where_the_target_is(colour, offset):
 
 
 def test_a_large_box_is_found_in_a_wide_patch_only():
-    appearance = learnt()
-    view_at(appearance, frame(), PLACE)
+    appearance = usual()
     away = PLACE + np.array([70, 45])
     wide = view_at(appearance, frame(*away), PLACE, wide=True)
     assert wide.spectrum is None
     assert wide.patch.side == 256
     rows, columns = np.unravel_index(wide.response.argmax(), wide.response.shape)
     assert wide.places(away) == pytest.approx([columns, rows], abs=1)
-    usual = appearance.usual_patch(wide.patch)
-    assert usual.side == 128
-    assert appearance.usual_patch(usual) is usual
+    inner = appearance.usual_patch(wide.patch)
+    assert inner.side == 128
+    assert appearance.usual_patch(inner) is inner
 
 
 def test_another_vehicle_answers_less():
-    appearance = learnt()
-    view_at(appearance, frame(), PLACE)
-    assert view_at(appearance, frame(vehicle=OTHER), PLACE).response.max() < 0.5
+    assert view_at(usual(), frame(vehicle=OTHER), PLACE).response.max() < 0.5
 
 
 def test_a_wrong_size_answers_less():
-    appearance = learnt()
-    view_at(appearance, frame(), PLACE)
+    appearance = usual()
     answers = [
         appearance.response_at(frame(), PLACE, factor * SIZE)
         for factor in (0.85, 0.93, 1.0, 1.08, 1.18)
@@ -137,8 +136,7 @@ def test_the_response_at_a_box_is_that_of_the_whole_view_there():
 
 @pytest.mark.parametrize("away", [2.0, 14.0], ids=["shifted cells", "measured again"])
 def test_learning_adapts_the_filter_to_a_new_look(away):
-    appearance = learnt()
-    view_at(appearance, frame(), PLACE)
+    appearance = usual()
     mixed = (0.5 * VEHICLE + 0.5 * OTHER).astype(np.uint8)
     picture = frame(vehicle=mixed)
     before = view_at(appearance, picture, PLACE).response.max()
@@ -196,8 +194,7 @@ def test_an_image_without_any_contrast_gives_finite_responses(level, colour):
 
 def turned_into_another():
     """A filter that remembers `VEHICLE`, and has learnt `OTHER` since."""
-    appearance = learnt()
-    appearance.view(appearance.patch(frame(), PLACE, SIZE))
+    appearance = usual()
     appearance.remember(3)
     for _ in range(12):
         view = view_at(appearance, frame(vehicle=OTHER), PLACE)

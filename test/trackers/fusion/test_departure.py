@@ -16,22 +16,16 @@
 
 import numpy as np
 import pytest
+from fusion_samples import fusion
 from street import HEIGHT, SIZE, START, WIDTH, Street, error, follow, vehicle
 
 from vehicle_pf_tracker.image.canonical_patch import cut_patch
-from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.departure import Departure, Strangers, is_too_far
-from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
 
 LEAVES = 62
 """The time at which the whole vehicle is outside."""
-
-
-def fusion(seed):
-    return FusionTracker(from_mapping(FusionParameters, {"seed": seed}))
 
 
 class Platoon(Street):
@@ -63,7 +57,7 @@ class Back(Street):
 @pytest.mark.parametrize("gap", [20, 70])
 def test_look_alikes_that_drive_behind_it_are_not_taken_for_it(gap):
     for seed in range(3):
-        estimates = follow(fusion(seed), Platoon(gap, seed), range(250))
+        estimates = follow(fusion(seed=seed), Platoon(gap, seed), range(250))
         claimed = [e.mode is Mode.TRACKING for e in estimates]
         assert all(claimed[:56])
         assert np.mean(claimed[LEAVES:]) <= 0.02
@@ -75,7 +69,7 @@ def test_a_vehicle_that_comes_back_by_the_same_border_is_found():
     found = 0
     for seed in range(3):
         street = Back(seed=seed)
-        estimates = follow(fusion(seed), street, range(120))
+        estimates = follow(fusion(seed=seed), street, range(120))
         assert estimates[Back.turned].mode is Mode.LOST
         found += estimates[-1].mode is Mode.TRACKING and error(estimates[-1], street, 119) < 4
     assert found >= 2
@@ -86,17 +80,20 @@ def test_only_a_dot_that_was_larger_is_too_far_to_see(size, first, far):
     assert is_too_far(np.full(2, float(size)), np.full(2, float(first))) is far
 
 
-class Flat:
-    """A response with one peak."""
+PLACE = np.array([100.0, 60.0])
 
-    def __init__(self, peak, height):
-        patch = cut_patch(
-            np.zeros((HEIGHT, WIDTH, 3), np.uint8), np.array([100.0, 60.0]), np.ones(2), 64
-        )
-        response = np.zeros((32, 32), np.float32)
-        self.view = View(patch, None, response)
-        column, row = self.view.places(np.asarray(peak))
-        response[row, column] = height
+
+def peaked(x, height):
+    """A response with one peak, at x and the height of `PLACE`."""
+    patch = cut_patch(np.zeros((HEIGHT, WIDTH, 3), np.uint8), PLACE, np.ones(2), 64)
+    view = View(patch, None, np.zeros((32, 32), np.float32))
+    column, row = view.places(np.array([x, PLACE[1]]))
+    view.response[row, column] = height
+    return view
+
+
+def far_away():
+    return Departure.far_away(PLACE, np.full(2, 7.0), np.array([0.5, 0.0]), Strangers())
 
 
 @pytest.mark.parametrize(
@@ -104,27 +101,21 @@ class Flat:
     [(2.0, 0.9, True), (-2.0, 0.9, False), (0.0, 0.9, False), (2.0, 0.7, False)],
 )
 def test_one_too_far_to_see_is_found_only_as_it_drives_on(speed, height, found):
-    departure = Departure.far_away(
-        np.array([100.0, 60.0]), np.array([7.0, 7.0]), np.array([0.5, 0.0]), Strangers()
-    )
-    seen = [departure.returned(Flat((100 + speed * time, 60.0), height).view) for time in range(10)]
+    departure = far_away()
+    seen = [departure.returned(peaked(100 + speed * time, height)) for time in range(10)]
     assert any(each is not None for each in seen) is found
 
 
 def test_one_too_far_to_see_is_given_up_when_its_heading_is_old():
-    departure = Departure.far_away(
-        np.array([100.0, 60.0]), np.array([7.0, 7.0]), np.array([0.5, 0.0]), Strangers()
-    )
-    seen = [departure.returned(Flat((90 + time, 60.0), 0.9).view, 10.0) for time in range(20)]
+    departure = far_away()
+    seen = [departure.returned(peaked(90 + time, 0.9), 10.0) for time in range(20)]
     assert seen == [None] * 20
 
 
 def test_a_return_has_to_look_more_like_it_than_strangers_did():
     strangers = Strangers()
     for time in range(3):
-        strangers.measure(
-            Flat((120.0, 60.0), 0.9 if time else 0.4).view, np.array([100.0, 60.0]), np.full(2, 8.0)
-        )
+        strangers.measure(peaked(120.0, 0.9 if time else 0.4), PLACE, np.full(2, 8.0))
     assert strangers.level == pytest.approx(0.9, abs=0.01)
-    strangers.measure(Flat((103.0, 60.0), 1.2).view, np.array([100.0, 60.0]), np.full(2, 8.0))
+    strangers.measure(peaked(103.0, 1.2), PLACE, np.full(2, 8.0))
     assert strangers.level < 0.9  # that is the vehicle itself

@@ -14,12 +14,14 @@
 
 """The flagship on streets and synthetic scenes: in view, hidden, recovered, and at the limits."""
 
+import functools
 import math
 from types import SimpleNamespace
 
 import cv2
 import numpy as np
 import pytest
+from fusion_samples import contrasted, fusion, paste_turned, texture
 from street import Street, error, follow, vehicle
 
 from laboratory.scenes import make_scene
@@ -36,13 +38,8 @@ from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
-from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
 from vehicle_pf_tracker.trackers.fusion.turning import TurningBranch
 from vehicle_pf_tracker.trackers.fusion.visibility import Wholeness
-
-
-def fusion(**values):
-    return FusionTracker(from_mapping(FusionParameters, values))
 
 
 def run(name, seed, **values):
@@ -134,91 +131,71 @@ def test_follows_a_turn_by_the_outline_before_a_standing_camera():
         assert np.mean([e.mode is Mode.TRACKING for e, _ in pairs]) > 0.9
 
 
-def fast_start(frames):
+class FastStart:
     """A car that sets off at a third of its length per frame before a textured road.
 
-    The first box holds more road than car, which looks as it did in the second frame.
+    The box holds more road than car, which looks as it did in the second frame. It is a hard case:
+    of the noise of seeds 0 to 11 those of 3, 4, 6, 10 and 11 are followed.
     """
-    rng = np.random.default_rng(3)
-    noise = rng.integers(0, 256, (2, 240, 320, 3)).astype(np.uint8)
-    road, car = (np.clip(6.0 * cv2.GaussianBlur(one, (0, 0), 3.0) - 640, 0, 255) for one in noise)
-    road, car = road.astype(np.uint8), car[:24, :48].astype(np.uint8)
-    for number in range(frames):
-        picture, left = road.copy(), 60 + 16 * number
-        picture[100:124, left : left + 48] = car
-        yield picture, left
+
+    noise = np.random.default_rng(3).integers(0, 256, (2, 240, 320, 3)).astype(np.uint8)
+    road, car = contrasted(noise[0]), contrasted(noise[1])[:24, :48]
+
+    def box(self, time):
+        return Box(24.0 + 16 * time, 93.0, 84.0, 38.0)
+
+    def frame(self, time):
+        picture, left = self.road.copy(), 60 + 16 * time
+        picture[100:124, left : left + 48] = self.car
+        return picture
 
 
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_fast_start_is_followed_though_the_first_box_is_loose(seed):
     """Its points tell the first motion; the filter answers to the standing part of the box."""
-    tracker = fusion(seed=seed)
-    for number, (picture, left) in enumerate(fast_start(9)):
-        if number:
-            estimate = tracker.step(picture)
-        else:
-            tracker.start(picture, Box(left - 36.0, 93.0, 84.0, 38.0))
-    assert estimate.box.x == pytest.approx(left - 36, abs=12)
+    last = follow(fusion(seed=seed), FastStart(), range(9))[-1]
+    assert last.box.x == pytest.approx(FastStart().box(8).x, abs=12)
 
 
-def spinning(time):
+class Spinning:
     """A car that turns by 90 degrees within two seconds, before a camera that pans along."""
-    rng = np.random.default_rng(5)
-    noise = rng.integers(0, 256, (2, 300, 700, 3)).astype(np.uint8)
-    road, car = (np.clip(5.0 * cv2.GaussianBlur(one, (0, 0), 2.5) - 512, 0, 255) for one in noise)
-    matrix = cv2.getRotationMatrix2D((30.0, 20.0), min(max(1.5 * (time - 15), 0.0), 90.0), 1.0)
-    centre = np.array([160.0 + 4.0 * time, 150.0])
-    matrix[:, 2] += centre - (30.0, 20.0)
-    mask = cv2.warpAffine(np.full((40, 60), 255, np.uint8), matrix, (700, 300))
-    turned = cv2.warpAffine(car[100:140, 100:160].astype(np.uint8), matrix, (700, 300))
-    picture, left = road.astype(np.uint8), 3 * time
-    picture[mask > 127] = turned[mask > 127]
-    return np.ascontiguousarray(picture[:, left : left + 320]), centre - (left, 0)
 
+    road, car = texture(5, 700, 300, 2.5, 5.0), texture(6, 60, 40, 2.5, 5.0)
 
-def follow_the_turn(seed):
-    """Modes, and errors in px."""
-    tracker, modes, errors = fusion(seed=seed), [], []
-    for time in range(80):
-        picture, centre = spinning(time)
-        if not time:
-            tracker.start(picture, Box.around(tuple(centre), 60, 40))
-            continue
-        estimate = tracker.step(picture)
-        modes.append(estimate.mode)
-        errors.append(math.dist(estimate.position, centre))
-    return modes, errors
+    def box(self, time):
+        return Box.around((160.0 + time, 150.0), 60, 40)
+
+    def frame(self, time):
+        degrees, left = min(max(1.5 * (time - 15), 0.0), 90.0), 3 * time
+        picture = paste_turned(self.road, self.car, (160.0 + 4.0 * time, 150.0), degrees)
+        return np.ascontiguousarray(picture[:, left : left + 320])
 
 
 def test_a_turn_before_a_moving_camera_is_followed():
     """By four of five draws at least: one in eight takes the turn for an occlusion."""
-    runs = [follow_the_turn(seed) for seed in range(5)]
-    followed = [set(modes) == {Mode.TRACKING} and max(errors) < 15 for modes, errors in runs]
-    assert sum(followed) >= 4
+    followed, street = 0, Spinning()
+    for seed in range(5):
+        estimates = follow(fusion(seed=seed), street, range(80))
+        errors = [error(estimate, street, time) for time, estimate in enumerate(estimates)]
+        followed += {e.mode for e in estimates} == {Mode.TRACKING} and max(errors) < 15
+    assert followed >= 4
 
 
 @pytest.fixture
 def parts(monkeypatch):
     """The parts of the tracker that is started last, by their names."""
     made = SimpleNamespace()
+
+    def make(name, kind, *values, **options):
+        setattr(made, name, kind(*values, **options))
+        return getattr(made, name)
+
     kinds = {
-        "appearance": Appearance,
-        "points": SurfacePoints,
-        "surface": SurfaceFlow,
-        "sightings": Sightings,
-        "wholeness": Wholeness,
-    }
-
-    def making(name, kind):
-        def make(*values, **options):
-            part = kind(*values, **options)
-            setattr(made, name, part)
-            return part
-
-        return make
-
+        "appearance": Appearance, "points": SurfacePoints, "surface": SurfaceFlow,
+        "sightings": Sightings, "wholeness": Wholeness,
+    }  # fmt: skip
     for name, kind in kinds.items():
-        monkeypatch.setattr(track, kind.__name__, making(name, kind))
+        monkeypatch.setattr(track, kind.__name__, functools.partial(make, name, kind))
     return made
 
 
@@ -247,9 +224,8 @@ def test_a_turn_is_learnt_the_faster_the_lower_the_response(parts, monkeypatch):
             tracker.step(street.frame(8))
         return learnt
 
-    assert stiffness(0.9, 1.0) == [pytest.approx(5.0, rel=0.02)]
-    assert stiffness(0.4, 0.95) == [pytest.approx(0.4 * 5.0, rel=0.02)]
-    assert stiffness(0.1, 0.95) == [pytest.approx(0.2 * 5.0, rel=0.02)]
+    for response, share, expected in ((0.9, 1.0, 5.0), (0.4, 0.95, 2.0), (0.1, 0.95, 1.0)):
+        assert stiffness(response, share) == [pytest.approx(expected, rel=0.02)]
     assert stiffness(0.4, 0.8) == []
     assert stiffness(0.4, 0.95, tells=False) == []
     assert stiffness(0.4, 0.95, outlines=True) == []
@@ -325,13 +301,7 @@ def test_before_a_camera_that_moved_a_hidden_vehicle_is_looked_for_farther_away(
 
 
 def test_a_pan_is_noticed_as_a_camera_that_moves(parts):
-    tracker = fusion()
-    for time in range(4):
-        picture, centre = spinning(time)
-        if time:
-            tracker.step(picture)
-        else:
-            tracker.start(picture, Box.around(tuple(centre), 60, 40))
+    follow(fusion(), Spinning(), range(4))
     assert not parts.sightings.are_steady
 
 

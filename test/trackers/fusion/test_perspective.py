@@ -25,19 +25,31 @@ from vehicle_pf_tracker.trackers.fusion.perspective import (
     fit_motion,
 )
 
-TIMES = np.arange(-20.0, 1.0)
+
+def moving(rate):
+    return PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), rate)
 
 
-def course(motion, size):
-    """Positions and sizes of the motion at `TIMES`."""
-    positions = np.array([motion.position_at(time) for time in TIMES])
-    return positions, np.array([size * motion.scale_at(time) for time in TIMES])
+def course(motion, frames=20):
+    """Times of the last frames, and the motion's positions and sizes then."""
+    times = np.arange(-float(frames), 1.0)
+    positions = np.array([motion.position_at(time) for time in times])
+    return times, positions, np.array([80 * motion.scale_at(time) for time in times])
 
 
-@pytest.mark.parametrize("rate", [0.0, 0.01, 0.025, -0.02, -0.0325])
-def test_a_perspective_motion_is_recovered_exactly(rate):
-    true = PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), rate)
-    found = fit_motion(TIMES, *course(true, 80.0))
+def fit(times, positions, sizes, *, perspective=True):
+    """All sizes count alike."""
+    return fit_motion(times, positions, sizes, np.ones(len(times)), perspective=perspective)
+
+
+@pytest.mark.parametrize(
+    ("rate", "frames"),
+    [(0.0, 20), (0.01, 20), (0.025, 20), (-0.02, 20), (-0.0325, 20), (0.04, 60)],
+)
+def test_a_perspective_motion_is_recovered_exactly(rate, frames):
+    """The last one was 3.4 times as small at first, which is no reason to doubt the rate."""
+    true = moving(rate)
+    found = fit(*course(true, frames))
     assert found.rate == pytest.approx(rate)
     assert found.position == pytest.approx(true.position)
     assert found.velocity == pytest.approx(true.velocity)
@@ -61,34 +73,30 @@ def test_a_vehicle_that_passes_the_camera_does_not_grow_without_bound():
 
 
 def test_without_perspective_the_size_stays():
-    true = PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), 0.02)
-    found = fit_motion(TIMES, *course(true, 80.0), perspective=False)
+    found = fit(*course(moving(0.02)), perspective=False)
     assert found.rate == 0
     assert found.scale_at(30.0) == 1
 
 
 def test_few_sightings_tell_no_rate():
-    true = PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), 0.02)
-    positions, sizes = course(true, 80.0)
-    assert fit_motion(TIMES[-7:], positions[-7:], sizes[-7:]).rate == 0
-    assert fit_motion(TIMES[-8:], positions[-8:], sizes[-8:]).rate > 0
+    assert fit(*course(moving(0.02), 6)).rate == 0
+    assert fit(*course(moving(0.02), 7)).rate > 0
 
 
 def test_one_sighting_stands_still():
-    found = fit_motion(np.zeros(1), np.array([[30.0, 40.0]]), np.array([20.0]))
+    found = fit(np.zeros(1), np.array([[30.0, 40.0]]), np.array([20.0]))
     assert found.position == pytest.approx([30, 40])
     assert found.velocity == pytest.approx([0, 0])
     assert found.rate == 0
 
 
 def test_noise_is_averaged():
-    true = PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), 0.0)
-    positions, sizes = course(true, 80.0)
-    errors = []
+    true, errors = moving(0.0), []
+    times, positions, sizes = course(true)
     for seed in range(20):
         rng = np.random.default_rng(seed)
         noisy = positions + rng.normal(0, 1.0, positions.shape)
-        found = fit_motion(TIMES, noisy, sizes * np.exp(rng.normal(0, 0.01, len(TIMES))))
+        found = fit(times, noisy, sizes * np.exp(rng.normal(0, 0.01, len(times))))
         errors.append(np.linalg.norm(found.position_at(10.0) - true.position_at(10.0)))
     # The last two sightings alone would be off by 10 * sqrt(2) * sqrt(2) px.
     assert np.median(errors) < 6
@@ -108,16 +116,6 @@ def test_only_clear_sightings_are_fitted():
     assert motion.position_at(last.age) == pytest.approx([43, 50])
 
 
-def test_a_vehicle_that_has_come_closer_for_two_seconds_is_recovered():
-    """At r = 0.04 it was 3.4 times as small 60 frames ago, which is no reason to doubt the rate."""
-    true = PerspectiveMotion(np.array([300.0, 200.0]), np.array([6.0, 3.0]), 0.04)
-    times = np.arange(-60.0, 1.0)
-    positions = np.array([true.position_at(time) for time in times])
-    sizes = np.array([80 * true.scale_at(time) for time in times])
-    assert sizes[-1] / sizes[0] == pytest.approx(3.4)
-    assert fit_motion(times, positions, sizes).rate == pytest.approx(0.04)
-
-
 def growing(*, cut_from, response, camera=None):
     """Sightings of a vehicle that comes closer at a rate of 0.01, of which the last are cut."""
     sightings = Sightings()
@@ -132,17 +130,13 @@ def growing(*, cut_from, response, camera=None):
 
 
 def test_sizes_that_an_occluder_begins_to_cut_do_not_count():
-    true, _ = growing(cut_from=40, response=1.0).fit(perspective=True)
-    motion, _ = growing(cut_from=32, response=0.89).fit(perspective=True)
-    believed, _ = growing(cut_from=32, response=0.91).fit(perspective=True)
-    assert true.rate == pytest.approx(0.01)
-    assert motion.rate == pytest.approx(0.01)
-    assert believed.rate < 0.008
+    def rate(cut_from, response):
+        return growing(cut_from=cut_from, response=response).fit(perspective=True)[0].rate
 
-
-def test_where_few_sizes_can_be_believed_all_clear_ones_count():
-    motion, _ = growing(cut_from=7, response=0.89).fit(perspective=True)
-    assert motion.rate < 0
+    assert rate(40, 1.0) == pytest.approx(0.01)
+    assert rate(32, 0.89) == pytest.approx(0.01)
+    assert rate(32, 0.91) < 0.008
+    assert rate(7, 0.89) < 0  # where few sizes can be believed, all clear ones count
 
 
 def test_before_a_camera_that_moves_late_sizes_count_for_more():
@@ -186,7 +180,9 @@ def test_sightings_move_with_the_camera_and_age():
 
 def test_old_sightings_are_discarded():
     sightings = Sightings()
-    for _ in range(100):
+    sightings.add(np.zeros(2), np.ones(2), 1.0)
+    for _ in range(60):
         sightings.pass_time(1.0, CameraMotion())
-        sightings.add(np.zeros(2), np.ones(2), 1.0)
-    assert 60 <= len(sightings) <= 62
+    assert sightings.fit(perspective=True)[1].age == 60
+    sightings.pass_time(1.0, CameraMotion())
+    assert sightings.fit(perspective=True) is None

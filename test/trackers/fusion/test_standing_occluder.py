@@ -65,11 +65,6 @@ def test_what_is_seen_is_not_changed():
     assert all(np.array_equal(*pair) for pair in zip(before, seen, strict=True))
 
 
-@pytest.mark.parametrize("speed", [2.0, 0.0])
-def test_a_vehicle_in_the_open_is_left_as_it_is(speed):
-    assert made_whole(AGES, *sides(speed)[0], CLEAR) is None
-
-
 def test_a_vehicle_that_turns_is_left_as_it_is():
     """Its box becomes narrower, but both sides of it drive on."""
     (positions, sizes), _ = sides(3.0)
@@ -77,8 +72,16 @@ def test_a_vehicle_that_turns_is_left_as_it_is():
     assert made_whole(AGES, positions, sizes, CLEAR) is None
 
 
-def test_a_vehicle_that_comes_closer_is_left_as_it_is():
-    assert made_whole(AGES, *sides(0.2, growth=0.03)[0], CLEAR) is None
+@pytest.mark.parametrize(
+    ("ages", "speed", "options"),
+    [
+        (AGES, 2.0, {}), (AGES, 0.0, {}), (AGES, 0.2, {"growth": 0.03}),
+        (0 * AGES, 2.0, {"wall": 150.0}),
+    ],
+    ids=["drives in the open", "stands", "comes closer", "all of one moment"],
+)  # fmt: skip
+def test_what_no_wall_is_seen_to_cut_is_left_as_it_is(ages, speed, options):
+    assert made_whole(ages, *sides(speed, **options)[0], CLEAR) is None
 
 
 @pytest.mark.parametrize(("kept", "response"), [(12, 1.0), (COUNT, 0.5)])
@@ -86,10 +89,6 @@ def test_few_or_unclear_sightings_are_left_as_they_are(kept, response):
     (positions, sizes), _ = sides(2.0, 150.0)
     found = made_whole(AGES[-kept:], positions[-kept:], sizes[-kept:], response * CLEAR[-kept:])
     assert found is None
-
-
-def test_sightings_of_one_moment_are_left_as_they_are():
-    assert made_whole(0 * AGES, *sides(2.0, 150.0)[0], CLEAR) is None
 
 
 def test_the_prediction_begins_with_the_whole_vehicle():

@@ -14,9 +14,9 @@
 
 """The share of a vehicle's surface that moves with it: an occluder lowers it, a turn does not."""
 
-import cv2
 import numpy as np
 import pytest
+from fusion_samples import paste_turned, texture
 
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import cut_patch
@@ -24,12 +24,6 @@ from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 
 SIZE = np.array([40.0, 40.0])
 START = np.array([80.0, 120.0])
-
-
-def texture(seed, width=320, height=240):
-    noise = np.random.default_rng(seed).integers(0, 256, (height, width, 3)).astype(np.uint8)
-    smooth = cv2.GaussianBlur(noise, (0, 0), 3.0).astype(float)
-    return np.clip(6 * (smooth - 128) + 128, 0, 255).astype(np.uint8)
 
 
 class Textures:
@@ -46,13 +40,7 @@ SEVERAL = [Textures(seed) for seed in range(8)]
 
 def picture_of(centre, degrees=0.0, textures=USUAL):
     """The vehicle on the road, turned by so much."""
-    matrix = cv2.getRotationMatrix2D((19.5, 19.5), degrees, 1.0)
-    matrix[:, 2] += np.array(centre) - 20
-    picture, size = textures.road.copy(), textures.road.shape[1::-1]
-    mask = cv2.warpAffine(np.full((40, 40), 255, np.uint8), matrix, size)
-    vehicle = cv2.warpAffine(textures.vehicle, matrix, size)
-    picture[mask > 127] = vehicle[mask > 127]
-    return picture
+    return paste_turned(textures.road, textures.vehicle, centre, degrees)
 
 
 class Drive:

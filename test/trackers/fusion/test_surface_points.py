@@ -17,6 +17,7 @@
 import cv2
 import numpy as np
 import pytest
+from fusion_samples import texture
 
 from vehicle_pf_tracker.image.canonical_patch import cut_patch
 from vehicle_pf_tracker.image.shared_motion import shared_turn
@@ -26,13 +27,9 @@ SIZE = np.array([40.0, 40.0])
 START = np.array([80.0, 120.0])
 
 
-def texture(seed, width=320, height=240):
-    noise = np.random.default_rng(seed).integers(0, 256, (height, width, 3)).astype(np.uint8)
-    smooth = cv2.GaussianBlur(noise, (0, 0), 1.5).astype(float)
-    return np.clip(4 * (smooth - 128) + 128, 0, 255).astype(np.uint8)
-
-
-ROAD, VEHICLE, OCCLUDER = texture(1), texture(2, 80, 80), texture(3, 80, 240)
+FINE = {"blur": 1.5, "gain": 4.0}
+ROAD, VEHICLE = texture(1, **FINE), texture(2, 80, 80, **FINE)
+OCCLUDER = texture(3, 80, 240, **FINE)
 
 
 def frame(centre, scale=(1.0, 1.0), background=ROAD):
@@ -76,6 +73,10 @@ class Drive:
     def scale(self):
         return np.exp(self.growth * self.time)
 
+    def drive(self, frames, occlude=None, *, whole=True):
+        """Show so many frames; returns the share that lives in the last of them."""
+        return [self.step(occlude, whole=whole) for _ in range(frames)][-1]
+
     def step(self, occlude=None, *, whole=True):
         """Show the next frame, with `occlude` painted over it; returns the share that lives."""
         self.time += 1
@@ -113,11 +114,8 @@ def test_all_points_of_a_translated_texture_survive():
 )
 def test_an_occluder_ends_the_points_that_it_covers(left, low, high):
     drive = Drive()
-    for _ in range(12):
-        drive.step()
-    for _ in range(3):
-        living = drive.step(cover(left, 80), whole=False)
-    assert low <= living <= high
+    drive.drive(12)
+    assert low <= drive.drive(3, cover(left, 80), whole=False) <= high
 
 
 @pytest.mark.parametrize("degrees", [20, -40])
@@ -155,8 +153,7 @@ def test_points_of_a_turning_vehicle_survive():
 def test_what_stays_behind_with_a_standing_part_ends():
     """Where the box leaves its points behind, they hold on to what is not the vehicle."""
     drive = Drive()
-    for _ in range(8):
-        drive.step()
+    drive.drive(8)
     drive.speed = np.array([8.0, 0.0])
     patch = patch_of(frame(drive.centre), drive.centre)
     for number in range(1, 3):
@@ -191,18 +188,15 @@ def test_a_flat_vehicle_tells_nothing():
 
 def test_no_set_is_placed_on_an_occluder():
     drive = Drive()
-    for _ in range(12):
-        drive.step()
+    drive.drive(12)
     before = {id(points) for points in drive.points.sets}
-    for _ in range(5):
-        drive.step(cover(-40, 80), whole=False)
+    drive.drive(5, cover(-40, 80), whole=False)
     assert {id(points) for points in drive.points.sets} <= before
 
 
 def test_restarting_discards_all_points():
     drive = Drive(growth=(0.01, 0.01))
-    for _ in range(12):
-        drive.step()
+    drive.drive(12)
     drive.points.restart()
     assert not drive.points.sets
     assert drive.points.stretch.tolist() == [0.0, 0.0]
@@ -216,20 +210,18 @@ def first_motion(before, after, size=SIZE):
     return points.first_motion(patch_of(after, START, size), size)
 
 
-@pytest.mark.parametrize("move", [(5.0, 0.0), (-6.0, 4.0), (11.0, -7.0)])
-def test_the_first_motion_is_that_of_what_moves(move):
-    found = first_motion(frame(START), frame(START + move))
+@pytest.mark.parametrize(
+    ("move", "larger"), [((5.0, 0.0), 1), ((-6.0, 4.0), 1), ((11.0, -7.0), 1), ((6.0, 0.0), 2)]
+)
+def test_the_first_motion_is_that_of_what_moves_in_the_box(move, larger):
+    """The last box is twice as large as the vehicle in it: the background stands."""
+    found = first_motion(frame(START), frame(START + move), larger * SIZE)
     assert found == pytest.approx(move, abs=0.5)
 
 
-def test_a_part_that_moves_before_a_standing_background_is_found():
-    """The box is twice as large as the vehicle in it."""
-    found = first_motion(frame(START), frame(START + np.array([6.0, 0.0])), 2 * SIZE)
-    assert found == pytest.approx([6.0, 0.0], abs=0.5)
-
-
-def test_a_standing_vehicle_has_no_first_motion():
-    assert first_motion(frame(START), frame(START)) is None
+@pytest.mark.parametrize("after", [ROAD, texture(77, **FINE)], ids=["stand", "disagree"])
+def test_points_that_stand_or_disagree_give_no_first_motion(after):
+    assert first_motion(ROAD, after) is None
 
 
 def test_noise_of_a_magnified_vehicle_is_no_first_motion():
@@ -239,10 +231,6 @@ def test_noise_of_a_magnified_vehicle_is_no_first_motion():
     assert first_motion(before, after, SIZE) is None
     assert first_motion(before, after, small) is None
     assert first_motion(before, frame(START + 3 * move), small) is not None
-
-
-def test_points_that_disagree_give_no_first_motion():
-    assert first_motion(ROAD, texture(77)) is None
 
 
 @pytest.mark.parametrize("every", [2, 3])

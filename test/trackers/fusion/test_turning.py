@@ -16,9 +16,9 @@
 
 import math
 
-import cv2
 import numpy as np
 import pytest
+from fusion_samples import grey_road
 
 from vehicle_pf_tracker.image.camera_motion import SmallGrey
 from vehicle_pf_tracker.image.canonical_patch import Patch
@@ -33,12 +33,7 @@ DOUBT = 40
 """Frame in which the doubt begins; the turn begins with it."""
 
 
-def road():
-    noise = np.random.default_rng(0).integers(60, 140, (160, 240)).astype(np.uint8)
-    return cv2.GaussianBlur(noise, (0, 0), 2.0)
-
-
-ROAD = road()
+ROAD = grey_road(240, 160)
 
 
 def view(response):
@@ -85,16 +80,8 @@ def test_a_vehicle_that_turns_is_followed_by_its_outline():
     assert given[first + 5].velocity[1] < -0.5
 
 
-def test_a_vehicle_that_drives_straight_on_does_not_turn():
-    assert not any(drive(turns=0.0)[0])
-
-
 def wall(picture, _time):
     picture[:, 140:] = ROAD[:, 140:]  # hides what is behind
-
-
-def test_a_wall_that_cuts_the_outline_is_no_turn():
-    assert not any(drive(turns=0.0, paint=wall)[0])
 
 
 def lorry(picture, time):
@@ -103,12 +90,16 @@ def lorry(picture, time):
     picture[70:112, max(right - 90, 0) : max(right, 0)] = 200
 
 
-def test_a_lorry_that_runs_into_the_outline_ends_the_branch():
-    assert not any(drive(turns=0.0, paint=lorry)[0])
-
-
-def test_a_camera_that_moves_ends_the_branch():
-    assert not any(drive(turns=0.08, still=lambda time: time != DOUBT + 1)[0])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"turns": 0.0}, {"turns": 0.0, "paint": wall}, {"turns": 0.0, "paint": lorry},
+        {"turns": 0.08, "still": lambda time: time != DOUBT + 1},
+    ],
+    ids=["straight on", "cut by a wall", "run into by a lorry", "moving camera"],
+)  # fmt: skip
+def test_what_does_not_leave_its_path_or_cannot_be_told_is_no_turn(options):
+    assert not any(drive(**options)[0])
 
 
 def test_the_turn_is_over_when_the_filter_knows_the_vehicle_again():

@@ -45,28 +45,20 @@ def test_the_surface_s_share_speaks_for_a_visible_vehicle_above_the_middle():
 
 def test_a_share_at_the_middle_leaves_the_chain_to_itself():
     """Rates of 0.02 and 0.05: 0.5 * 0.98 + 0.5 * 0.05."""
-    seen = Wholeness(0.5)
-    seen.judge(0.7, 1.0, ROUND)
-    assert seen.probability == pytest.approx(0.515)
-    seen = Wholeness(0.5)
-    seen.judge(0.7, 2.0, ROUND)
-    assert seen.probability == pytest.approx(0.5 * 0.98**2 + 0.5 * (1 - 0.95**2))
+    for elapsed in (1.0, 2.0):
+        seen = Wholeness(0.5)
+        seen.judge(0.7, elapsed, ROUND)
+        expected = 0.5 * 0.98**elapsed + 0.5 * (1 - 0.95**elapsed)
+        assert seen.probability == pytest.approx(expected)
 
 
-def test_the_share_changes_the_odds_by_its_ratio():
-    """Slope 8: 0.2 below the middle is a ratio of -1.6."""
+@pytest.mark.parametrize(("share", "ratio"), [(0.5, -1.6), (0.0, -3.0)])
+def test_the_share_changes_the_odds_by_its_ratio_up_to_twenty_to_one(share, ratio):
+    """Slope 8: 0.2 below the middle is a ratio of -1.6, and no share at all would be -5.6."""
     seen = Wholeness(0.5)
-    seen.judge(0.5, 1.0, ROUND)
+    seen.judge(share, 1.0, ROUND)
     odds = seen.probability / (1 - seen.probability)
-    assert odds == pytest.approx(0.515 / 0.485 * math.exp(-1.6))
-
-
-def test_one_frame_is_not_believed_beyond_twenty_to_one():
-    """No share at all would be -5.6."""
-    seen = Wholeness(0.5)
-    seen.judge(0.0, 1.0, ROUND)
-    odds = seen.probability / (1 - seen.probability)
-    assert odds == pytest.approx(0.515 / 0.485 * math.exp(-3))
+    assert odds == pytest.approx(0.515 / 0.485 * math.exp(ratio))
 
 
 def test_half_a_vehicle_is_partial_within_three_frames_and_whole_again_as_fast():

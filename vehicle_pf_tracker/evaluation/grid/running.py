@@ -153,7 +153,6 @@ def complete(
     folder: Path,
     runner: Runner,
     on_progress: OnProgress,
-    notify: Callable[[str], object] = lambda _: None,
 ) -> int:
     """Run the cells of `plan` that `folder` does not have, and return how many those were.
 
@@ -167,8 +166,6 @@ def complete(
         Runs the missing cells.
     on_progress : callable
         Called with the number of runs done, and of all.
-    notify : callable
-        Called with a sentence about stored cells that are damaged, and so run again.
 
     Raises
     ------
@@ -180,9 +177,6 @@ def complete(
             shutil.rmtree(left, ignore_errors=True)
     plan.write(folder)
     missing = [cell for cell in plan.cells() if not _is_stored(cell, cell.folder(folder))]
-    damaged = [cell.label for cell in missing if _is_damaged(cell.folder(folder))]
-    if damaged:
-        notify(_damage_notice(damaged))
     on_progress(0, len(missing))
     for done, (cell, outcome) in enumerate(runner(missing), start=1):
         _store(cell, outcome, cell.folder(folder), plan.command)
@@ -198,11 +192,6 @@ def _is_stored(cell: GridCell, folder: Path) -> bool:
     return run.get("key") == cell.key() and run.get("scored_by") == scoring_digest()
 
 
-def _is_damaged(folder: Path) -> bool:
-    """Return whether the folder holds a result that is not as it was written."""
-    return folder.is_dir() and not (folder / FAILED).is_file() and bool(damage(folder))
-
-
 def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]) -> None:
     """Store the outcome of a cell, replacing that of an earlier run."""
     with output_errors(folder), whole_folder(folder) as partial:
@@ -215,13 +204,3 @@ def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]
             results.write_metrics(outcome.metrics.to_json())
             seal(partial)
     flush(folder.parent)
-
-
-_MOST_NAMED = 5
-"""Largest number of damaged cells that a notice names: it stays one readable line."""
-
-
-def _damage_notice(labels: Sequence[str]) -> str:
-    more = len(labels) - _MOST_NAMED
-    named = ", ".join(labels[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
-    return f"stored results that were changed or damaged are run again: {named}"

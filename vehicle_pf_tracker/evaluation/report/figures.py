@@ -19,7 +19,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,17 +36,15 @@ from vehicle_pf_tracker.evaluation.report.aggregates import RANKED, Aggregates
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.offline.output_files import make_folder, replacing
 
-COLOURS: Mapping[str, str] = MappingProxyType(
-    {
-        "ink": "#010101",
-        "muted": "#404040",
-        "rule": "#b0b0b0",
-        "total": "#c9ced4",
-        "partial": "#e9ecef",
-        "accent": "#0a5c9e",
-        **{f"s{slot}": style.colour.lower() for slot, style in enumerate(STYLES)},
-    }
-)
+COLOURS: Mapping[str, str] = {
+    "ink": "#010101",
+    "muted": "#404040",
+    "rule": "#b0b0b0",
+    "total": "#c9ced4",
+    "partial": "#e9ecef",
+    "accent": "#0a5c9e",
+    **{f"s{slot}": style.colour.lower() for slot, style in enumerate(STYLES)},
+}
 """Colours of figures in files. On the page, which has schemes, each is ``var(--name)``: so no two
 are the same, and none is a black that SVG leaves out."""
 INK, MUTED, RULE, ACCENT = (COLOURS[name] for name in ("ink", "muted", "rule", "accent"))
@@ -79,13 +76,11 @@ _PAPER_WIDTHS = {_NARROW: 3.5, _WIDE: 7.16}
 """A column and the page in IEEE's two-column layout, inches."""
 _DPI = 300
 """Resolution of PNG files, which IEEE asks of colour pictures."""
-_METADATA: Mapping[str, Any] = MappingProxyType(
-    {
-        "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
-        "svg": {"Date": None, "Creator": None},
-        "png": {"Software": None},
-    }
-)
+_METADATA: Mapping[str, Any] = {
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+    "svg": {"Date": None, "Creator": None},
+    "png": {"Software": None},
+}
 """No date and no version, so that the same folder gives the same files."""
 
 

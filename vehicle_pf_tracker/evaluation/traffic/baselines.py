@@ -18,8 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -28,35 +27,22 @@ from vehicle_pf_tracker.evaluation.baselines import Worker, unknown_baseline
 from vehicle_pf_tracker.evaluation.traffic.identities import scorable
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
-
-class TrafficBaseline(NamedTuple):
-    """One of the trackers compared with, and its options."""
-
-    tracker: str
-    options: Mapping[str, float]
-
-
 _LOW = 0.25
 """Threshold of scores that suits CenterNet's on cdnet_highway, which span 0.15 to 0.74. It was
 chosen by hand for that detector; the defaults of 0.6 and 0.7 discard nearly all of its boxes."""
 
-TRAFFIC_BASELINES: Mapping[str, TrafficBaseline] = MappingProxyType(
-    {
-        "sort": TrafficBaseline("sort", {}),
-        "sort-low": TrafficBaseline("sort", {"track_activation_threshold": 0.15}),
-        "bytetrack": TrafficBaseline("bytetrack", {}),
-        "bytetrack-low": TrafficBaseline(
-            "bytetrack", {"track_activation_threshold": _LOW, "high_conf_det_threshold": _LOW}
-        ),
-        "ocsort": TrafficBaseline("ocsort", {}),
-        "ocsort-low": TrafficBaseline("ocsort", {"high_conf_det_threshold": _LOW}),
-        "cbiou": TrafficBaseline("cbiou", {}),
-        "cbiou-low": TrafficBaseline(
-            "cbiou", {"track_activation_threshold": _LOW, "high_conf_det_threshold": _LOW}
-        ),
-    }
-)
-"""Trackers of PyPI `trackers` as they come, and with thresholds lowered by hand."""
+_BOTH_LOW = {"track_activation_threshold": _LOW, "high_conf_det_threshold": _LOW}
+TRAFFIC_BASELINES: Mapping[str, Mapping[str, float]] = {
+    "sort": {},
+    "sort-low": {"track_activation_threshold": 0.15},
+    "bytetrack": {},
+    "bytetrack-low": _BOTH_LOW,
+    "ocsort": {},
+    "ocsort-low": {"high_conf_det_threshold": _LOW},
+    "cbiou": {},
+    "cbiou-low": _BOTH_LOW,
+}
+"""Options of trackers of PyPI `trackers`: as they come, and with thresholds lowered by hand."""
 
 
 class TrafficWorker(Worker):
@@ -101,10 +87,9 @@ class TrafficWorker(Worker):
         """
         if name not in TRAFFIC_BASELINES:
             raise unknown_baseline(name, TRAFFIC_BASELINES)
-        tracker, options = TRAFFIC_BASELINES[name]
         content = {
-            "tracker": tracker,
-            "options": {**options, "frame_rate": sequence.frame_rate},
+            "tracker": name.removesuffix("-low"),
+            "options": {**TRAFFIC_BASELINES[name], "frame_rate": sequence.frame_rate},
             "detections": detections.tolist(),
         }
         answer = self._task("track", sequence, content)

@@ -24,7 +24,6 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, astuple, dataclass, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -237,20 +236,18 @@ def _rows(frames: Frames) -> list[list[float]]:
 NAME = "traffic"
 """Name of the files without their suffix."""
 
-COLUMNS: Mapping[str, tuple[str, int]] = MappingProxyType(
-    {
-        "HOTA": ("HOTA", 1),
-        "DetA": ("DetA", 1),
-        "AssA": ("AssA", 1),
-        "IDF1": ("IDF1", 1),
-        "MOTA": ("MOTA", 1),
-        "IDSW": ("switches", 1),
-        "Frag": ("fragm.", 1),
-        "kept": ("identity kept", 0),
-        "count_error": ("count error", 1),
-        "step_ms": ("ms", 1),
-    }
-)
+COLUMNS: Mapping[str, tuple[str, int]] = {
+    "HOTA": ("HOTA", 1),
+    "DetA": ("DetA", 1),
+    "AssA": ("AssA", 1),
+    "IDF1": ("IDF1", 1),
+    "MOTA": ("MOTA", 1),
+    "IDSW": ("switches", 1),
+    "Frag": ("fragm.", 1),
+    "kept": ("identity kept", 0),
+    "count_error": ("count error", 1),
+    "step_ms": ("ms", 1),
+}
 """Measures, with their headings and decimals."""
 _LOWER_IS_BETTER = ("IDSW", "Frag", "step_ms")
 

@@ -102,11 +102,11 @@ class View:
         exact = (positions - self.patch.centre) * self.steps + len(self.response) / 2
         return np.minimum(np.maximum(np.rint(exact), 0), last).astype(np.intp)
 
-    def offsets(self) -> Array:
-        """Offsets (m, m, 2) of all places from the patch's centre, px."""
-        places = np.arange(len(self.response)) - len(self.response) / 2
-        columns, rows = np.meshgrid(places / self.steps[0], places / self.steps[1])
-        return np.stack([columns, rows], axis=-1)
+    def position(self, column: float, row: float) -> Array:
+        """Position in px of the frame of a place, which may lie between those of the response."""
+        middle = len(self.response) / 2
+        offset = np.array([column - middle, row - middle])
+        return np.asarray(self.patch.centre + offset / self.steps)
 
     def at(self, position: Array) -> float:
         """Response at the place nearest to a position in px."""
@@ -123,11 +123,8 @@ class View:
         dy, dx = np.unravel_index(int(near.argmax()), near.shape)
         y, x = row - reach + int(dy), column - reach + int(dx)
         top = self.response[y - 1 : y + 2, x - 1 : x + 2].astype(np.float64)
-        exact = np.array([x + _vertex(*top[1].tolist()), y + _vertex(*top[:, 1].tolist())])
-        return (
-            self.patch.centre + (exact - len(self.response) / 2) / self.steps,
-            float(self.response[y, x]),
-        )
+        exact = x + _vertex(*top[1].tolist()), y + _vertex(*top[:, 1].tolist())
+        return self.position(*exact), float(self.response[y, x])
 
 
 def _vertex(before: float, at: float, after: float) -> float:
@@ -162,20 +159,14 @@ class Appearance:
         zoom = min(_TARGET_SIDE / math.sqrt(size.prod()), _LARGEST_ZOOM)
         self._side = _CELLS * CELL
         self._target = np.minimum(size * zoom, _LARGEST_SHARE * self._side)
-        self._colour = colour
+        self._colour, self._kernels = colour, kernels
         self._filter = CorrelationFilter(_CELLS, self._target / CELL, penalty, kernels)
-        self.kernels = kernels
         self.usual_response = 0.0
         self._least_usual = 0.0
         self.dated: tuple[_Dated, ...] = ()
 
-    @property
-    def kernels(self) -> Kernels:
-        """Implementation that gradients are measured with, and spectra multiplied."""
-        return self._kernels
-
-    @kernels.setter
-    def kernels(self, kernels: Kernels) -> None:
+    def use_kernels(self, kernels: Kernels) -> None:
+        """Measure gradients and multiply spectra by another implementation from now on."""
         self._kernels = self._filter.kernels = kernels
 
     def patch(self, frame: Frame, position: Array, size: Array, *, wide: bool = False) -> Patch:
@@ -189,11 +180,9 @@ class Appearance:
 
     def view(self, patch: Patch, *, recall: bool = False) -> View:
         """Respond to a patch; with `recall`, by the best of the present and the dated filters."""
-        features = self._features(patch.image, patch.grey)
         wide = patch.side > self._side
         respond = self._filter.respond_wide if wide else self._filter.respond
-        transform = self._filter.wide_spectrum if wide else self._filter.spectrum
-        spectrum = transform(features)
+        spectrum = self._spectrum(patch)
         response = respond(spectrum)
         if not self.usual_response:
             least = max(self._least_usual, _LEAST_USUAL)
@@ -223,7 +212,7 @@ class Appearance:
 
     def learn_first(self, patch: Patch) -> None:
         """Train the filter on the first patch, in whose middle the target is."""
-        spectrum = self._filter.spectrum(self._features(patch.image, patch.grey))
+        spectrum = self._spectrum(patch)
         self._filter.train(spectrum, 0.0)
         self._least_usual = _USUAL_SHARE * float(self._filter.respond(spectrum).max())
 
@@ -234,16 +223,20 @@ class Appearance:
             x, y = (-offset / CELL).tolist()
             spectrum = shifted(view.spectrum, x, y)
         else:
-            again = self.patch(frame, position, size)
-            spectrum = self._filter.spectrum(self._features(again.image, again.grey))
+            spectrum = self._spectrum(self.patch(frame, position, size))
         self._filter.train(spectrum, stiff)
 
     def learn_usual(self, response: float, rate: float) -> None:
         """Let the usual response follow one of a visible frame, given relative to it."""
         self.usual_response *= 1 + rate * (response - 1)
 
+    def _spectrum(self, patch: Patch) -> Spectrum:
+        wide = patch.side > self._side
+        transform = self._filter.wide_spectrum if wide else self._filter.spectrum
+        return transform(self._features(patch.image, patch.grey))
+
     def _features(self, image: Frame, grey: Grey) -> CellFeatures:
-        features = self.kernels.gradient_cells(grey, _COLOURS if self._colour else 0)
+        features = self._kernels.gradient_cells(grey, _COLOURS if self._colour else 0)
         if not self._colour:
             return features
         cells = features.shape[2], features.shape[1]

@@ -142,7 +142,7 @@ class Departure:
         if self.reason == TOO_FAR and self.waited > KEPT_FRAMES:
             return None
         row, column = np.unravel_index(int(view.response.argmax()), view.response.shape)
-        found = view.patch.centre + view.offsets()[row, column]
+        found = view.position(float(column), float(row))
         before, extent = self._candidate, float(np.sqrt(self.size.prod()))
         self._candidate = None
         if float(view.response[row, column]) < self.response:

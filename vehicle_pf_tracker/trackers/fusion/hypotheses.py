@@ -117,10 +117,10 @@ class Hypotheses:
             velocities=camera.apply_to_velocities(self.velocities),
         )
 
-    def narrowed(self, centre: Array, share: float) -> Hypotheses:
-        """Draw positions towards `centre`, and velocities towards zero, to a share of theirs."""
+    def narrowed(self, centre: Array, velocity: Array, share: float) -> Hypotheses:
+        """Narrow positions around `centre`, and velocities around `velocity`, to a share."""
         positions = centre + share * (self.positions - centre)
-        return replace(self, positions=positions, velocities=share * self.velocities)
+        return replace(self, positions=positions, velocities=velocity + share * self.velocities)
 
     def driven(
         self, rng: np.random.Generator, elapsed: float, sigmas: tuple[float, float],
@@ -155,9 +155,9 @@ class Hypotheses:
         returns = 1 - (1 - return_rate) ** elapsed
         return replace(self, visible=self.visible * stays + (1 - self.visible) * returns)
 
-    def never_visible(self) -> Hypotheses:
-        """Make hypotheses of a vehicle that has left."""
-        return replace(self, visible=np.zeros(len(self.visible)))
+    def all_visible(self, probability: float) -> Hypotheses:
+        """Take the vehicle to be visible with one probability; 0 for one that has left."""
+        return replace(self, visible=np.full(len(self.visible), probability))
 
     def evidence(self, log_ratios: Array) -> float:
         """Likelihood ratio, of this set against a hidden vehicle, of what gave these log ratios."""

@@ -192,9 +192,6 @@ class Sightings:
         self._responses = np.empty(0)
         self._camera_stood = math.inf
 
-    def __len__(self) -> int:
-        return len(self._ages)
-
     def add(self, position: Array, size: Array, response: float) -> None:
         """Add a sighting of the present frame."""
         self._ages = np.append(self._ages, 0.0)
@@ -242,9 +239,9 @@ def fit_motion(
     times: Array,
     positions: Array,
     sizes: Array,
-    size_weights: Array | None = None,
+    size_weights: Array,
     *,
-    perspective: bool = True,
+    perspective: bool,
 ) -> PerspectiveMotion:
     """Fit to sightings, by weighted least squares over a grid of rates.
 
@@ -256,8 +253,8 @@ def fit_motion(
         px.
     sizes : (N,) array
         Geometric means of the sides, px.
-    size_weights : (N,) array or None
-        Weight of each size; None for all alike.
+    size_weights : (N,) array
+        Weight of each size.
     perspective : bool
         False holds the rate at 0: constant velocity and size in the image.
 
@@ -278,12 +275,11 @@ def fit_motion(
     spread = off**2 @ weights + 1e-9
     velocities = (off * weights) @ (positions - middle) / spread[:, np.newaxis]
     residuals = positions - middle - off[..., np.newaxis] * velocities[:, np.newaxis]
-    counts = np.ones(len(times)) if size_weights is None else size_weights
     logs = np.log(sizes * divisors)
-    log_sizes = logs @ counts / counts.sum()
+    log_sizes = logs @ size_weights / size_weights.sum()
     sigma = _POSITION_SIGMA * float(sizes.mean())
     costs = (residuals**2).sum(axis=2) @ weights / sigma**2 + (rates / _RATE_SIGMA) ** 2
-    costs += (logs - log_sizes[:, np.newaxis]) ** 2 @ counts / _SIZE_SIGMA**2
+    costs += (logs - log_sizes[:, np.newaxis]) ** 2 @ size_weights / _SIZE_SIGMA**2
     possible = rates * times[0] <= _LARGEST_CHANGE
     best = int(np.argmin(np.where(possible, costs, np.inf)))
     fitted = middle - centres[best] * velocities[best]

@@ -133,7 +133,7 @@ class Track(ParticleTracker[FusionParameters]):
         recoloured = parameters.filter.colour != self.parameters.filter.colour
         super().reconfigure(parameters)
         if self._target is not None:
-            self._appearance.kernels = self.kernels
+            self._appearance.use_kernels(self.kernels)
             self._particles = self._particles.resampled(self._rng, parameters.num_particles)
             if recoloured:
                 self._learn()
@@ -237,23 +237,24 @@ class Track(ParticleTracker[FusionParameters]):
         moved = (position - self._position) / max(elapsed, 1e-3)
         if again:
             visible = particles.probability_visible
-            self._particles = self._gathered(position, particles.mean_velocity, visible)
+            self._particles = self._gathered(frame, position, particles.mean_velocity, visible)
         else:
             gain = 1.0 if self._frames == 1 else motion.gain
             velocities = particles.velocities + gain * (moved - particles.velocities)
-            centred = particles.positions + (position - particles.mean)
+            centred = keep_inside(frame, particles.positions + (position - particles.mean))
             self._particles = replace(particles, positions=centred, velocities=velocities)
-        inside = keep_inside(frame, self._particles.positions)
-        self._particles = replace(self._particles, positions=inside)
         self._position = position
         self._velocity = self._particles.mean_velocity
 
-    def _gathered(self, position: Array, velocity: Array, visible: float) -> Hypotheses:
+    def _gathered(
+        self, frame: Frame, position: Array, velocity: Array, visible: float
+    ) -> Hypotheses:  # fmt: skip
         """Draw hypotheses around a position, all of one velocity."""
         count, motion = self.parameters.num_particles, self.parameters.motion
         spread = self._rng.normal(size=(count, 2)) * motion.position_sigma * self._extent
         velocities = np.repeat(velocity[np.newaxis], count, axis=0)
-        return Hypotheses.around(position + spread, velocities, np.zeros(count), visible)
+        inside = keep_inside(frame, position + spread)
+        return Hypotheses.around(inside, velocities, np.zeros(count), visible)
 
     def _follow_size(self, frame: Frame, *, again: bool) -> None:
         options = self.parameters.size
@@ -270,11 +271,9 @@ class Track(ParticleTracker[FusionParameters]):
     def _follow_outline(self, frame: Frame, turned: Turned) -> None:
         """Take position, size and velocity from the outline of a vehicle that turns."""
         self._calm = False
-        self._position = self._kept_inside(frame, turned.position)
+        self._position = keep_inside(frame, turned.position)
         self._size = self._bounded(frame, turned.size)
-        gathered = self._gathered(self._position, turned.velocity, 1 - DOUBT)
-        inside = keep_inside(frame, gathered.positions)
-        self._particles = replace(gathered, positions=inside)
+        self._particles = self._gathered(frame, self._position, turned.velocity, 1 - DOUBT)
         self._velocity = turned.velocity
         self._sightings.add(self._position, self._size, 1.0)
 
@@ -331,9 +330,6 @@ class Track(ParticleTracker[FusionParameters]):
 
     def _bounded(self, frame: Frame, size: Array) -> Array:
         return np.clip(size, _LEAST_SIDE, _LARGEST_SHARE * max(frame_size(frame)))
-
-    def _kept_inside(self, frame: Frame, position: Array) -> Array:
-        return np.asarray(keep_inside(frame, position))
 
     @property
     def _regime(self) -> str:

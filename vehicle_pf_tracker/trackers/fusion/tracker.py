@@ -124,17 +124,15 @@ class FusionTracker(Track):
         move = self._points.first_motion(patch, self._size)
         if move is None:
             return False
-        known = self._particles.narrowed(self._position, _MEASURED_SPREAD)
-        self._particles = replace(known, velocities=known.velocities + move)
+        self._particles = self._particles.narrowed(self._position, move, _MEASURED_SPREAD)
         return True
 
     def _drive(self, frame: Frame, elapsed: float) -> bool:
         """Drive all hypotheses on; tell whether their mean left the image."""
         motion, extent = self.parameters.motion, self._extent
         seen = self._visibility.is_seen
-        if seen:
-            sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
-        else:
+        sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
+        if not seen:
             sigmas = motion.hidden_position_sigma * extent, self._hidden_velocity_sigma * extent
             growth = float(self._particles.weights @ self._particles.growths)
             grown = np.minimum(self._size * np.exp(growth * elapsed), self._largest_hidden)
@@ -155,11 +153,11 @@ class FusionTracker(Track):
             return self._observe_return(frame, self._departure, elapsed)
         view = self._weigh(frame)
         if self._set_off:
-            position = self._kept_inside(frame, self._particles.positions.mean(axis=0))
+            position = keep_inside(frame, self._particles.positions.mean(axis=0))
             response = view.at(position)
         else:
             position, response = likeliest_peak(view, self._particles, self._extent)
-            position = self._kept_inside(frame, position)
+            position = keep_inside(frame, position)
         return Observation(view, position, response, again=not self._visibility.is_seen)
 
     def _weigh(self, frame: Frame) -> View:
@@ -168,11 +166,9 @@ class FusionTracker(Track):
         A hidden vehicle is looked for at other sizes too; the likeliest of them is taken over once
         it is visible.
         """
-        if self._visibility.is_seen:
-            look = self._look(frame, 1.0)
-        else:
-            looks = [self._look(frame, scale) for scale in HIDDEN_SCALES]
-            look = max(looks, key=lambda look: self._particles.evidence(look.log_ratios))
+        scales = (1.0,) if self._visibility.is_seen else HIDDEN_SCALES
+        looks = [self._look(frame, scale) for scale in scales]
+        look = max(looks, key=lambda look: self._particles.evidence(look.log_ratios))
         moved = replace(self._particles, positions=look.positions)
         self._particles = moved.observed(look.log_ratios)
         if self._particles.probability_visible > 0.5:
@@ -186,24 +182,21 @@ class FusionTracker(Track):
         size = scale * self._learnt_size
         patch = self._appearance.patch(frame, particles.mean, size, wide=wide)
         view = self._appearance.view(patch, recall=hidden and self.parameters.filter.memory > 0)
-        climb = CLIMB_ON_PATH if hidden else CLIMB_FREELY
-        climb = STAY if self._set_off else climb
+        climb = STAY if self._set_off else CLIMB_ON_PATH if hidden else CLIMB_FREELY
         evidence = response_evidence(view, particles.positions, climb, self.parameters.visibility)
         return _Look(view, *evidence, scale)
 
-    def _observe_return(
-        self, frame: Frame, departure: Departure, elapsed: float
-    ) -> Observation:  # fmt: skip
+    def _observe_return(self, frame: Frame, departure: Departure, elapsed: float) -> Observation:
         """Look for a vehicle that has left where it left; it is visible once that is proven."""
         learnt = departure.size * self._padding
         patch = self._appearance.patch(frame, departure.position, learnt, wide=True)
         view = self._appearance.view(patch)
         returned = departure.returned(view, elapsed)
         if returned is None:
-            self._particles = self._particles.never_visible()
+            self._particles = self._particles.all_visible(0.0)
             return Observation(view, departure.position, 0.0, again=True)
         position, velocity = returned
-        self._particles = self._gathered(position, velocity, 1 - DOUBT)
+        self._particles = self._gathered(frame, position, velocity, 1 - DOUBT)
         return Observation(view, position, view.at(position), again=True)
 
     # Judge
@@ -252,7 +245,7 @@ class FusionTracker(Track):
             return None if visible else self._departure
         if self._visibility is not Visibility.HIDDEN:
             return None
-        position, size = self._kept_inside(frame, self._particles.mean), self._size
+        position, size = keep_inside(frame, self._particles.mean), self._size
         if left and not visible:
             return Departure.by_border(frame, position, size, self._strangers)
         if is_too_far(size, np.array([self.target.box.width, self.target.box.height])):
@@ -272,8 +265,8 @@ class FusionTracker(Track):
             if not seen.again:
                 self._enter_occlusion()
             elif self._visibility is Visibility.GONE:
-                self._particles = self._particles.never_visible()
-            self._position = self._kept_inside(frame, self._particles.mean)
+                self._particles = self._particles.all_visible(0.0)
+            self._position = keep_inside(frame, self._particles.mean)
             self._velocity = self._particles.mean_velocity
 
     def _enter_occlusion(self) -> None:
@@ -281,8 +274,7 @@ class FusionTracker(Track):
         self._largest_hidden = LARGEST_GROWTH * self._size
         fitted = self._sightings.fit(perspective=self.parameters.motion.perspective)
         if fitted is None:
-            hidden = np.full(len(self._particles.visible), DOUBT)
-            self._particles = replace(self._particles, visible=hidden)
+            self._particles = self._particles.all_visible(DOUBT)
             return
         motion, last = fitted
         if self.parameters.motion.turns and not last.cut:

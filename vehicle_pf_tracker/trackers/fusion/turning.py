@@ -27,6 +27,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -57,10 +58,11 @@ _LEAST_CONTRAST, _NOISE_FACTOR = 12.0, 4.0
 so many times the median difference around."""
 _GROWN = 1.3
 """Size of the box, of itself, whose inside an outline has mostly to lie in."""
+_LEAST_PIECE = 4
+"""Area in px below which a connected piece is noise."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Outline:
+class Outline(NamedTuple):
     """Bounding box of what moves.
 
     Attributes
@@ -162,23 +164,20 @@ def _bounds(
 ) -> tuple[Array, Array] | None:
     """Bounds of the connected pieces that lie mostly in a box; None where they touch the rim."""
     count, labels, stats, _ = cv2.connectedComponentsWithStats(moving)
-    low, high = np.full(2, np.inf), np.full(2, -np.inf)
-    half = _GROWN * size / 2
-    rows, columns = moving.shape
-    x = np.clip(np.array([centre[0] - half[0], centre[0] + half[0]]), 0, columns).astype(int)
-    y = np.clip(np.array([centre[1] - half[1], centre[1] + half[1]]), 0, rows).astype(int)
-    inside = np.bincount(labels[y[0] : y[1], x[0] : x[1]].ravel(), minlength=count)
-    for label in range(1, count):
-        area = float(stats[label, cv2.CC_STAT_AREA])
-        if area < 4 or inside[label] < 0.5 * area:
-            continue
-        left, top, width, height = stats[label, :4].tolist()
-        low = np.minimum(low, [left, top])
-        high = np.maximum(high, [left + width, top + height])
-    if not np.isfinite(low).all():
+    shape, half = np.array(moving.shape[::-1]), _GROWN * size / 2
+    box = np.clip([centre - half, centre + half], 0, shape).astype(int)
+    inside = np.bincount(
+        labels[box[0, 1] : box[1, 1], box[0, 0] : box[1, 0]].ravel(), minlength=count
+    )
+    areas = stats[:, cv2.CC_STAT_AREA]
+    own = (areas >= _LEAST_PIECE) & (inside >= 0.5 * areas)
+    own[0] = False  # the background
+    if not own.any():
         return None
-    touches = low.min() <= 0 or high[0] >= columns or high[1] >= rows
-    return None if touches else (low, high)
+    low = stats[own, :2].min(axis=0)
+    high = (stats[own, :2] + stats[own, 2:4]).max(axis=0)
+    touches = (low <= 0).any() or (high >= shape).any()
+    return None if touches else (low.astype(float), high.astype(float))
 
 
 _ASIDE = 0.15
@@ -188,8 +187,8 @@ _ACROSS = 0.25
 of an outline may lie aside, but it does not move there."""
 _CONFIRMED = 2
 """Frames in a row that prove it: single outlines jump with the noise at their rim."""
-_LARGEST_CHANGE = 1.3
-"""Largest change of width or height in a frame; a merged outline changes by more."""
+_LARGEST_LOG_CHANGE = np.log(1.3)
+"""Largest change of a side's logarithm in a frame; a merged outline changes by more."""
 _LEAST_COVERED, _MOST_COVERED = 0.6, 2.0
 """Area of the outline in the last clear sighting, of the box, between which it is the vehicle's."""
 _FURTHEST = 40.0
@@ -199,8 +198,7 @@ _CALM = 8
 _VELOCITY_GAIN = 0.3
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Turned:
+class Turned(NamedTuple):
     """The vehicle in a turn.
 
     Attributes
@@ -280,15 +278,12 @@ class TurningBranch:
         position, size = _box(branch.outline, branch.margins)
         branch.aside = branch.aside + 1 if _leaves(branch, position, size) else 0
         branch.proven |= branch.aside >= _CONFIRMED
-        if not branch.proven:
-            if branch.age > _FURTHEST:
-                self._branch = None
-            return None
-        branch.calm = branch.calm + 1 if view.at(position) > CLEAR_RESPONSE else 0
-        if branch.calm > _CALM:
+        if branch.proven:
+            branch.calm = branch.calm + 1 if view.at(position) > CLEAR_RESPONSE else 0
+        if branch.calm > _CALM or (not branch.proven and branch.age > _FURTHEST):
             self._branch = None
             return None
-        return Turned(position, size, branch.velocity)
+        return Turned(position, size, branch.velocity) if branch.proven else None
 
     def end(self) -> None:
         """End the branch: the vehicle was found another way."""
@@ -302,8 +297,7 @@ class TurningBranch:
         branch.age += elapsed
         centre = before.centre + branch.velocity * elapsed
         after = self._foreground.outline(centre, before.size, ago)
-        change = None if after is None else np.abs(np.log(after.size / before.size)).max()
-        if after is None or change is None or change > np.log(_LARGEST_CHANGE):
+        if after is None or np.abs(np.log(after.size / before.size)).max() > _LARGEST_LOG_CHANGE:
             self._branch = None
             return
         if elapsed:

@@ -1,0 +1,54 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Textures, pictures and trackers that the tests of `fusion` share."""
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
+
+
+def fusion(**values):
+    """A tracker with these parameters, the others as shipped."""
+    return FusionTracker(from_mapping(FusionParameters, values))
+
+
+def texture(seed, width=320, height=240, blur=3.0, gain=6.0):
+    noise = np.random.default_rng(seed).integers(0, 256, (height, width, 3)).astype(np.uint8)
+    return contrasted(noise, blur, gain)
+
+
+def contrasted(noise, blur=3.0, gain=6.0):
+    """Make a texture of noise."""
+    smooth = cv2.GaussianBlur(noise, (0, 0), blur).astype(float)
+    return np.clip(gain * (smooth - 128) + 128, 0, 255).astype(np.uint8)
+
+
+def grey_road(width, height):
+    noise = np.random.default_rng(0).integers(60, 140, (height, width)).astype(np.uint8)
+    return cv2.GaussianBlur(noise, (0, 0), 2.0)
+
+
+def paste_turned(road, vehicle, centre, degrees):
+    """A copy of `road` with a vehicle around `centre`, turned by so much."""
+    picture, (height, width) = road.copy(), vehicle.shape[:2]
+    matrix = cv2.getRotationMatrix2D(((width - 1) / 2, (height - 1) / 2), degrees, 1.0)
+    matrix[:, 2] += np.array(centre) - (width / 2, height / 2)
+    size = road.shape[1::-1]
+    mask = cv2.warpAffine(np.full((height, width), 255, np.uint8), matrix, size)
+    picture[mask > 127] = cv2.warpAffine(vehicle, matrix, size)[mask > 127]
+    return picture
