@@ -31,11 +31,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.detections import (
-    Sample,
-    areas,
-    inside_image,
-)
+from vehicle_pf_tracker.trackers.traffic.detections import Sample, areas, inside_image
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
