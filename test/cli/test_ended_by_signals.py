@@ -51,10 +51,10 @@ def has_begun(folder):
     return any(recordings) or any(images) or any(folder.glob(".*.mp4"))
 
 
-def signalled(folder, number, has_begun, *words, status=None):
+def signalled(folder, number, has_begun, *words, code=CODE, status=None):
     """Run a command in `folder`, send it a signal when it has begun; return what it printed."""
     process = subprocess.Popen(
-        [sys.executable, "-c", CODE, *words], stderr=subprocess.PIPE, text=True, cwd=folder,
+        [sys.executable, "-c", code, *words], stderr=subprocess.PIPE, text=True, cwd=folder,
         env=unmeasured_environment(),
     )  # fmt: skip
     try:
@@ -93,6 +93,35 @@ def test_a_video_that_is_not_done_leaves_nothing(tmp_path):
 
 def test_an_import_that_is_not_done_leaves_nothing(tmp_path, clip):
     assert end_in_the_middle(tmp_path, signal.SIGTERM, "import", str(clip), "rec") == []
+
+
+STUCK = """
+import ctypes, itertools
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+class Stuck:
+    disturbed = is_blind = False
+    calls = itertools.count(1)
+    def detect(self, frame, tracks=()):
+        call = next(self.calls)
+        if call == 41:
+            open("stuck", "w").close()
+            ctypes.CDLL(None).sleep(10_000)
+        return Detections.make([[100, 3.0 * call, 40, 30]], [0.9])
+from vehicle_pf_tracker.cli import traffic
+traffic.detector_maker = lambda parameters: Stuck
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_network_that_never_returns_is_left_with_what_was_tracked(tmp_path, clip, number):
+    (tmp_path / "net.onnx").touch()
+    words = ["traffic", str(clip), "--model", "net.onnx", "-o", "out"]
+    has_begun = (tmp_path / "stuck").exists
+    told = signalled(tmp_path, number, has_begun, *words, code=STUCK + CODE, status=128 + number)
+    assert "a signal ended the run after 40 of " in told
+    with (tmp_path / "out" / "tracks.csv").open() as file:
+        assert max(int(row["frame"]) for row in csv.DictReader(file)) == 40
+    assert (tmp_path / "out" / "run.json").is_file()
 
 
 def test_who_ignores_a_signal_goes_on_doing_so():

@@ -28,7 +28,7 @@ from small_recordings import COUNT, TARGET, box_of, frame_folder, frame_of, reco
 
 import vehicle_pf_tracker.cli.run as run_verb
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline import pictures
 from vehicle_pf_tracker.offline.estimates import read_estimates
@@ -260,6 +260,18 @@ def test_a_signal_ends_the_input_and_a_second_one_acts_as_ever():
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_a_computation_that_does_not_end_after_a_signal_is_left():
+    stop, never = Stop(), threading.Event()
+    assert stop.leaving(lambda: 3) == 3
+    with pytest.raises(ZeroDivisionError):
+        stop.leaving(lambda: 1 / 0)
+    stop.number = signal.SIGINT
+    with pytest.raises(StillAtWork):
+        stop.leaving(never.wait)
+    never.set()
+    assert stop.has_left
 
 
 def test_other_threads_leave_the_signals_alone():

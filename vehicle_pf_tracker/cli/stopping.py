@@ -20,6 +20,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, wait
 from contextlib import contextmanager
 from types import FrameType
 from typing import TypeVar
@@ -63,6 +64,15 @@ def raising_terminated() -> Iterator[None]:
         yield
 
 
+_PATIENCE, _POLL = 1.0, 0.1
+"""Seconds that a computation has to end by itself after a signal, and between two looks at it: a
+person who presses Ctrl-C has the terminal back within two seconds."""
+
+
+class StillAtWork(BaseException):
+    """A computation was left that did not end after a signal."""
+
+
 class Stop:
     """Ends an iteration when a signal has come.
 
@@ -70,10 +80,13 @@ class Stop:
     ----------
     number : int or None
         Number of that signal.
+    has_left : bool
+        True once a computation was left at work: it would abort or hold up Python's own exit.
     """
 
     def __init__(self) -> None:
         self.number: int | None = None
+        self.has_left = False
 
     @property
     def came(self) -> bool:
@@ -92,11 +105,36 @@ class Stop:
                 return
             yield item
 
+    def leaving(self, compute: Callable[[], T]) -> T:
+        """Compute in a thread of its own, so that code that never returns can be left.
+
+        Raises
+        ------
+        StillAtWork
+            If a signal came a second ago.
+        """
+        future: Future[T] = Future()
+
+        def work() -> None:
+            try:
+                future.set_result(compute())
+            except BaseException as error:
+                future.set_exception(error)
+
+        threading.Thread(target=work, daemon=True).start()
+        patience = _PATIENCE
+        while not wait([future], _POLL).done:
+            patience -= _POLL if self.came else 0.0
+            if patience < 0:
+                self.has_left = True
+                raise StillAtWork
+        return future.result()
+
 
 @contextmanager
-def stopping() -> Iterator[Stop]:
+def stopping(stop: Stop | None = None) -> Iterator[Stop]:
     """Take SIGINT, SIGTERM and SIGHUP as a stop, once; a second one acts as usual."""
-    stop = Stop()
+    stop = stop or Stop()
     signals = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
     numbers = [
         number for number in signals

@@ -16,8 +16,12 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,9 +29,10 @@ from typing import TYPE_CHECKING
 from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notices
 from vehicle_pf_tracker.cli.requests import option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
-from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.detectors import DetectionFile, detector_maker
 from vehicle_pf_tracker.offline.driver import is_road_given
@@ -41,8 +46,10 @@ from vehicle_pf_tracker.recordings.source import Source, open_source
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, NONE, TOPIC
-from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
+from vehicle_pf_tracker.trackers.traffic.session import Detector, TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 if TYPE_CHECKING:
@@ -84,13 +91,14 @@ def run(request: Request) -> int:
     check_library()
     configuration = _configuration(request)
     detections = DetectionFile(request.detections) if request.detections else None
-    tracking = _tracking(request, configuration, detections)
+    stop = Stop()
+    tracking = _tracking(request, configuration, detections, stop)
     source = open_source(request.source, topic=request.topic, fps=request.fps)
     folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
-        status, notices = _follow(request, tracking, source, make_folder(folder))
+        status, notices = _follow(request, tracking, source, make_folder(folder), stop)
         notices = [
             *source.notices,
             *(detections.notices if detections is not None else []),
@@ -103,11 +111,14 @@ def run(request: Request) -> int:
     print(f"results are in {folder}; {PICTURE} shows all paths")
     if request.video:
         print(f"the video is {request.video}")
+    if stop.has_left:
+        sys.stdout.flush()
+        os._exit(status)
     return status
 
 
 def _tracking(
-    request: Request, configuration: Configuration, detections: DetectionFile | None
+    request: Request, configuration: Configuration, detections: DetectionFile | None, stop: Stop
 ) -> TrafficRun:
     """Make the run, and check all that the options name before the first frame is read."""
     parameters, settings = configuration.tracker, configuration.session
@@ -120,9 +131,13 @@ def _tracking(
     plane = road.plane(road.lens, road.pose) if is_road_given(road) else None
     lines = request.lines or parameters.lines
     plan = read_counting_plan(Path(lines)) if lines else None
+    make_detector = detector_maker(parameters.detector)
+    if make_detector is not None and parameters.detector.kind == MODEL:
+        detector = _LeavableDetector(make_detector(), stop)
+        make_detector = lambda: detector  # noqa: E731 - it keeps nothing between images
     session = TrafficSession(
         TrafficTracker(parameters, plane),
-        detector_maker(parameters.detector),
+        make_detector,
         frame_rate=parameters.frame_rate,
         reset_on_time_jump=settings.reset_on_time_jump,
         every=parameters.detector.every,
@@ -133,20 +148,34 @@ def _tracking(
     )
 
 
+class _LeavableDetector:
+    """Detector whose network is left, with what was tracked, if it does not end after a signal."""
+
+    disturbed = is_blind = False
+
+    def __init__(self, detector: Detector, stop: Stop) -> None:
+        self._detector, self._stop = detector, stop
+
+    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
+        """Find vehicles."""
+        return self._stop.leaving(partial(self._detector.detect, frame, tracks))
+
+
 def _follow(
-    request: Request, tracking: TrafficRun, source: Source, folder: Path
+    request: Request, tracking: TrafficRun, source: Source, folder: Path, stop: Stop
 ) -> tuple[int, list[str]]:
     """Follow all vehicles to the end or to a signal; return the exit status, and notices."""
     pictures = Pictures(request.video)
     counts = tracking.counter is not None
     with (
-        stopping() as stop,
+        stopping(stop),
         counting("tracked") as progress,
         track_files(folder, counting=counts, visible_only=request.visible_only) as files,
     ):
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
         targets = by_name(request.given_targets(), first[0])
-        tracking.follow(frames, files, pictures, targets)
+        with suppress(StillAtWork):
+            tracking.follow(frames, files, pictures, targets)
     ended = cut_short(stop, source, tracking.summary.frames)
     if not tracking.paths.write(folder / PICTURE, tracking.counter):
         (folder / PICTURE).unlink(missing_ok=True)
