@@ -119,8 +119,10 @@ def overlaps(edges: Array, others: Array) -> Array:
 
 def inside_image(edges: Array, size: tuple[int, int]) -> float:
     """Measure the share of a box (4,) that lies in an image of this width and height."""
-    image = np.array([[0.0, 0.0, *size]])
-    return float(intersections(edges, image)[0] / areas(edges))
+    left, top, right, bottom = edges.tolist()
+    width, height = min(right, size[0]) - max(left, 0.0), min(bottom, size[1]) - max(top, 0.0)
+    area = max(max(right - left, 0.0) * max(bottom - top, 0.0), 1.0)
+    return float(max(width, 0.0) * max(height, 0.0) / area)
 
 
 def clipped(edges: Array, size: tuple[int, int]) -> Array:
