@@ -14,10 +14,14 @@
 
 """Detection of what moves before a standing camera."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from traffic_samples import vehicle
 
 from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 
 GROUND = np.random.default_rng(0).integers(90, 120, (120, 160, 3))
@@ -40,6 +44,19 @@ def test_a_moving_vehicle_is_one_box_where_it_is():
     found = [detector.detect(frame) for frame in frames(45)]
     assert all(len(one) == 0 for one in found[:30])
     assert found[-1].boxes == pytest.approx(np.array([[42, 60, 36, 24]]), abs=3)
+
+
+@pytest.mark.parametrize("likely", [False, True])
+def test_a_blob_is_divided_by_tentative_vehicles_that_are_likely(likely):
+    detector = MotionDetector()
+    *before, last = frames(30)
+    for frame in before:
+        detector.detect(frame)
+    # One behind the other, and one blob.
+    last[36:84, 60:90] = np.vstack([PAINT, PAINT])[:, :30]
+    both = [vehicle(0, 75, bottom, TrackMode.TENTATIVE, size=(30.0, 24.0)) for bottom in (60, 84)]
+    found = detector.detect(last, [replace(one, is_likely=likely) for one in both])
+    assert len(found) == (2 if likely else 1)
 
 
 def test_masks_repeat_whatever_else_the_process_draws():
