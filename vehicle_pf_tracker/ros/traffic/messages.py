@@ -143,8 +143,11 @@ def markers_message(header: Header, estimates: Iterable[TrackEstimate]) -> Marke
     """Make box and number of each vehicle that is not lost, px as m; those before are deleted."""
     markers = [Marker(header=header, action=Marker.DELETEALL)]
     for one in estimates:
-        if one.mode is not TrackMode.LOST:
-            markers += [_outline(header, one), _number(header, one)]
+        if one.mode is TrackMode.LOST:
+            continue
+        markers.append(_outline(header, one))
+        if one.identity:  # a tentative one has no number
+            markers.append(_number(header, one))
     return MarkerArray(markers=markers)
 
 
