@@ -44,7 +44,7 @@ DEFAULT = Path(".venv-baselines/bin/python")
 """Interpreter that `make baselines` builds in a clone, below the working directory."""
 
 LOCK = Path(__file__).with_name("baselines.txt")
-"""What is installed for them, with hashes."""
+"""Lock file of their environment: exact versions, with hashes."""
 
 WORKER = Path(__file__).with_name("baseline_worker.py")
 Self = TypeVar("Self", bound="Worker")

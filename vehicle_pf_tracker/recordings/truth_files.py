@@ -40,7 +40,7 @@ _IDS_SHOWN = 20
 """Identities that an error lists: more are hard to read on a terminal."""
 _OWN = "groundtruth.csv"
 _ANYTHING = ("*groundtruth*", "*annotation*")
-"""What may be truth, and is read if it is."""
+"""Files that may hold truth; those that do are read."""
 _PLACES = (
     _OWN,
     "groundtruth_rect.txt",  # OTB

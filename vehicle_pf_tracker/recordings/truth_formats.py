@@ -42,7 +42,7 @@ _GAP = r"\s*[,;\s]\s*"
 
 
 class UnreadTruthError(InputError):
-    """What seems to be truth, but is in no format that is read, or not of one target."""
+    """Raised for a file that looks like truth, but has no known format or several targets."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ class Images:
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """What a file states of a target in an image.
+    """Truth of a target in one image, as its file states it.
 
     Attributes
     ----------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a node keeps of its last seconds: a recording for a bug report, a target for a respawn."""
+"""The last seconds of a node: a recording for a bug report, and a target for a respawn."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ _STRANGERS_RATE = 0.005
 
 
 class _Candidate(NamedTuple):
-    """What may be the vehicle: where it was first seen, where it is, and for how many frames."""
+    """A possible return: where it was first seen, where it is now, and for how many frames."""
 
     first: Array
     latest: Array

@@ -53,7 +53,7 @@ _DOUBTED = 2.0
 """Log odds against a track, by the scores of its detections, for which it has to drive twice as
 far: false alarms side by side look like a short drive."""
 _SURELY_DRIVES = 50.0
-"""Evidence for a drive from which on scores do not count: false alarms side by side reach 35."""
+"""Evidence for a drive above which scores are ignored: false alarms side by side reach 35."""
 _SMALLEST = 0.25
 """Size of the smallest vehicle on the road, of the usual one, by which large ones count more: a
 motorcycle among lorries. Smaller ones that drive are parts of vehicles."""
