@@ -138,6 +138,14 @@ def test_the_selection_of_a_killed_node_comes_back(bench, folder):
         bench.remove(rig.node)
 
 
+def test_a_target_that_cannot_be_saved_costs_no_answer(bench, tmp_path, monkeypatch, capfd):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("ROS_HOME", str(tmp_path / "file"))
+    rig = Rig(bench, on_target(keep_target=True))
+    assert rig.play(road(3)) == ["TRACKING"] * 3
+    assert "the target cannot be saved: Not a directory" in capfd.readouterr().err
+
+
 def test_a_step_that_takes_too_long_is_reported_with_where_it_was(bench, monkeypatch, capfd):
     rig = Rig(bench, on_target())
     frames = road(3)

@@ -230,14 +230,21 @@ class NodeStream(ABC):
         else:
             self.frame_id = header.frame_id
             self.answer(header, frame)
-            if self._kept is not None:
-                self._kept.save(self.followed)
+            self._keep_target()
         finally:
             faulthandler.cancel_dump_traceback_later()
         seconds = time.monotonic() - began
         if seconds > patience:
             words = f"an image took {seconds:.1f} s, more than ten periods"
             self.warnings.say("slow", f"{words}; stderr shows where it was by then")
+
+    def _keep_target(self) -> None:
+        """Save the target for a new start; a disk that is full costs no image its answer."""
+        try:
+            if self._kept is not None:
+                self._kept.save(self.followed)
+        except OSError as error:
+            self.warnings.say("kept", f"the target cannot be saved: {error.strerror or error}")
 
     def publish_mode(
         self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None = None
