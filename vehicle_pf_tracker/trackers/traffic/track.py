@@ -34,7 +34,7 @@ from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.detections import Sample, areas, inside_image
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
 
 BINS = 64
 """Four levels of each channel: enough to tell colours, few enough for a box of 100 px."""
@@ -81,6 +81,10 @@ class ColourBins:
             part = part[::2, ::2]
         counts = np.bincount(part.ravel(), minlength=BINS)
         return np.asarray(counts / max(int(counts.sum()), 1))
+
+
+NOTHING = np.empty((0, 4))
+"""No boxes."""
 
 
 def similarity(one: Array, other: Array) -> float:
@@ -181,7 +185,7 @@ class Track:
     undetected: float = 0.0
     visible: float = 1.0
     inside: float = 1.0
-    covers: Array = field(default_factory=lambda: np.empty((0, 4)))
+    covers: Array = field(default_factory=lambda: NOTHING)
     hidden_by: int | None = None
     before: Array = field(default_factory=lambda: np.zeros(4))
     samples: list[Sample] = field(default_factory=list)
@@ -200,19 +204,63 @@ class Track:
         """Class that most of its detections say, by their scores."""
         return max(self.votes, key=self.votes.__getitem__, default="")
 
-    def predict(self, elapsed: float) -> None:
-        """Go on by `elapsed` nominal periods."""
+    def go_on(self, elapsed: float) -> None:
+        """Go on by `elapsed` nominal periods, before the state is predicted."""
         self.before = self.state.edges
-        self.state.predict(elapsed)
         self.age += elapsed
         self.unseen += elapsed
         self.undetected += elapsed
         self.score = math.nan
 
-    def vote(self, label: str, weight: float) -> None:
-        """Take the class that a detection says."""
+    def show(self, visible: float, inside: float, covers: Array, hidden_by: int | None) -> None:
+        """Take what of it is in sight, and what hides the rest."""
+        self.visible, self.inside = visible, inside
+        self.covers, self.hidden_by = covers, hidden_by
+
+    def confirm(self, identity: int, *, given: bool = False) -> None:
+        """Become the vehicle of this number, by hand if it is `given`: then without a doubt."""
+        self.identity, self.given = identity, given
+        if given:
+            self.log_odds = MOST_EVIDENCE
+
+    def resume(self, track: Track) -> None:
+        """Go on where the new track is that this hidden vehicle turned out to be."""
+        self.state, self.before = track.state, track.before
+        self.score = track.score
+        for label, votes in track.votes.items():
+            self.votes[label] = self.votes.get(label, 0.0) + votes
+        self.has_driven = self.has_driven or track.has_driven
+        self.unseen = self.undetected = 0.0
+        self.log_odds = max(self.log_odds, track.log_odds)
+        self.show(track.visible, track.inside, track.covers, None)
+        self.sides, self.partial = track.sides, track.partial
+
+    def name(self, label: str, score: float) -> None:
+        """Take score and class of its detection in this frame."""
+        self.score = score
         if label:
-            self.votes[label] = self.votes.get(label, 0.0) + max(weight, _LEAST_VOTE)
+            self.votes[label] = self.votes.get(label, 0.0) + max(score, _LEAST_VOTE)
+
+    def measured(self, sides: Array, *, is_whole: bool) -> None:
+        """Take the largest latest sides (2,) in px, and whether a detection showed all of it."""
+        self.sides = sides
+        self.partial = 0 if is_whole else self.partial + 1
+
+    def crowd(self, crowded: bool) -> int:
+        """Count the detections in a row that had another one beside them in the box."""
+        self.crowded = self.crowded + 1 if crowded else 0
+        return self.crowded
+
+    def shrink_to(self, edges: Array) -> None:
+        """Be no more than what is in a box (4,)."""
+        self.crowded = 0
+        self.sides = edges[2:] - edges[:2]
+        self.state.resize(edges)
+
+    def hold(self, edges: Array, deviations: Array) -> None:
+        """Take edges (4,) by the pixels, px, and their standard deviations."""
+        self.unseen = 0.0
+        self.state.measure(edges, deviations)
 
     def learn_colours(self, colours: Array) -> None:
         """Let the colours follow those of a box in plain sight."""
@@ -264,6 +312,24 @@ class Track:
         straightness = min((along_x**2 + along_y**2) / duration / scatter, 1.0)
         # The share is distributed as Beta(1, count - 2): two slopes, of twice as many coordinates.
         return straightness, -(count - 2) * math.log(max(1 - straightness, _STRAIGHTEST))
+
+    def prove(self, doubted: float, sample: Sample) -> None:
+        """Take the evidence by the score of a detection, of which it is not known what it shows."""
+        self.strength += doubted
+        if not (self.has_driven or self.given):
+            self.samples.append(sample)
+
+    def judge(self, *, is_likely: bool, has_driven: bool) -> None:
+        """Take what its detections so far say about its way and size."""
+        self.is_likely, self.has_driven = is_likely, has_driven
+
+    def miss(self, log_odds: float) -> None:
+        """Take evidence against it: it was not detected."""
+        self.log_odds -= log_odds
+
+    def lose(self, lost: bool) -> None:
+        """Be predicted no longer, or again."""
+        self.lost = lost
 
     @property
     def way(self) -> float:
@@ -346,17 +412,30 @@ def cover(tracks: Sequence[Track], size: tuple[int, int], occlusions: bool) -> N
     occlusions : bool
         False: no vehicle hides another.
     """
-    nearer: list[Track] = []
-    edges = np.empty((0, 4))
+    edges = edges_of(tracks)
+    hiding = [
+        rank
+        for rank, one in enumerate(tracks)
+        if occlusions and one.confirmed and one.unseen <= _OCCLUDER_SEEN and not one.lost
+    ]
+    common = intersections(edges[:, np.newaxis], edges[hiding]) / areas(edges)[:, np.newaxis]
+    common[np.arange(len(tracks))[:, np.newaxis] <= np.array(hiding, dtype=np.intp)] = 0.0
+    most = common.max(axis=1, initial=0.0) > _NAMED_SHARE
+    visible = np.maximum(1 - common.sum(axis=1), 0.0).tolist()
+    for track, row, inside, seen, named in zip(
+        tracks, common, inside_image(edges, size).tolist(), visible, most.tolist(), strict=True
+    ):
+        covers = edges[hiding][row > 0] if seen < 1 else NOTHING
+        hider = tracks[hiding[int(row.argmax())]].identity if named else None
+        track.show(seen, inside, covers, hider)
+
+
+def predict(tracks: Sequence[Track], horizon: float, elapsed: float, drive: Drive) -> list[Track]:
+    """Predict vehicles below a horizon (row in px), and return those whose states are sound."""
+    states = VehicleState.stacked([track.state for track in tracks])
     for track in tracks:
-        own = track.state.edges
-        common = intersections(own, edges) / areas(own)
-        track.covers = edges[common > 0]
-        track.visible = max(1 - float(common.sum()), 0.0)
-        track.inside = inside_image(own, size)
-        track.hidden_by = None
-        if len(common) and common.max() > _NAMED_SHARE:
-            track.hidden_by = nearer[int(common.argmax())].identity
-        if occlusions and track.confirmed and track.unseen <= _OCCLUDER_SEEN and not track.lost:
-            nearer.append(track)
-            edges = np.vstack([edges, own])
+        track.go_on(elapsed)
+    states.move_horizon(horizon)
+    states.predict(elapsed, drive)
+    states.give_back([track.state for track in tracks])
+    return [track for track, sound in zip(tracks, states.is_sound.tolist(), strict=True) if sound]
