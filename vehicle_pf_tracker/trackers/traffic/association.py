@@ -31,7 +31,9 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import (
+    NOTHING,
     SHIPPED,
     DetectionEvidence,
     Detections,
@@ -39,7 +41,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     clipped,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import ColourBins, Track, similarity
+from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
 
 GATE = 30.0
@@ -120,9 +122,6 @@ def assign(costs: Array) -> list[tuple[int, int]]:
     return list(zip(rows[good].tolist(), columns[good].tolist(), strict=True))
 
 
-_NOTHING = np.empty((0, 4))
-
-
 class FrameDetections:
     """Detections of one frame, with what is known about each, while they are given to tracks.
 
@@ -182,25 +181,24 @@ class FrameDetections:
     def histogram(self, index: int) -> Array:
         """Colours of a detection."""
         if index not in self._histograms:
-            self._histograms[index] = self._colours.histogram(self.edges[index], _NOTHING)
+            self._histograms[index] = self._colours.histogram(self.edges[index], NOTHING)
         return self._histograms[index]
 
 
 def pair_costs(
     tracks: Sequence[Track],
     found: FrameDetections,
-    indices: Sequence[int],
     settings: DetectionParameters,
     numbers: TrafficNumbers = SHIPPED,
 ) -> Array:
-    """Cost of each pair of a track and one of the detections at `indices`, by edges and colours."""
+    """Cost of each pair of a track and a detection, by edges and colours."""
     states = VehicleState.stacked([track.state for track in tracks])
     variances = states.edge_covariance.diagonal(axis1=1, axis2=2)
     spread = np.sqrt(variances + deviations(states.edges, settings.edge_noise) ** 2)
-    costs = edge_costs(clipped(states.edges, found.size), spread, found.edges[indices], numbers)
+    costs = edge_costs(clipped(states.edges, found.size), spread, found.edges, numbers)
     if settings.colour_cost:
         for row, column in np.argwhere(costs < GATE).tolist():
-            alike = similarity(tracks[row].colours, found.histogram(indices[column]))
+            alike = similarity(tracks[row].colours, found.histogram(column))
             costs[row, column] += settings.colour_cost * (1 - alike)
     return costs
 
@@ -245,12 +243,15 @@ def fits(
     covariances, spread = states.edge_covariance, deviations(detected, noise)
     reach = np.sqrt(covariances.diagonal(axis1=1, axis2=2))
     cut, also_cut = cut_edges(predicted, found.size), cut_edges(detected, found.size)
-    near = np.ones((len(tracks), len(detected)), dtype=np.bool_)
-    for edge in range(4):
-        apart = np.abs(detected[:, edge] - predicted[:, edge, np.newaxis])
-        close = apart < _FARTHEST * (reach[:, edge, np.newaxis] + spread[:, edge])
-        near &= close | (cut[:, edge, np.newaxis] & also_cut[:, edge])
-    rows, columns = np.nonzero(near)
+    apart = np.abs(detected[:, 0] - predicted[:, :1])
+    rows, columns = np.nonzero(
+        (apart < _FARTHEST * (reach[:, :1] + spread[:, 0])) | (cut[:, :1] & also_cut[:, 0])
+    )
+    for edge in range(1, 4):
+        far = np.abs(detected[columns, edge] - predicted[rows, edge])
+        near = far < _FARTHEST * (reach[rows, edge] + spread[columns, edge])
+        near |= cut[rows, edge] & also_cut[columns, edge]
+        rows, columns = rows[near], columns[near]
     sides = np.tile(detected[:, 2:] - detected[:, :2], 2)
     false = found.clutter[indices] - math.log(found.size[0] * found.size[1])
     false -= np.log(sides[:, :2] * _SIZES).sum(axis=1)
@@ -258,8 +259,10 @@ def fits(
     both_cut = cut[rows] & also_cut[columns]
     covariance = covariances[rows]
     covariance[:, range(4), range(4)] += spread[columns] ** 2 + np.where(both_cut, unknown, 0.0)
-    odds = np.full(near.shape, -np.inf)
-    odds[near] = _log_density(detected[columns] - predicted[rows], covariance) - false[columns]
+    odds = np.full((len(tracks), len(detected)), -np.inf)
+    odds[rows, columns] = (
+        _log_density(detected[columns] - predicted[rows], covariance) - false[columns]
+    )
     return odds
 
 

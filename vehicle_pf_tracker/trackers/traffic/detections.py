@@ -40,6 +40,8 @@ MOST_DETECTIONS = 300
 """Detections of a frame that are looked at, the highest scores first. No camera shows as many
 vehicles; a detector that reports more is out of order, and association would take seconds."""
 
+NOTHING = np.empty((0, 4))
+"""No boxes."""
 _LARGEST_SHARE = 4
 """Largest side of a detection, in sides of the image; a larger one is no vehicle."""
 
@@ -117,7 +119,7 @@ def areas(edges: Array) -> Array:
 
 
 def overlaps(edges: Array, others: Array) -> Array:
-    """Measure the intersection over union of one box (4,) with others (N, 4)."""
+    """Measure the intersection over union of boxes (..., 4) with others (..., 4)."""
     common = intersections(edges, others)
     return np.asarray(common / (areas(edges) + areas(others) - common))
 

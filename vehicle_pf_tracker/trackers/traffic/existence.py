@@ -21,7 +21,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
 from vehicle_pf_tracker.trackers.traffic.detections import (
@@ -221,14 +220,14 @@ class Existence:
         detected = [one for one in tracks if one.confirmed and one.undetected == 0]
         if not detected and _in_sight(tracks) >= _BLIND_FROM:
             return
-        boxes = edges_of(detected)
+        doubles = _doubles([one for one in tracks if one.confirmed and one.undetected], detected)
         for track in tracks:
             in_sight = min(track.visible, track.inside) > _PLAIN_SIGHT
             if track.has_driven and in_sight and track.unseen <= _ONE_PERIOD:
                 self._note(track.undetected == 0)
             if track.undetected == 0 or (track.given and track.unseen <= _ONE_PERIOD):
                 continue
-            if track.confirmed and _is_double(track, boxes):
+            if track in doubles:
                 track.miss(_DOUBLE * elapsed)
             if in_sight:
                 track.miss(elapsed * self._missed(track))
@@ -295,12 +294,13 @@ def _in_sight(tracks: Sequence[Track]) -> int:
     )
 
 
-def _is_double(track: Track, detected: Array) -> bool:
-    """Test whether a track without a detection is the same vehicle as a detected one."""
-    if not len(detected):
-        return False
-    edges = track.state.edges
-    if overlaps(edges, detected).max() > _SAME:
-        return True
-    share = intersections(edges, detected).max() / areas(edges)
-    return track.matches < _YOUNG and float(share) > _PART
+def _doubles(tracks: Sequence[Track], detected: Sequence[Track]) -> set[Track]:
+    """Find tracks without a detection that are the same vehicle as a detected one."""
+    boxes, others = edges_of(tracks)[:, np.newaxis], edges_of(detected)
+    inside = (intersections(boxes, others) / areas(boxes)).max(axis=1, initial=0.0)
+    same = overlaps(boxes, others).max(axis=1, initial=0.0) > _SAME
+    return {
+        track
+        for track, is_same, share in zip(tracks, same, inside, strict=True)
+        if is_same or (track.matches < _YOUNG and share > _PART)
+    }

@@ -29,8 +29,9 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.flow import PointFlow
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, TrafficNumbers, areas
-from vehicle_pf_tracker.trackers.traffic.track import ColourBins, Track, similarity
+from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import V, X
 
 Grey: TypeAlias = npt.NDArray[np.uint8]

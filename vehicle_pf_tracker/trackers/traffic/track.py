@@ -12,11 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Vehicles that are followed: state, evidence of existence, colours, and occlusions among them.
-
-Colours are histograms of boxes, from an image that is quantised once for all vehicles. Of two
-vehicles, the one whose lower edge is nearer on the road hides the other.
-"""
+"""Vehicles that are followed: state, evidence of existence, colours."""
 
 from __future__ import annotations
 
@@ -25,72 +21,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import intersections
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.detections import Sample, areas, inside_image
+from vehicle_pf_tracker.trackers.traffic.colours import BINS
+from vehicle_pf_tracker.trackers.traffic.detections import NOTHING, Sample
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
-
-BINS = 64
-"""Four levels of each channel: enough to tell colours, few enough for a box of 100 px."""
-_INNER = 0.1
-"""Margin on each side, of the size, that is left out: background."""
-_WIDE = 48
-"""Width in px above which every other row and column is enough."""
-
-
-class ColourBins:
-    """Frame as numbers of joint colour bins."""
-
-    def __init__(self, frame: Frame) -> None:
-        level = frame >> 6
-        bins = (level[..., 0] << 4) | (level[..., 1] << 2) | level[..., 2]
-        self._bins: npt.NDArray[np.uint8] = np.asarray(bins, np.uint8)
-
-    def histogram(self, edges: Array, covers: Array) -> Array:
-        """Count the colours of a box's inner part.
-
-        Parameters
-        ----------
-        edges : (4,) array
-            Edges of the box, px.
-        covers : (K, 4) array
-            Edges of boxes whose pixels are left out.
-
-        Returns
-        -------
-        (BINS,) array
-            Shares of the colours; zero where nothing of the box is in sight.
-        """
-        left, top, right, bottom = edges.tolist()
-        dx, dy = _INNER * (right - left), _INNER * (bottom - top)
-        x0, x1 = max(int(left + dx), 0), max(int(right - dx) + 1, 0)
-        y0, y1 = max(int(top + dy), 0), max(int(bottom - dy) + 1, 0)
-        part = self._bins[y0:y1, x0:x1]
-        if len(covers):
-            seen = np.ones(part.shape, dtype=bool)
-            for cover in np.maximum(covers - (x0, y0, x0, y0), 0.0).astype(int).tolist():
-                seen[cover[1] : cover[3], cover[0] : cover[2]] = False
-            part = part[seen]
-        elif x1 - x0 > _WIDE:
-            part = part[::2, ::2]
-        counts = np.bincount(part.ravel(), minlength=BINS)
-        return np.asarray(counts / max(int(counts.sum()), 1))
-
-
-NOTHING = np.empty((0, 4))
-"""No boxes."""
-
-
-def similarity(one: Array, other: Array) -> float:
-    """Bhattacharyya coefficient of two histograms, 0 to 1."""
-    return float(np.sqrt(one * other).sum())
-
 
 MOST_EVIDENCE = 8.0
 """Bound of the log odds that a vehicle exists: however long it was seen, some ten missed
@@ -352,14 +289,14 @@ class Track:
 
     def estimate(self) -> TrackEstimate:
         """Estimate of this frame."""
-        mode = self.mode
+        mode, state = self.mode, self.state
         confidence = 1 / (1 + math.exp(-self.log_odds))
         hidden = mode in (TrackMode.OCCLUDED, TrackMode.LOST)
         return TrackEstimate(
             identity=self.identity,
             serial=self.serial,
-            box=self.state.box,
-            velocity=self.state.velocity,
+            box=state.box,
+            velocity=state.velocity,
             mode=mode,
             confidence=confidence * (_HIDDEN_CONFIDENCE if hidden else 1.0),
             label=self.label,
@@ -370,64 +307,9 @@ class Track:
         )
 
 
-_OCCLUDER_SEEN = 3.0
-"""Nominal periods since it was seen, up to which a vehicle can hide others."""
-_NAMED_SHARE = 0.3
-"""Share of a vehicle above which the one that hides it is named as its occluder."""
-
-
 def edges_of(tracks: Sequence[Track]) -> Array:
     """Return the edges (T, 4) of tracks, px."""
     return np.array([track.state.edges for track in tracks]).reshape(-1, 4)
-
-
-def nearest_first(tracks: Sequence[Track], road: RoadPlane | None) -> list[Track]:
-    """Order vehicles by their distance from the camera.
-
-    Parameters
-    ----------
-    tracks : sequence of Track
-        Vehicles.
-    road : RoadPlane or None
-        Road that they stand on; None: the lower a vehicle stands in the image, the nearer it is.
-    """
-    edges = edges_of(tracks)
-    feet = np.column_stack([(edges[:, 0] + edges[:, 2]) / 2, edges[:, 3]])
-    nearness = feet[:, 1] if road is None else road.homography.nearness(road.ideal(feet))
-    # What a lens cannot show is out of the image, and last.
-    distances = np.nan_to_num(-nearness, nan=np.inf).tolist()
-    order = sorted(range(len(tracks)), key=lambda index: (distances[index], tracks[index].serial))
-    return [tracks[index] for index in order]
-
-
-def cover(tracks: Sequence[Track], size: tuple[int, int], occlusions: bool) -> None:
-    """Note what of each vehicle is in sight.
-
-    Parameters
-    ----------
-    tracks : sequence of Track
-        Nearest first.
-    size : (int, int)
-        Width and height of the image.
-    occlusions : bool
-        False: no vehicle hides another.
-    """
-    edges = edges_of(tracks)
-    hiding = [
-        rank
-        for rank, one in enumerate(tracks)
-        if occlusions and one.confirmed and one.unseen <= _OCCLUDER_SEEN and not one.lost
-    ]
-    common = intersections(edges[:, np.newaxis], edges[hiding]) / areas(edges)[:, np.newaxis]
-    common[np.arange(len(tracks))[:, np.newaxis] <= np.array(hiding, dtype=np.intp)] = 0.0
-    most = common.max(axis=1, initial=0.0) > _NAMED_SHARE
-    visible = np.maximum(1 - common.sum(axis=1), 0.0).tolist()
-    for track, row, inside, seen, named in zip(
-        tracks, common, inside_image(edges, size).tolist(), visible, most.tolist(), strict=True
-    ):
-        covers = edges[hiding][row > 0] if seen < 1 else NOTHING
-        hider = tracks[hiding[int(row.argmax())]].identity if named else None
-        track.show(seen, inside, covers, hider)
 
 
 def predict(tracks: Sequence[Track], horizon: float, elapsed: float, drive: Drive) -> list[Track]:

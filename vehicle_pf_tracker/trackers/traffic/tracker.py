@@ -37,6 +37,7 @@ from vehicle_pf_tracker.trackers.traffic.association import (
     former,
     pair_costs,
 )
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import (
     SHIPPED,
     DetectionEvidence,
@@ -48,16 +49,13 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
 from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure
+from vehicle_pf_tracker.trackers.traffic.occlusion import cover, nearest_first
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
 from vehicle_pf_tracker.trackers.traffic.track import (
-    ColourBins,
     Track,
-    cover,
     edges_of,
-    nearest_first,
     predict,
-    similarity,
 )
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge
 
@@ -65,10 +63,6 @@ _VEHICLE_WIDTH = 1.8
 """Width of a car in m, by which speeds and accelerations become widths."""
 _FOCAL = 1.2
 """Focal length, of the image's width: that of a camera with a field of view of 45 degrees."""
-_RECENT = 4.0
-"""Nominal periods since it was seen, up to which a track chooses first among the detections."""
-_STRONG = -0.4
-"""Least log odds of a detection that is offered to the tracks in the first round."""
 _NESTED = 0.7
 """Share of a detection inside a detected vehicle above which it is a part of that vehicle."""
 _LEARNING_SHARE = 0.8
@@ -228,32 +222,22 @@ class TrafficTracker:
         """Give the detections to the tracks; what is left over may be new vehicles."""
         self._evidence.look()
         found = FrameDetections(detections, self._evidence, self._colours, self._size)
-        recent = [one for one in self._tracks if one.confirmed and one.unseen < _RECENT]
-        strong = np.flatnonzero(found.log_odds >= _STRONG).tolist()
-        self._match(recent, found, strong)
-        self._drop_parts(found)
-        self._match([one for one in self._tracks if one.confirmed], found, found.free)
-        self._drop_parts(found)
+        self._match([one for one in self._tracks if one.confirmed], found)
+        self._drop_inside(
+            [one for one in self._tracks if one.confirmed and not one.undetected], found
+        )
         self._match_tentative([one for one in self._tracks if not one.confirmed], found)
         self._existence.fade(self._tracks, elapsed)
-        there = edges_of([one for one in self._tracks if one.confirmed and one.unseen < _RECENT])
+        self._drop_inside([one for one in self._tracks if one.confirmed], found, either=True)
         for index in found.free:
-            if _is_taken(found.edges[index], there):
-                self._evidence.learn(found.samples[index], False, alone=False)
-            else:
-                self._begin_from(found, index)
+            self._begin_from(found, index)
 
-    def _match(
-        self, tracks: Sequence[Track], found: FrameDetections, indices: Sequence[int]
-    ) -> None:
-        """Pair tracks that have no detection yet with some of the free detections."""
-        tracks = [track for track in tracks if track.undetected > 0]
-        indices = [index for index in indices if index in found.free]
-        if not tracks or not indices:
-            return
-        settings = self.parameters.detections
-        pairs = assign(pair_costs(tracks, found, indices, settings, self._numbers))
-        self._correct([(tracks[row], indices[column], 0.0) for row, column in pairs], found)
+    def _match(self, tracks: Sequence[Track], found: FrameDetections) -> None:
+        """Pair confirmed tracks with detections."""
+        if tracks and found.free:
+            settings = self.parameters.detections
+            pairs = assign(pair_costs(tracks, found, settings, self._numbers))
+            self._correct([(tracks[row], column, 0.0) for row, column in pairs], found)
 
     def _match_tentative(self, tracks: Sequence[Track], found: FrameDetections) -> None:
         """Pair new tracks with free detections that are rather theirs than false alarms."""
@@ -295,13 +279,15 @@ class TrafficTracker:
         self.last_identity += 1
         track.confirm(self.last_identity, given=given)
 
-    def _drop_parts(self, found: FrameDetections) -> None:
-        """Drop detections inside vehicles that have one: their bonnets, or second boxes."""
-        detected = [one for one in self._tracks if one.confirmed and one.undetected == 0]
-        boxes = edges_of(detected)
-        for index in tuple(found.free):
-            edges = found.edges[index]
-            if (intersections(edges, boxes) > _NESTED * areas(edges)).any():
+    def _drop_inside(
+        self, tracks: Sequence[Track], found: FrameDetections, *, either: bool = False
+    ) -> None:
+        """Drop free detections that are inside vehicles, bonnets or second boxes, or `either`."""
+        boxes, edges = edges_of(tracks), found.edges[found.free, np.newaxis]
+        smaller = np.minimum(areas(boxes), areas(edges)) if either else areas(edges)
+        inside = np.asarray((intersections(edges, boxes) > _NESTED * smaller).any(axis=1))
+        for index, is_inside in zip(found.free.copy(), inside.tolist(), strict=True):
+            if is_inside:
                 found.free.remove(index)
                 self._evidence.learn(found.samples[index], False, alone=False)
 
@@ -347,9 +333,3 @@ class TrafficTracker:
             if track.confirmed and track.undetected == 0:
                 now = self._colours.histogram(track.state.edges, track.covers)
                 track.learn_similarity(similarity(track.colours, now))
-
-
-def _is_taken(edges: Array, boxes: Array) -> bool:
-    """Test whether a tracked vehicle is where a new one would begin."""
-    smaller = np.minimum(areas(boxes), areas(edges))
-    return bool((intersections(edges, boxes) > _NESTED * smaller).any())

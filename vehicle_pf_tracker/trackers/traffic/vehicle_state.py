@@ -149,7 +149,8 @@ class VehicleState:
         width, height = by_left + by_right, by_top + by_bottom
         speed = (drive.top_speed * (right - left) / v) ** 2
         along = speed / drive.focal**2
-        self.covariance = np.diag([width / 4, by_bottom, width, height, speed, along])
+        variances = width / 4, by_bottom, width, height, speed, along
+        self.covariance: Array = np.diag(variances)
         self._settle()
 
     @classmethod
@@ -302,6 +303,8 @@ class VehicleState:
 
     def _settle(self) -> None:
         """Derive the edges, as `OBSERVATION` says."""
-        x, v, w, h = np.moveaxis(self.mean[..., :ACROSS], -1, 0)
-        bottom = v + self.horizon
-        self.edges = np.stack([x - w / 2, bottom - h, x + w / 2, bottom], axis=-1)
+        x, v, half = self.mean[..., X], self.mean[..., V], self.mean[..., W] / 2
+        self.edges = np.empty((*self.mean.shape[:-1], len(Edge)))
+        self.edges[..., Edge.LEFT], self.edges[..., Edge.RIGHT] = x - half, x + half
+        self.edges[..., Edge.BOTTOM] = bottom = v + self.horizon
+        self.edges[..., Edge.TOP] = bottom - self.mean[..., H]
