@@ -28,6 +28,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
@@ -79,7 +80,7 @@ class Detections:
     def __len__(self) -> int:
         return len(self.boxes)
 
-    def take(self, indices: Array) -> Detections:
+    def take(self, indices: npt.NDArray[np.intp]) -> Detections:
         """Those at `indices`, in this order."""
         labels = tuple(self.labels[i] for i in indices.tolist())
         return Detections(self.boxes[indices], self.scores[indices], labels)
