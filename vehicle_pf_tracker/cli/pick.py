@@ -18,16 +18,12 @@ from __future__ import annotations
 
 import json
 import math
-import secrets
-import sys
 import tempfile
 import threading
 import webbrowser
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import astuple, dataclass
-from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib import resources
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -41,6 +37,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.offline.drawing import draw_pixel_grid
 from vehicle_pf_tracker.offline.output_files import write_picture, write_text
+from vehicle_pf_tracker.offline.page_server import Content, PageHandler, PageServer
 from vehicle_pf_tracker.offline.pictures import has_display
 from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.reader import StampedFrame
@@ -178,10 +175,8 @@ class FrameStore:
             self._file.close()
 
 
-class PickingServer(ThreadingHTTPServer, Generic[PickedT]):
-    """Serves the page to who knows its URL, and ends with the user's answer.
-
-    Each connection has a thread: browsers open some ahead and leave them idle.
+class PickingServer(PageServer, Generic[PickedT]):
+    """Serves the page, and ends with the user's answer.
 
     Parameters
     ----------
@@ -191,26 +186,28 @@ class PickingServer(ThreadingHTTPServer, Generic[PickedT]):
         What is picked.
     first : int
         Number of the frame shown first.
-
-    Attributes
-    ----------
-    base : str
-        Path under which everything is; nobody else can guess it.
-    url : str
-        Address of the page.
     """
 
-    daemon_threads = True
-    block_on_close = False
-
     def __init__(self, frames: FrameStore, tool: Tool[PickedT], first: int = 1) -> None:
-        super().__init__(("127.0.0.1", 0), PageHandler)
+        super().__init__(PickingHandler)
         self.frames = frames
         self.tool = tool
         self.first = first
         self._picked: Sequence[PickedT] | None = None
-        self.base = f"/{secrets.token_urlsafe(16)}/"
-        self.url = f"http://127.0.0.1:{self.server_port}{self.base}"
+
+    def content(self, what: str) -> Content | None:
+        """Return the page, a frame, or what there is to know."""
+        if what in _FILES:
+            kind, name = _FILES[what]
+            return kind, resources.files(__package__).joinpath(name).read_bytes()
+        if what == "info":
+            found = {"frames": self.frames.count, "frame": self.first, "tool": self.tool.name}
+            return "application/json", json.dumps(found).encode()
+        if not what.startswith("frame/") or not what[6:].isdecimal():
+            return None
+        number = int(what[6:][:9])
+        coded = self.frames.jpeg(number) if number else None
+        return None if coded is None else ("image/jpeg", coded)
 
     def pick(self) -> Sequence[PickedT]:
         """Serve until the user is done; empty if they cancel."""
@@ -222,11 +219,6 @@ class PickingServer(ThreadingHTTPServer, Generic[PickedT]):
         self._picked = answer
         self.shutdown()
 
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """Pass over browsers that hang up, as they do when another frame is asked for."""
-        if not isinstance(sys.exc_info()[1], ConnectionError):
-            super().handle_error(request, client_address)
-
 
 def ask(source: Source, tool: Tool[PickedT], first: int) -> Sequence[PickedT]:
     """Let the user pick in the frames of `source`; empty if they cancel."""
@@ -237,60 +229,25 @@ def ask(source: Source, tool: Tool[PickedT], first: int) -> Sequence[PickedT]:
         return server.pick()
 
 
-class PageHandler(BaseHTTPRequestHandler):
-    """Answers the requests of the page."""
+class PickingHandler(PageHandler):
+    """Answers the requests of the page, and takes the user's answer."""
 
     server: PickingServer[Any]
 
-    def do_GET(self) -> None:
-        """Answer with the page, a frame, or what there is to know."""
-        what, frames = self._asked(), self.server.frames
-        if what in _FILES:
-            kind, name = _FILES[what]
-            self._answer(kind, resources.files(__package__).joinpath(name).read_bytes())
-        elif what == "info":
-            tool, first = self.server.tool.name, self.server.first
-            found = {"frames": frames.count, "frame": first, "tool": tool}
-            self._answer("application/json", json.dumps(found).encode())
-        elif what is not None and what.startswith("frame/") and what[6:].isdecimal():
-            number = int(what[6:][:9])
-            self._answer("image/jpeg", frames.jpeg(number) if number else None)
-        else:
-            self._answer("", None)
-
-    def do_POST(self) -> None:
+    def do_POST(self) -> None:  # noqa: N802 - the base's name
         """Take the user's answer."""
         length = self.headers.get("Content-Length", "")
-        if self._asked() != "done" or not length.isdecimal() or int(length) > _LONGEST:
-            self._answer("", None)
+        if self.asked() != "done" or not length.isdecimal() or int(length) > _LONGEST:
+            self.answer(None)
             return
         try:
             entries = json.loads(self.rfile.read(int(length))) or ()
             answer = [self.server.tool.read(entry) for entry in entries]
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-            self._answer("", None)
+            self.answer(None)
             return
-        self._answer("text/plain", b"finished")
+        self.answer(("text/plain", b"finished"))
         self.server.finish(answer)
-
-    def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - the base's name
-        """Say nothing: the terminal is the user's."""
-
-    def _asked(self) -> str | None:
-        """Return the path below the secret one; None for all others."""
-        base = self.server.base
-        return self.path[len(base) :] if self.path.startswith(base) else None
-
-    def _answer(self, kind: str, content: bytes | None) -> None:
-        if content is None:
-            self.send_error(HTTPStatus.NOT_FOUND)
-            return
-        self.send_response(HTTPStatus.OK)
-        self.send_header("Content-Type", kind)
-        self.send_header("Content-Length", str(len(content)))
-        self.send_header("Cache-Control", "no-store")
-        self.end_headers()
-        self.wfile.write(content)
 
 
 @dataclass(frozen=True, kw_only=True)
