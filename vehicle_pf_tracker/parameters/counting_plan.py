@@ -34,6 +34,8 @@ _MOST_CORNERS = 100
 _LONGEST_NAME = 80
 """Letters of a name, which is written into pictures and tables."""
 
+_SECTIONS = ("lines", "zones", "targets", "pairs")
+"""Sections of a file of `pick`; the last two are for others."""
 _LINE_KEYS = ("from", "to", "directions")
 _DEFAULT_DIRECTIONS = ("in", "out")
 
@@ -124,12 +126,14 @@ def read_counting_plan(path: Path) -> CountingPlan:
 def parse_counting_plan(document: Any) -> CountingPlan:
     """Make the plan of a document: ``lines`` and ``zones``, each a mapping by name.
 
+    Other sections of a file of `pick` are left to their own readers.
+
     Raises
     ------
     InputError
         If a key is unknown, a point is not two numbers, or a line or zone is degenerate.
     """
-    sections = _mapping(document, "the file", ("lines", "zones"))
+    sections = _mapping(document, "the file", _SECTIONS)
     lines = _named(sections.get("lines"), "lines")
     zones = _named(sections.get("zones"), "zones")
     for name in lines:
