@@ -47,6 +47,7 @@ ALL = {
     **ANSWER,
     "lines": {"exit": {"from": [0, 40], "to": [90, 40], "directions": ["away", "back"]}},
     "zones": {"queue": [[0, 0], [90, 0], [90, 30]]},
+    "roi": {"near": {"inside": [[0, 10], [90, 10], [90, 60]]}},
     "pairs": [
         {"name": "post", "pixel": [8.5, 4], "road": [0, 20.25]},
         {"name": "2", "pixel": [90, 4], "road": [9, 20]},
@@ -311,7 +312,7 @@ def test_the_script_takes_moves_and_writes_what_a_file_has():
       const all = {json.dumps(ALL)}, items = m.items_of(all);
       is.deepEqual(m.content_of(items), all);
       is.equal(m.problem(items), "");
-      const [van, , exit, queue, post] = items;
+      const [van, , exit, queue, , post] = items;
       const grabbed = (x, y) => m.grab(items, [x, y], 2);
       is.equal(grabbed(20, 26), null);                       // inside a box, away from its edges
       is.equal(grabbed(18, 20).item, van);

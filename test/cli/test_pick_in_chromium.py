@@ -141,7 +141,12 @@ def test_lines_and_zones_are_drawn_in_chromium(tmp_path, browse):
       drag(5, 50, 90, 52);
       draw_a("zones");
       click([5, 5], [40, 5], [40, 30], [20, 40], [5, 5]);    // the last closes it
-      click([70, 5], [90, 5]);
+      draw_a("roi");
+      click([50, 5], [90, 5], [90, 40], [50, 5]);
+      const side = at("list").querySelector("select");
+      side.value = "outside";
+      side.dispatchEvent(new Event("change"));
+      click([70, 50], [90, 55]);
       document.dispatchEvent(new KeyboardEvent("keydown", {key: "Escape"}));    // none after all
       type(fields(0)[1], "away");
       type(fields(1)[0], "exit");
@@ -156,6 +161,7 @@ def test_lines_and_zones_are_drawn_in_chromium(tmp_path, browse):
     assert drawn == {
         "lines": {"stop": {"from": [5, 50], "to": [90, 52], "directions": ["away", "out"]}},
         "zones": {"exit": [[5, 5], [40, 5], [40, 30], [20, 40]]},
+        "roi": {"region 1": {"outside": [[50, 5], [90, 5], [90, 40]]}},
     }
 
 

@@ -150,6 +150,13 @@ def test_visible_only_leaves_hidden_vehicles_out(run):
     assert len(table(out / "tracks.csv")) == 2 * COUNT
 
 
+def test_a_region_of_interest_alone_counts_nothing(run, tmp_path):
+    (tmp_path / "roi.yaml").write_text("roi: {a: {outside: [[0, 0], [50, 0], [50, 96], [0, 96]]}}")
+    out = run("--lines", tmp_path / "roi.yaml")
+    assert {row["x"] for row in table(out / "tracks.csv")} == {"68.0"}  # of the second vehicle
+    assert not (out / "counts.csv").exists()
+
+
 def test_counts_at_lines_and_in_zones(run, tmp_path, capsys):
     out = run("--lines", tmp_path / "lines.yaml")
     counts = table(out / "counts.csv")

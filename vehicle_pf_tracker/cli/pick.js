@@ -1,13 +1,11 @@
-// The page of `pick`: vehicles, counting lines, zones and points of the road, drawn and edited over any frame.
+// The page of `pick`: vehicles, counting lines, zones, regions and points of the road, drawn and edited over any frame.
 "use strict";
 
 // The model. An item has a kind, a name and points in px: two corners of a box, two ends of a line, the corners of
 // a polygon, or one point. A vehicle's box belongs to a frame; the rest holds for all.
 const tenths = value => Math.round(value * 10) / 10;
-const polygon = {
-  closed: true, least: 3,
-  ...by_name(({points}) => points.map(corner => corner.map(tenths)), corners => ({points: corners.map(one => [...one])})),
-};
+const copy = points => points.map(one => [...one]);
+const corners_of = ({points}) => points.map(corner => corner.map(tenths));
 const KINDS = {
   targets: {
     title: "vehicle", closed: true, least: 2, most: 2,
@@ -22,16 +20,28 @@ const KINDS = {
     advice: "Drag a line across the road, at wheel height. The arrow is the first of the two directions.",
     ...by_name(
       ({points: [from, to], directions}) => ({from: from.map(tenths), to: to.map(tenths), directions}),
-      ({from, to, directions = ["in", "out"]}) => ({points: [[...from], [...to]], directions: [...directions]})),
+      ({from, to, directions = ["in", "out"]}) => ({points: copy([from, to]), directions: [...directions]})),
   },
-  zones: {title: "zone", advice: "Click the corners of an area to count in; close it on its first corner.", ...polygon},
+  zones: {
+    title: "zone", closed: true, least: 3,
+    advice: "Click the corners of an area to count in; close it on its first corner.",
+    ...by_name(corners_of, corners => ({points: copy(corners)})),
+  },
+  roi: {
+    title: "region", closed: true, least: 3,
+    advice: "Click the corners of an area in which vehicles are looked for, or in which they are not (outside);"
+      + " close it on its first corner.",
+    ...by_name(
+      item => ({[item.side]: corners_of(item)}),
+      body => ({side: Object.keys(body)[0], points: copy(Object.values(body)[0])})),
+  },
   pairs: {
     title: "road", closed: false, least: 1, most: 1,
     advice: "Click points of the road whose position you know, four or more, and type their x and y in metres."
       + " Spread them over the road; no three of four on a line.",
     section: items => items.map(({name, points: [pixel], road}) => ({name, pixel: pixel.map(tenths), road})),
     items: (section = []) => section.map(({name, pixel, road}, index) =>
-      ({name: String(name ?? index + 1), points: [[...pixel]], road: [...road]})),
+      ({name: String(name ?? index + 1), points: copy([pixel]), road: [...road]})),
   },
 };
 
@@ -68,7 +78,7 @@ function new_item(kind, points, frame, items) {
   const prefix = kind === "targets" || kind === "pairs" ? "" : `${KINDS[kind].title} `;
   let number = 1;
   while (items.some(one => one.kind === kind && one.name === prefix + number)) number += 1;
-  const more = {targets: {frame}, lines: {directions: ["in", "out"]}, pairs: {road: [NaN, NaN]}}[kind];
+  const more = {targets: {frame}, lines: {directions: ["in", "out"]}, roi: {side: "inside"}, pairs: {road: [NaN, NaN]}}[kind];
   return {kind, name: prefix + number, points, ...more};
 }
 // The handles of an item: where each is, and the index of the point that it moves in x and in y.
@@ -172,6 +182,13 @@ function page() {
   function fields(item) {
     const rename = text => { item.name = item.kind === "targets" ? text.replace(/[^A-Za-z0-9_-]/g, "") : text; };
     const found = [field("name", item.name, rename)];
+    if (item.side) {
+      const sides = document.createElement("select");
+      sides.append(...["inside", "outside"].map(side => new Option(side)));
+      sides.value = item.side;
+      sides.onchange = () => { item.side = sides.value; };
+      found.push(sides);
+    }
     for (const side of [0, 1]) {
       if (item.directions) found.push(field(side ? "back" : "along the arrow", item.directions[side],
         text => { item.directions[side] = text; }));

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`pick`: draw vehicles, counting lines, zones and points of the road on a page served here."""
+"""`pick`: draw vehicles, lines, zones, regions and points of the road on a page served here."""
 
 from __future__ import annotations
 
@@ -57,6 +57,7 @@ USES: Mapping[str, str] = {
     TARGETS: "run --targets",
     "lines": "traffic --lines",
     "zones": "traffic --lines",
+    "roi": "traffic --lines",
     PAIRS: "road calibrate --pairs",
 }
 """Verb and option that read a section of the file."""

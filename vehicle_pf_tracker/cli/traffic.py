@@ -41,7 +41,7 @@ from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import RUN, RunInfo, describe
 from vehicle_pf_tracker.offline.traffic_following import TrafficRun
 from vehicle_pf_tracker.offline.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
-from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
+from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.recordings.source import Source, open_source
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.association import check_library
@@ -79,7 +79,9 @@ class Request(TrackingRequest):
     )  # fmt: skip
     model: str | None = option(metavar="FILE", help="the network, .onnx: YOLOX, YOLOv8 or SSD")
     lines: Path | None = option(
-        type=Path, metavar="FILE", help="lines and zones to count at, lines.yaml"
+        type=Path,
+        metavar="FILE",
+        help="lines, zones and regions of interest, lines.yaml",
     )
     visible_only: bool = switch(
         help="leave vehicles that are occluded, and so predicted, out of tracks.txt"
@@ -130,7 +132,7 @@ def _tracking(
     road = settings.road
     plane = road.plane(road.lens, road.pose) if is_road_given(road) else None
     lines = request.lines or parameters.lines
-    plan = read_counting_plan(Path(lines)) if lines else None
+    plan = read_counting_plan(Path(lines)) if lines else CountingPlan()
     make_detector = detector_maker(parameters.detector)
     if make_detector is not None and parameters.detector.kind == MODEL:
         detector = _LeavableDetector(make_detector(), stop)
@@ -141,8 +143,9 @@ def _tracking(
         frame_rate=parameters.frame_rate,
         reset_on_time_jump=settings.reset_on_time_jump,
         every=parameters.detector.every,
+        regions=plan.regions,
     )
-    counter = Counter(plan, plane) if plan else None
+    counter = Counter(plan, plane) if plan.is_counting else None
     return TrafficRun(
         session, counter, detections_of=detections.of if detections is not None else None
     )

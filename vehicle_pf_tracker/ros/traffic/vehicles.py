@@ -30,7 +30,7 @@ from vehicle_pf_tracker.core.frame import CodedFrame, Frame
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.offline.detectors import detector_maker
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
+from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.ros.traffic.rates import TimedDetector
@@ -150,12 +150,15 @@ class Vehicles:
         parameters = configuration.tracker
         make = detector_maker(parameters.detector)
         self._configuration = configuration
+        lines = parameters.lines
+        self._plan = read_counting_plan(Path(lines)) if lines else CountingPlan()
         self.session = TrafficSession(
             TrafficTracker(parameters, plane_of(configuration.session.road)),
             (lambda: TimedDetector(make())) if make else None,
             frame_rate=parameters.frame_rate,
             reset_on_time_jump=configuration.session.reset_on_time_jump,
             every=parameters.detector.every,
+            regions=self._plan.regions,
         )
         self.counter = self._counter()
         self.latest: dict[str, Crossing] = {}
@@ -274,10 +277,9 @@ class Vehicles:
         return {"vehicles": len(self.estimates), **counts, "dropped for a bad state": dropped}
 
     def _counter(self) -> Counter | None:
-        lines = self._configuration.tracker.lines
-        if not lines:
+        if not self._plan.is_counting:
             return None
-        return Counter(read_counting_plan(Path(lines)), plane_of(self._configuration.session.road))
+        return Counter(self._plan, plane_of(self._configuration.session.road))
 
     def _begin_anew(self) -> None:
         """Note that the session has discarded all vehicles but those that it kept."""

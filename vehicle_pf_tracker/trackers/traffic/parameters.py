@@ -174,7 +174,10 @@ class TrafficParameters:
     birth: BirthParameters = group(BirthParameters)
     frame_rate: float = frame_rate_parameter()
     lines: str = parameter(
-        "", "YAML of lines and zones to count at; empty: nothing is counted.", read_only=True,
+        "",
+        "YAML of lines and zones to count at, and of regions of interest; empty: nothing is "
+        "counted.",
+        read_only=True,
     )  # fmt: skip
     detector: DetectorParameters = group(DetectorParameters)
 
