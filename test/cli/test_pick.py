@@ -47,7 +47,7 @@ ALL = {
     **ANSWER,
     "lines": {"exit": {"from": [0, 40], "to": [90, 40], "directions": ["away", "back"]}},
     "zones": {"queue": [[0, 0], [90, 0], [90, 30]]},
-    "roi": {"near": {"inside": [[0, 10], [90, 10], [90, 60]]}},
+    "roi": {"near": {"inside": [[30, 50], [80, 50], [80, 63]]}},
     "pairs": [
         {"name": "post", "pixel": [8.5, 4], "road": [0, 20.25]},
         {"name": "2", "pixel": [90, 4], "road": [9, 20]},

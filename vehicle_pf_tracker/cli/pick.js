@@ -36,7 +36,7 @@ const KINDS = {
       body => ({side: Object.keys(body)[0], points: copy(Object.values(body)[0])})),
   },
   pairs: {
-    title: "road", closed: false, least: 1, most: 1,
+    title: "road point", closed: false, least: 1, most: 1,
     advice: "Click points of the road whose position you know, four or more, and type their x and y in metres."
       + " Spread them over the road; no three of four on a line.",
     section: items => items.map(({name, points: [pixel], road}) => ({name, pixel: pixel.map(tenths), road})),
@@ -126,7 +126,7 @@ function page() {
   function show(number) {
     slider.value = number;
     at("number").value = slider.value;
-    shown = 0;
+    shown = svg.dataset.frame = 0;
     image.src = "frame/" + slider.value;
   }
   function point(event) {
@@ -306,7 +306,7 @@ function page() {
   at("on").onclick = () => show(Math.min(Number(slider.value) + 1, Number(slider.max)));
   at("done").onclick = () => send(content_of(items));
   at("cancel").onclick = () => send(null);
-  image.onload = () => { shown = Number(slider.value); taken = draft = null; check(); draw(); };
+  image.onload = () => { shown = svg.dataset.frame = Number(slider.value); taken = draft = null; check(); draw(); };
   image.onerror = () => { at("said").textContent = "This frame cannot be read."; };
   fetch("info").then(answer => answer.json()).then(info => {
     items = items_of(info.document);
