@@ -132,8 +132,9 @@ class DetectorParameters:
     )  # fmt: skip
     every: int = parameter(
         1, "Above 1: the detector looks at every k-th image, and pixels hold vehicles in between; "
-        "images do not wait for a topic's.",
-        bounds=(1, 1000), unit="images",
+        "images do not wait for a topic's. 0: the smallest k that keeps the images' rate, which "
+        "depends on the machine.",
+        bounds=(0, 1000), unit="images",
     )  # fmt: skip
 
     def validate(self) -> None:
