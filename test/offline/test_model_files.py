@@ -105,9 +105,7 @@ def test_a_kept_network_of_another_sum_is_refused_with_its_file(server):
 def test_without_a_network_it_is_one_sentence(server, tmp_path):
     server.shutdown()
     server.server_close()
-    with pytest.raises(
-        InputError, match=r"cannot be fetched: .*; without a network "
-    ):
+    with pytest.raises(InputError, match=r"cannot be fetched: .*; without a network "):
         model_file(f"{server.url}/net.onnx")
     with pytest.raises(InputError, match="at no http or https address"):
         model_file("ftp://127.0.0.1/net.onnx")
