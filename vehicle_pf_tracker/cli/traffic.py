@@ -26,7 +26,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notices
+from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.requests import option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
@@ -37,6 +37,7 @@ from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.offline.detectors import DetectionFile
 from vehicle_pf_tracker.offline.driver import is_road_given
+from vehicle_pf_tracker.offline.model_files import model_file
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import RUN, RunInfo, describe
@@ -74,7 +75,9 @@ class Request(TrackingRequest):
         help="find what moves before a standing camera (the default), use a network of yours, or "
         "follow only the vehicles given with --target",
     )  # fmt: skip
-    model: str | None = option(metavar="FILE", help="the network, .onnx: YOLOX, YOLOv8 or SSD")
+    model: str | None = option(
+        metavar="FILE", help="the network, .onnx, or its URL: YOLOX, YOLOv8 or SSD"
+    )
     lines: Path | None = option(
         type=Path,
         metavar="FILE",
@@ -131,10 +134,9 @@ def _tracking(
     plane = road.plane(road.lens, road.pose) if is_road_given(road) else None
     is_network = parameters.detector.kind == MODEL
     leavable = (lambda one: _LeavableDetector(one, stop)) if is_network else (lambda one: one)
-    return TrafficRun(
-        *session_and_counter(configuration, plane, leavable),
-        detections_of=detections.of if detections is not None else None,
-    )
+    with shown_progress() as show:
+        parts = session_and_counter(configuration, plane, leavable, show)
+    return TrafficRun(*parts, detections_of=detections.of if detections is not None else None)
 
 
 class _LeavableDetector:
@@ -187,6 +189,7 @@ def _write(
     )
     if kind == MODEL:
         document["versions"]["onnxruntime"] = metadata.version("onnxruntime")
+        document["model_sha256"] = model_file(configuration.tracker.detector.model)[1]
     document["detector"] = str(request.detections or kind)
     document["summary"] = tracking.summary.to_json(tracking.counter)
     write_json(folder / RUN, document)

@@ -22,6 +22,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.core.frame import CodedFrame, Frame
 from vehicle_pf_tracker.offline.detectors import PacedDetector, detector_maker
+from vehicle_pf_tracker.offline.model_files import Progress, silent
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.road.plane import RoadPlane
@@ -90,8 +91,20 @@ def session_and_counter(
     configuration: Configuration,
     plane: RoadPlane | None,
     change: Callable[[Detector], Detector] = lambda detector: detector,
+    progress: Progress = silent,
 ) -> tuple[TrafficSession, Counter]:
-    """Make what parameters of `TRAFFIC` ask for; `change` is given each detector.
+    """Make what parameters of `TRAFFIC` ask for.
+
+    Parameters
+    ----------
+    configuration : Configuration
+        The parameters.
+    plane : RoadPlane or None
+        The road.
+    change : callable
+        Is given each detector, and returns the one in use.
+    progress : Progress
+        Shows how a network is fetched.
 
     Raises
     ------
@@ -101,7 +114,7 @@ def session_and_counter(
     check_library()
     parameters = configuration.tracker
     plan = read_counting_plan(Path(parameters.lines)) if parameters.lines else CountingPlan()
-    make, every = detector_maker(parameters.detector), parameters.detector.every
+    make, every = detector_maker(parameters.detector, progress), parameters.detector.every
     session = TrafficSession(
         TrafficTracker(parameters, plane),
         (lambda: PacedDetector(change(make()), every)) if make else None,

@@ -28,6 +28,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.offline.model_files import Progress, model_file, silent
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
@@ -36,8 +37,8 @@ from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, Detect
 from vehicle_pf_tracker.trackers.traffic.session import Detector
 
 
-def open_network(path: Path) -> Network:
-    """Load a network.
+def open_network(model: str, progress: Progress = silent) -> Network:
+    """Load a network from its file or URL.
 
     Raises
     ------
@@ -51,8 +52,7 @@ def open_network(path: Path) -> Network:
             "networks need ONNX Runtime: install the extra [video], "
             "pip install 'vehicle_pf_tracker[video]'"
         ) from None
-    if not path.is_file():
-        raise InputError(f"there is no network {path}")
+    path, _ = model_file(model, progress)
     options = runtime.SessionOptions()
     options.log_severity_level = 3  # errors: it warns of every unused weight
     try:
@@ -61,11 +61,13 @@ def open_network(path: Path) -> Network:
         )
     except Exception as error:  # ONNX Runtime's errors have no base of their own
         reason = " ".join(str(error).split())[:200]
-        raise InputError(f"the network {path} cannot be loaded: {reason}") from None
+        raise InputError(f"the network {model} cannot be loaded: {reason}") from None
     return network
 
 
-def detector_maker(parameters: DetectorParameters) -> Callable[[], Detector] | None:
+def detector_maker(
+    parameters: DetectorParameters, progress: Progress = silent
+) -> Callable[[], Detector] | None:
     """Return a function that makes the detector; None where there shall be none.
 
     Raises
@@ -76,8 +78,8 @@ def detector_maker(parameters: DetectorParameters) -> Callable[[], Detector] | N
     if parameters.kind == MOTION:
         return MotionDetector
     if parameters.kind == MODEL:
-        path = Path(parameters.model)
-        network = NetworkDetector(open_network(path), str(path), parameters)
+        model = parameters.model
+        network = NetworkDetector(open_network(model, progress), model, parameters)
         return lambda: network  # it keeps nothing between images
     return None
 

@@ -95,7 +95,9 @@ class DetectorParameters:
         choices=(MOTION, MODEL, TOPIC, NONE), read_only=True,
     )  # fmt: skip
     model: str = parameter(
-        "", "File of the network, .onnx: YOLOX, YOLOv8 or SSD by the form of its outputs.",
+        "",
+        "Network, .onnx: YOLOX, YOLOv8 or SSD by the form of its outputs. A file, or a URL that "
+        "is fetched once; #sha256=… at its end demands this sum.",
         read_only=True,
     )  # fmt: skip
     classes: str = parameter(
