@@ -109,7 +109,8 @@ def run(request: Request) -> int:
         ]
         tell_notices(notices)
         _write(request, configuration, tracking, source, notices, folder)
-    for sentence in tracking.summary.sentences(tracking.counter):
+    detector = str(request.detections or configuration.tracker.detector.kind)
+    for sentence in tracking.sentences(detector):
         print(sentence)
     print(f"results are in {folder}; {PICTURE} shows all paths")
     if request.video:
