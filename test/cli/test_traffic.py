@@ -283,7 +283,7 @@ def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, sai
 
 
 def test_without_scipy_the_extra_is_named(run, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "scipy", None)
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     out = run(status=1)
     assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err
     assert not out.exists()
