@@ -27,9 +27,9 @@ import cv2
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.cli import traffic
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.offline import counted_vehicles
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
@@ -87,7 +87,7 @@ class Follower:
 @pytest.fixture(autouse=True)
 def _tracker(monkeypatch, request):
     if "real" not in request.fixturenames:
-        monkeypatch.setattr(traffic, "TrafficTracker", Follower)
+        monkeypatch.setattr(counted_vehicles, "TrafficTracker", Follower)
 
 
 @pytest.fixture
@@ -299,7 +299,7 @@ def test_an_interrupt_keeps_what_was_written(run, monkeypatch, capsys):
                 os.kill(os.getpid(), signal.SIGINT)
             return super().step(frame, detections, elapsed)
 
-    monkeypatch.setattr(traffic, "TrafficTracker", Interrupted)
+    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Interrupted)
     out = run(status=130)
     assert {row["frame"] for row in table(out / "tracks.csv")} == set("123456789")
     assert (out / "summary.png").exists()
@@ -317,7 +317,7 @@ def test_an_unexpected_error_costs_its_frame_alone(run, monkeypatch):
                 raise ZeroDivisionError("by zero")
             return super().step(frame, detections, elapsed)
 
-    monkeypatch.setattr(traffic, "TrafficTracker", Failing)
+    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Failing)
     out = run()
     frames = {int(row["frame"]) for row in table(out / "tracks.csv")}
     assert frames == {*range(1, 21)} - {9}

@@ -78,8 +78,6 @@ class TrafficSession(StreamSession[TrafficTracker]):
         Nominal rate in 1/s; 0 takes the median of the first ten intervals.
     reset_on_time_jump : bool
         Discard all vehicles when stamps go back and stay back.
-    every : int
-        The detector looks at every k-th image; pixels hold the vehicles in between.
     regions : sequence of Region
         Detections elsewhere are ignored; none: all count.
 
@@ -104,7 +102,6 @@ class TrafficSession(StreamSession[TrafficTracker]):
         *,
         frame_rate: float = 0.0,
         reset_on_time_jump: bool = True,
-        every: int = 1,
         regions: Sequence[Region] = (),
     ) -> None:
         super().__init__(tracker, frame_rate, reset_on_time_jump)
@@ -113,7 +110,6 @@ class TrafficSession(StreamSession[TrafficTracker]):
         self.successors: Mapping[int, int] = MappingProxyType({})
         self.detector = make_detector() if make_detector else None
         self._make_detector = make_detector
-        self._every, self._images = every, 0
         self._regions = tuple(regions)
         self._given: dict[int, tuple[Box, str]] = {}
         self._detections: Detections | None = None
@@ -187,9 +183,6 @@ class TrafficSession(StreamSession[TrafficTracker]):
 
     def _detected(self, detector: Detector, frame: Frame) -> Detections | None:
         """Return the detections; None where it did not look, so that no vehicle is missed."""
-        self._images += 1
-        if (self._images - 1) % self._every:
-            return None
         found = detector.detect(frame, self.estimates)
         if detector.disturbed:
             self.events.append(_DISTURBED)
