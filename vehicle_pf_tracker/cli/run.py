@@ -108,11 +108,11 @@ def _track(request: Request, variant: Variant, source: Source, folder: RunFolder
     for name, of_target in rows.items():
         print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target)}")
     print(f"results are in {folder.path}; {SHEET} shows the key frames")
-    if request.video:
+    if request.video and not pictures.problem:
         print(f"the video is {request.video}")
     if request.recording:
         print(f"the recording is {request.recording}, for Foxglove and `ros2 bag play`")
-    return stop.status if ended else 0
+    return stop.status if ended else int(bool(pictures.problem))
 
 
 def _trackers(
