@@ -29,6 +29,7 @@ from urllib.request import ProxyHandler, build_opener
 import cv2
 import numpy as np
 import pytest
+from small_recordings import write_video
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
@@ -231,6 +232,40 @@ def test_motion_is_found_without_any_detections(tmp_path, real, capsys):
     assert capsys.readouterr().out.startswith("1 vehicle in 100 frames")
     last = table(out / "tracks.csv")[-1]
     assert float(last["x"]) == pytest.approx(2 * 39 + 18, abs=4)
+
+
+def still(count):
+    return [np.full((96, 128, 3), 90, np.uint8)] * count
+
+
+def cuts(count):
+    """A scene that is another one every ten frames."""
+    scenes = np.random.default_rng(0).integers(0, 255, (9, 12, 16, 3), np.uint8)
+    large = [cv2.resize(one, (128, 96), interpolation=cv2.INTER_NEAREST) for one in scenes]
+    return [large[index // 10] for index in range(count)]
+
+
+@pytest.mark.parametrize(
+    ("frames", "detection", "roi", "why"),
+    [
+        (still(10), "", "", "too few to learn what stands"),
+        (still(40), "", "", "nothing moves in them"),
+        (cuts(90), "", "", "the camera moves"),
+        (still(10), "99,-1,20,20,16,12,0.9", "", "det.txt has no box in them"),
+        (still(10), "5,-1,20,20,16,12,0.9", "", "detections (1) repeat too rarely"),
+        (still(10), "5,-1,20,20,16,12,0.9", "[[60, 0], [90, 0], [90, 90]]", "all 1 detections are"),
+    ],
+)
+def test_a_clip_without_vehicles_says_why(tmp_path, real, capsys, frames, detection, roi, why):
+    video = write_video(tmp_path / "clip.avi", frames)
+    (tmp_path / "det.txt").write_text(detection)
+    (tmp_path / "roi.yaml").write_text(f"roi: {{near: {{inside: {roi}}}}}")
+    words = ["--detections", str(tmp_path / "det.txt")] if detection else []
+    words += ["--lines", str(tmp_path / "roi.yaml")] if roi else []
+    assert main(["traffic", str(video), "-o", str(tmp_path / "out"), *words]) == 0
+    said = capsys.readouterr().out.splitlines()[0]
+    assert said.startswith(f"no vehicle was found in {len(frames)} frames: ")
+    assert why in said
 
 
 def test_a_run_that_fails_keeps_the_results_before(run, capsys):

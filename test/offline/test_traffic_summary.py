@@ -63,7 +63,6 @@ def test_occlusions_survived_are_counted():
 def test_a_vehicle_that_is_never_confirmed_is_none():
     summary = summed("ttttt-----")
     assert summary.vehicles == {}
-    assert summary.sentences(NOWHERE) == ["no vehicle was found in 10 frames"]
     assert summary.to_json(NOWHERE)["vehicles"] == 0
 
 

@@ -116,7 +116,8 @@ def run(request: Request) -> int:
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
-        status, notices = _follow(request, tracking, source, make_folder(folder), stop)
+        pictures = Pictures(request.video)
+        status, notices = _follow(request, tracking, source, make_folder(folder), stop, pictures)
         notices = [
             *source.notices,
             *(detections.notices if detections is not None else []),
@@ -124,10 +125,11 @@ def run(request: Request) -> int:
         ]
         tell_notices(notices)
         _write(request, configuration, tracking, source, notices, folder)
-    for sentence in tracking.summary.sentences(tracking.counter):
+    detector = str(request.detections or configuration.tracker.detector.kind)
+    for sentence in tracking.sentences(detector):
         print(sentence)
     print(f"results are in {folder}; {PICTURE} shows all paths")
-    if request.video:
+    if request.video and not pictures.problem:
         print(f"the video is {request.video}")
     if stop.has_left:
         sys.stdout.flush()
@@ -168,10 +170,14 @@ class _LeavableDetector:
 
 
 def _follow(
-    request: Request, tracking: TrafficRun, source: Source, folder: Path, stop: Stop
+    request: Request,
+    tracking: TrafficRun,
+    source: Source,
+    folder: Path,
+    stop: Stop,
+    pictures: Pictures,
 ) -> tuple[int, list[str]]:
     """Follow all vehicles to the end or to a signal; return the exit status, and notices."""
-    pictures = Pictures(request.video)
     counts = tracking.counter.plan.is_counting
     with (
         stopping(stop),
@@ -192,7 +198,8 @@ def _follow(
     else:
         tracking.paths.write(folder / PICTURE, tracking.counter)
         tracking.heat.write(folder / HEAT, tracking.paths.ground)
-    return stop.status if ended else 0, [*tracking.notices, *pictures.notices, *ended]
+    status = stop.status if ended else int(bool(pictures.problem))
+    return status, [*tracking.notices, *pictures.notices, *ended]
 
 
 def _write(

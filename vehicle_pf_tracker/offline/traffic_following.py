@@ -36,6 +36,7 @@ from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.session import TrackerError
 from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 _MOST_NOTICES = 20
@@ -143,6 +144,39 @@ class TrafficRun(CountedVehicles):
                 take((), draw, found.frame, found.stamp_ns)
                 if page is not None:
                     page.show(draw, self.facts)
+
+    def sentences(self, detector: str) -> list[str]:
+        """Return the summary, a line for each fact, or why there is no vehicle.
+
+        Parameters
+        ----------
+        detector : str
+            Kind of the detector, or the file of detections.
+        """
+        if self.summary.vehicles:
+            return self.summary.sentences(self.counter)
+        frames, found = self.summary.frames, self.session.found
+        inside = found.boxes - found.outside
+        if found.disturbed and 2 * found.images < frames:
+            why = (
+                "the camera moves, and motion is detected before a standing one only; give "
+                "--detections or --model"
+            )
+        elif not found.images:
+            why = "they are too few to learn what stands, which takes a second; give a longer clip"
+        elif not found.boxes:
+            why = {
+                MOTION: "nothing moves in them",
+                MODEL: "the network finds no vehicle; try --set detector.min_score=0.1",
+            }.get(detector, f"{detector} has no box in them")
+        elif not inside:
+            why = f"all {found.boxes} detections are outside the regions of interest"
+        else:
+            why = (
+                f"detections ({inside}) repeat too rarely to be vehicles; give them with "
+                "--target, or a file of `pick` with --targets"
+            )
+        return [f"no vehicle was found in {frames} frames: {why}"]
 
     def _step(self, number: int, found: StampedFrame) -> tuple[Crossing, ...] | None:
         """Take a frame; None where it is rejected, so that nothing is known of its time."""

@@ -101,8 +101,6 @@ class TrafficSummary:
 
     def sentences(self, counter: Counter) -> list[str]:
         """Return the summary, a line for each fact."""
-        if not self.vehicles:
-            return [f"no vehicle was found in {self.frames} frames"]
         found = [
             f"{_number(len(self.vehicles), 'vehicle')} in {self.frames} frames, at most "
             f"{self.most_at_once} at once{self._classes()}",
