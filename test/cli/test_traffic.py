@@ -26,10 +26,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from small_recordings import write_video
 
-from vehicle_pf_tracker.cli import traffic
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.offline import counted_vehicles
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
@@ -87,7 +88,7 @@ class Follower:
 @pytest.fixture(autouse=True)
 def _tracker(monkeypatch, request):
     if "real" not in request.fixturenames:
-        monkeypatch.setattr(traffic, "TrafficTracker", Follower)
+        monkeypatch.setattr(counted_vehicles, "TrafficTracker", Follower)
 
 
 @pytest.fixture
@@ -148,6 +149,13 @@ def test_visible_only_leaves_hidden_vehicles_out(run):
     mot = (out / "tracks.txt").read_text().splitlines()
     assert len(mot) == 2 * COUNT - len(HIDDEN)
     assert len(table(out / "tracks.csv")) == 2 * COUNT
+
+
+def test_a_region_of_interest_alone_counts_nothing(run, tmp_path):
+    (tmp_path / "roi.yaml").write_text("roi: {a: {outside: [[0, 0], [50, 0], [50, 96], [0, 96]]}}")
+    out = run("--lines", tmp_path / "roi.yaml")
+    assert {row["x"] for row in table(out / "tracks.csv")} == {"68.0"}  # of the second vehicle
+    assert not (out / "counts.csv").exists()
 
 
 def test_counts_at_lines_and_in_zones(run, tmp_path, capsys):
@@ -223,6 +231,40 @@ def test_motion_is_found_without_any_detections(tmp_path, real, capsys):
     assert float(last["x"]) == pytest.approx(2 * 39 + 18, abs=4)
 
 
+def still(count):
+    return [np.full((96, 128, 3), 90, np.uint8)] * count
+
+
+def cuts(count):
+    """A scene that is another one every ten frames."""
+    scenes = np.random.default_rng(0).integers(0, 255, (9, 12, 16, 3), np.uint8)
+    large = [cv2.resize(one, (128, 96), interpolation=cv2.INTER_NEAREST) for one in scenes]
+    return [large[index // 10] for index in range(count)]
+
+
+@pytest.mark.parametrize(
+    ("frames", "detection", "roi", "why"),
+    [
+        (still(10), "", "", "too few to learn what stands"),
+        (still(40), "", "", "nothing moves in them"),
+        (cuts(90), "", "", "the camera moves"),
+        (still(10), "99,-1,20,20,16,12,0.9", "", "det.txt has no box in them"),
+        (still(10), "5,-1,20,20,16,12,0.9", "", "detections (1) repeat too rarely"),
+        (still(10), "5,-1,20,20,16,12,0.9", "[[60, 0], [90, 0], [90, 90]]", "all 1 detections are"),
+    ],
+)
+def test_a_clip_without_vehicles_says_why(tmp_path, real, capsys, frames, detection, roi, why):
+    video = write_video(tmp_path / "clip.avi", frames)
+    (tmp_path / "det.txt").write_text(detection)
+    (tmp_path / "roi.yaml").write_text(f"roi: {{near: {{inside: {roi}}}}}")
+    words = ["--detections", str(tmp_path / "det.txt")] if detection else []
+    words += ["--lines", str(tmp_path / "roi.yaml")] if roi else []
+    assert main(["traffic", str(video), "-o", str(tmp_path / "out"), *words]) == 0
+    said = capsys.readouterr().out.splitlines()[0]
+    assert said.startswith(f"no vehicle was found in {len(frames)} frames: ")
+    assert why in said
+
+
 def test_a_run_that_fails_keeps_the_results_before(run, capsys):
     out = run()
     before = {path.name: path.read_bytes() for path in out.iterdir()}
@@ -276,7 +318,7 @@ def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, sai
 
 
 def test_without_scipy_the_extra_is_named(run, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "scipy", None)
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     out = run(status=1)
     assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err
     assert not out.exists()
@@ -292,7 +334,7 @@ def test_an_interrupt_keeps_what_was_written(run, monkeypatch, capsys):
                 os.kill(os.getpid(), signal.SIGINT)
             return super().step(frame, detections, elapsed)
 
-    monkeypatch.setattr(traffic, "TrafficTracker", Interrupted)
+    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Interrupted)
     out = run(status=130)
     assert {row["frame"] for row in table(out / "tracks.csv")} == set("123456789")
     assert (out / "summary.png").exists()
@@ -310,7 +352,7 @@ def test_an_unexpected_error_costs_its_frame_alone(run, monkeypatch):
                 raise ZeroDivisionError("by zero")
             return super().step(frame, detections, elapsed)
 
-    monkeypatch.setattr(traffic, "TrafficTracker", Failing)
+    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Failing)
     out = run()
     frames = {int(row["frame"]) for row in table(out / "tracks.csv")}
     assert frames == {*range(1, 21)} - {9}
