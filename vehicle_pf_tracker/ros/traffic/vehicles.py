@@ -31,9 +31,9 @@ from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles, session
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.counting import Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 NONE = 0
 """Number that ends a selection; vehicles have numbers from 1."""
@@ -165,7 +165,8 @@ class Vehicles(CountedVehicles):
             If the image cannot be used; all vehicles are kept.
         """
         for crossing in self.follow(image, stamp_ns, detections):
-            self.latest[crossing.place] = crossing
+            if not crossing.doubt:
+                self.latest[crossing.place] = crossing
         self._is_shown, self._added = True, 0
         return [*self.session.events, *self._add_waiting()]
 
