@@ -20,7 +20,7 @@ import itertools
 import os
 import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import FrameType
 from typing import TypeVar
@@ -31,7 +31,7 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.files import check_yaml_file
+from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
 from vehicle_pf_tracker.ros.transport import image_transport
 
@@ -105,6 +105,7 @@ def spin_node(
     make_node: Callable[[], NodeT],
     image_bytes: int,
     spin: Callable[[SingleThreadedExecutor, NodeT], int],
+    arguments: Sequence[str],
 ) -> int:
     """Make a node, run `spin`, and destroy the node.
 
@@ -116,6 +117,8 @@ def spin_node(
         Size of the images of which shared memory should have room for some.
     spin : callable
         Runs the node's callbacks; returns the exit status.
+    arguments : sequence of str
+        Command line without the program's name.
 
     Returns
     -------
@@ -126,7 +129,7 @@ def spin_node(
     try:
         with image_transport(image_bytes, rclpy.get_rmw_implementation_identifier()) as notices:
             node = make_node()
-        for notice in notices:
+        for notice in [*notices, *_files_for_others(arguments, node.get_name())]:
             node.get_logger().warning(notice)
         executor.add_node(node)
         return spin(executor, node)
@@ -149,9 +152,23 @@ def end_at_once(status: int) -> None:
 
 def _check_parameter_files(arguments: Sequence[str]) -> None:
     """Refuse files in which a key is there twice, of which ROS would take the last."""
+    for path in _parameter_files(arguments):
+        check_yaml_file(path, "parameter file")
+
+
+def _parameter_files(arguments: Sequence[str]) -> Iterator[Path]:
     for option, value in itertools.pairwise(arguments):
         if option == "--params-file" and Path(value).is_file():  # of others, ROS says why
-            check_yaml_file(Path(value), "parameter file")
+            yield Path(value)
+
+
+def _files_for_others(arguments: Sequence[str], name: str) -> Iterator[str]:
+    """Say which parameter files have nothing for the node `name`: ROS passes over them."""
+    for path in _parameter_files(arguments):
+        try:
+            read_yaml(path, name)
+        except InputError as error:  # noqa: PERF203 - of a file or two
+            yield str(error)
 
 
 def _fail(name: str, sentence: str) -> int:

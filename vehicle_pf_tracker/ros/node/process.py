@@ -98,7 +98,7 @@ def run_node(name: str, make_node: Callable[[], Node], arguments: Sequence[str])
     def serve(words: list[str]) -> int:
         if words:
             return answer_usage(name, words, _usage(name))
-        return spin_node(make_node, _OVERLAY_BYTES, _spin)
+        return spin_node(make_node, _OVERLAY_BYTES, _spin, arguments)
 
     status = run_process(name, arguments, serve)
     if is_loading():  # a thread in LLVM would be left behind
