@@ -20,6 +20,7 @@ import itertools
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import FrameType
@@ -74,6 +75,8 @@ def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]]
         Exit status: that of `serve`, or 1 for a user's mistake (printed on stderr).
     """
     interrupts = _Interrupts()
+    # rclpy's words where a signal comes while a node is made; the node is not missed.
+    warnings.filterwarnings("ignore", "Failed to fini rosout publisher", RuntimeWarning)
     try:
         _check_parameter_files(arguments)
         rclpy.init(args=list(arguments))

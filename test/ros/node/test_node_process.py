@@ -145,6 +145,23 @@ def test_a_parameter_file_for_another_node_is_named_with_the_nodes_it_is_for(sta
     assert "has nothing for rear, only for /front/apf_tracker; use /** as" in node.output
 
 
+def test_a_signal_while_the_node_is_made_leaves_no_words(start_process):
+    code = (
+        "import os, signal, sys\n"
+        "import rclpy.node\n"
+        "from vehicle_pf_tracker.ros.executables import main\n"
+        "make = rclpy.node._rclpy.Node\n"
+        "def interrupted(*words):\n"
+        "    os.kill(os.getpid(), signal.SIGINT)\n"
+        "    return make(*words)\n"
+        "rclpy.node._rclpy.Node = interrupted\n"
+        "sys.exit(main('apf'))"
+    )
+    process = start_process("-c", code)
+    assert process.wait() == 0
+    assert process.output == ""
+
+
 def test_other_arguments_are_a_usage_error(start_process):
     code = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('apf'))"
     process = start_process("-c", code, "--target", "1,2,3,4")
