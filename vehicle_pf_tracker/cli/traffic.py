@@ -16,8 +16,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -37,6 +35,7 @@ from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.offline.detectors import DetectionFile
 from vehicle_pf_tracker.offline.driver import is_road_given
+from vehicle_pf_tracker.offline.live_page import live_page
 from vehicle_pf_tracker.offline.model_files import model_file
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.pictures import Pictures
@@ -54,7 +53,16 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
 PICTURE = "summary.png"
-PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE)
+HEAT = "heat.png"
+_LAST_PORT = 65535
+PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE, HEAT)
+
+
+def _port(text: str) -> int:
+    """Read a port of a command line."""
+    if not text.isdecimal() or int(text) > _LAST_PORT:
+        raise InputError(f"{text!r} is not a port, 0 to {_LAST_PORT}")
+    return int(text)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +71,7 @@ class Request(TrackingRequest):
 
     output: Path | None = option(
         "-o", type=Path, metavar="DIR",
-        help="folder for tracks.csv, tracks.txt, counts.csv, run.json and summary.png "
+        help="folder for tracks.csv, tracks.txt, counts.csv, run.json, summary.png and heat.png "
         "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
     detections: Path | None = option(
@@ -83,6 +91,11 @@ class Request(TrackingRequest):
         metavar="FILE",
         help="lines, zones and regions of interest, lines.yaml",
     )
+    serve: int | None = option(
+        type=_port, nargs="?", const=0, metavar="PORT",
+        help="show picture and counts meanwhile on a page for this machine's browsers; without "
+        "PORT at any free one",
+    )  # fmt: skip
     visible_only: bool = switch(
         help="leave vehicles that are occluded, and so predicted, out of tracks.txt"
     )
@@ -116,10 +129,7 @@ def run(request: Request) -> int:
     print(f"results are in {folder}; {PICTURE} shows all paths")
     if request.video and not pictures.problem:
         print(f"the video is {request.video}")
-    if stop.has_left:
-        sys.stdout.flush()
-        os._exit(status)
-    return status
+    return stop.ended(status)
 
 
 def _tracking(
@@ -167,15 +177,22 @@ def _follow(
     with (
         stopping(stop),
         counting("tracked") as progress,
+        live_page(request.serve) as page,
         track_files(folder, counting=counts, visible_only=request.visible_only) as files,
     ):
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
         targets = by_name(request.given_targets(), first[0])
+        if page is not None:
+            print(f"open {page.url} in a browser on this machine", flush=True)
         with suppress(StillAtWork):
-            tracking.follow_all(frames, files, pictures, targets)
+            tracking.follow_all(frames, files, pictures, page, targets)
     ended = cut_short(stop, source, tracking.summary.frames)
-    if not tracking.paths.write(folder / PICTURE, tracking.counter):
-        (folder / PICTURE).unlink(missing_ok=True)
+    if tracking.paths.ground is None:
+        for name in (PICTURE, HEAT):
+            (folder / name).unlink(missing_ok=True)
+    else:
+        tracking.paths.write(folder / PICTURE, tracking.counter)
+        tracking.heat.write(folder / HEAT, tracking.paths.ground)
     status = stop.status if ended else int(bool(pictures.problem))
     return status, [*tracking.notices, *pictures.notices, *ended]
 
