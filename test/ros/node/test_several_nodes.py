@@ -22,30 +22,24 @@ import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
-from diagnostic_msgs.msg import DiagnosticArray
 from plug_in_sample import install
-from sensor_msgs.msg import Image
-from tracker_rig import FIRST_NS, PERIOD_NS, QUEUE, TARGET, header, road, values_of
+from small_recordings import record
 
-from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.ros.messages import image_message
-from vehicle_pf_tracker.trackers.registry import find_variant, plug_ins
-from vehicle_pf_tracker.trackers.session import Session
+from vehicle_pf_tracker import track
+from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+from vehicle_pf_tracker.ros.replay.replaying import replay
+from vehicle_pf_tracker.trackers.registry import plug_ins
 
 pytestmark = pytest.mark.ros
 
 CODE = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('vehicle'))"
-X, Y, WIDTH, HEIGHT = TARGET
-CAMERAS = f"""
+CAMERAS = """
 cameras:
-  front: {{topic: /front/image, variant: pf, target: [{X}, {Y}, {WIDTH}, {HEIGHT}]}}
-  rear:
-    topic: /rear/image
-    variant: steady
-    target: [{X}, {Y}, {WIDTH}, {HEIGHT}]
-    parameters: {{trust: 0.5}}
+  front: {topic: /camera/image_raw, variant: pf}
+  rear: {topic: /camera/image_raw, variant: steady, parameters: {trust: 0.5}}
 """
-COUNT = 5
+NODES = {"front/pf_tracker": ("pf", {}), "rear/steady_tracker": ("steady", {"trust": 0.5})}
 
 
 @pytest.fixture(scope="module")
@@ -62,24 +56,18 @@ def start_any(start_process, site):
 
 
 def test_several_nodes_share_a_process_and_answer_as_offline(
-    bench, start_any, site, tmp_path, monkeypatch
+    start_any, site, tmp_path, monkeypatch
 ):
     (tmp_path / "cameras.yaml").write_text(CAMERAS)
     process = start_any("--cameras", str(tmp_path / "cameras.yaml"))
+    rec = record(tmp_path / "rec")
+    report = replay(Recording(rec), ReplayOptions(lockstep=True, nodes=tuple(NODES)))
     monkeypatch.syspath_prepend(site)
     plug_ins.cache_clear()
-    for camera, variant, own in (("front", "pf", {}), ("rear", "steady", {"trust": 0.5})):
-        answers = bench.collect(DiagnosticArray, f"/{camera}/{variant}_tracker/mode", QUEUE)
-        publisher = bench.publisher(Image, f"/{camera}/image", QUEUE)
-        found = find_variant(variant)
-        session = Session(found, found.parameters(**own))
-        session.set_target(Box(*map(float, TARGET)))
-        for index, frame in enumerate(road(COUNT)):
-            publisher.publish(image_message(header(index), frame))
-            bench.wait_for(lambda wanted=index + 1, got=answers: len(got) == wanted)
-            expected = session.feed(frame, FIRST_NS + index * PERIOD_NS)
-            values = values_of(answers[-1])
-            assert (float(values["x"]), float(values["y"])) == expected.position
+    for node in report.nodes:
+        variant, own = NODES[node.name.lstrip("/")]
+        expected = track(rec, None, variant, **own)
+        assert [row.position for row in node.rows] == [row.position for row in expected]
     plug_ins.cache_clear()
     process.send(signal.SIGINT)
     assert process.wait() == 0
@@ -96,7 +84,7 @@ def test_a_plug_in_is_a_node_of_its_own_name(bench, start_any):
     ("words", "status", "sentence"),
     [
         (["--help"], 0, "usage: vehicle_tracker (--variant NAME | --cameras FILE)"),
-        ([], 2, "usage: vehicle_tracker"),
+        (["apf"], 2, "unknown arguments: apf"),
         (["--variant"], 1, "there is no variant ''"),
         (["--variant", "stedy"], 1, "(did you mean 'steady'?)"),
         (["--cameras", "/nowhere.yaml"], 1, "cannot read the file of cameras /nowhere.yaml"),
