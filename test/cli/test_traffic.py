@@ -27,9 +27,9 @@ import cv2
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.cli import traffic
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.offline import counted_vehicles
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
@@ -87,7 +87,7 @@ class Follower:
 @pytest.fixture(autouse=True)
 def _tracker(monkeypatch, request):
     if "real" not in request.fixturenames:
-        monkeypatch.setattr(traffic, "TrafficTracker", Follower)
+        monkeypatch.setattr(counted_vehicles, "TrafficTracker", Follower)
 
 
 @pytest.fixture
@@ -148,6 +148,13 @@ def test_visible_only_leaves_hidden_vehicles_out(run):
     mot = (out / "tracks.txt").read_text().splitlines()
     assert len(mot) == 2 * COUNT - len(HIDDEN)
     assert len(table(out / "tracks.csv")) == 2 * COUNT
+
+
+def test_a_region_of_interest_alone_counts_nothing(run, tmp_path):
+    (tmp_path / "roi.yaml").write_text("roi: {a: {outside: [[0, 0], [50, 0], [50, 96], [0, 96]]}}")
+    out = run("--lines", tmp_path / "roi.yaml")
+    assert {row["x"] for row in table(out / "tracks.csv")} == {"68.0"}  # of the second vehicle
+    assert not (out / "counts.csv").exists()
 
 
 def test_counts_at_lines_and_in_zones(run, tmp_path, capsys):
@@ -276,7 +283,7 @@ def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, sai
 
 
 def test_without_scipy_the_extra_is_named(run, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "scipy", None)
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     out = run(status=1)
     assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err
     assert not out.exists()
@@ -292,7 +299,7 @@ def test_an_interrupt_keeps_what_was_written(run, monkeypatch, capsys):
                 os.kill(os.getpid(), signal.SIGINT)
             return super().step(frame, detections, elapsed)
 
-    monkeypatch.setattr(traffic, "TrafficTracker", Interrupted)
+    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Interrupted)
     out = run(status=130)
     assert {row["frame"] for row in table(out / "tracks.csv")} == set("123456789")
     assert (out / "summary.png").exists()
@@ -310,7 +317,7 @@ def test_an_unexpected_error_costs_its_frame_alone(run, monkeypatch):
                 raise ZeroDivisionError("by zero")
             return super().step(frame, detections, elapsed)
 
-    monkeypatch.setattr(traffic, "TrafficTracker", Failing)
+    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Failing)
     out = run()
     frames = {int(row["frame"]) for row in table(out / "tracks.csv")}
     assert frames == {*range(1, 21)} - {9}

@@ -20,6 +20,8 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, identity_colour
 from vehicle_pf_tracker.offline.traffic_results import TrafficSummary
+from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 MODES = {
@@ -28,6 +30,8 @@ MODES = {
     "O": TrackMode.OCCLUDED,
     "L": TrackMode.LOST,
 }
+
+NOWHERE = Counter(CountingPlan())
 
 
 def estimate(identity, mode, box=None, label=""):
@@ -56,15 +60,15 @@ def test_occlusions_survived_are_counted():
 def test_a_vehicle_that_is_never_confirmed_is_none():
     summary = summed("ttttt-----")
     assert summary.vehicles == {}
-    assert summary.sentences() == ["no vehicle was found in 10 frames"]
-    assert summary.to_json()["vehicles"] == 0
+    assert summary.sentences(NOWHERE) == ["no vehicle was found in 10 frames"]
+    assert summary.to_json(NOWHERE)["vehicles"] == 0
 
 
 def test_a_late_class_counts():
     summary = TrafficSummary()
     summary.add([estimate(1, "T")], {})
     summary.add([estimate(1, "T", label="bus")], {})
-    assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences()
+    assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences(NOWHERE)
 
 
 def drive(picture, count=30, width=320):

@@ -24,6 +24,7 @@ from types import MappingProxyType
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles
 from vehicle_pf_tracker.offline.driver import RATE_FRAMES, Numbered, frame_rate_of
 from vehicle_pf_tracker.offline.estimates import clock_words
 from vehicle_pf_tracker.offline.pictures import Pictures
@@ -31,7 +32,7 @@ from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, annotated
 from vehicle_pf_tracker.offline.traffic_results import TrackFiles, TrafficSummary
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.session import TrackerError
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -40,14 +41,14 @@ _MOST_NOTICES = 20
 """Notices kept, what a screen holds: a camera without a clock gives one per frame, for hours."""
 
 
-class TrafficRun:
+class TrafficRun(CountedVehicles):
     """One pass over a source.
 
     Parameters
     ----------
     session : TrafficSession
         Drives the tracker.
-    counter : Counter or None
+    counter : Counter, optional
         Counts at lines and in zones.
     detections_of : callable or None
         Gives the detections of a frame by its number, from 1; None leaves them to the session.
@@ -67,8 +68,7 @@ class TrafficRun:
         *,
         detections_of: Callable[[int], Detections] | None = None,
     ) -> None:
-        self.session = session
-        self.counter = counter
+        super().__init__(session, counter)
         self.summary = TrafficSummary()
         self.paths = PathPicture()
         self._notices: list[str] = []
@@ -77,7 +77,6 @@ class TrafficRun:
         self._detections_of = detections_of
         self._targets: Mapping[str, Mapping[int, Box]] = {}
         self._by_name: dict[str, int] = {}
-        self._restarts = 0
 
     @property
     def notices(self) -> list[str]:
@@ -91,7 +90,7 @@ class TrafficRun:
         else:
             self._more_notices += 1
 
-    def follow(
+    def follow_all(
         self,
         frames: Numbered,
         files: TrackFiles,
@@ -124,23 +123,25 @@ class TrafficRun:
         start_ns = ahead[0][1].stamp_ns
         with pictures.drawing(frame_rate_of(ahead)) as take:
             for number, found in itertools.chain(ahead, frames):
-                estimates = self._step(number, found)
-                if found.frame is None or estimates is None:
+                crossings = self._step(number, found)
+                if found.frame is None or crossings is None:
                     continue
-                self._write(number, found.stamp_ns, estimates, files)
+                estimates = self.estimates
+                files.write(number, found.stamp_ns, estimates, crossings)
+                self.summary.add(estimates, self.counter.occupancy)
                 self.paths.add(found.frame, estimates)
                 words = _words(number, found.stamp_ns - start_ns, estimates)
                 draw = partial(annotated, found.frame, words, estimates, self.counter)
                 take((), draw, found.frame, found.stamp_ns)
 
-    def _step(self, number: int, found: StampedFrame) -> tuple[TrackEstimate, ...] | None:
+    def _step(self, number: int, found: StampedFrame) -> tuple[Crossing, ...] | None:
         """Take a frame; None where it is rejected, so that nothing is known of its time."""
         if found.frame is None:
             self._note(f"frame {number} was rejected: it cannot be read")
             return None
         detections = self._detections_of(number) if self._detections_of is not None else None
         try:
-            estimates = self.session.feed(found.frame, found.stamp_ns, detections)
+            crossings = super().follow(found.frame, found.stamp_ns, detections)
         except (InputError, TrackerError) as error:
             if isinstance(error, TrackerError) and error.persists:
                 raise
@@ -150,17 +151,13 @@ class TrafficRun:
             if event not in self._last_events:  # one that lasts is told once
                 self._note(f"frame {number}: {event}")
         self._last_events = list(self.session.events)
-        if self.session.restarts != self._restarts:
-            self._begin_anew()
         self._add_targets(found.frame, number)
-        return estimates
+        return crossings
 
     def _begin_anew(self) -> None:
-        """Note that the session has discarded all vehicles but those that it kept."""
-        self._restarts, kept = self.session.restarts, self.session.successors
+        super()._begin_anew()
+        kept = self.session.successors
         self._by_name = {name: kept[old] for name, old in self._by_name.items() if old in kept}
-        if self.counter is not None:
-            self.counter.forget_vehicles()
 
     def _add_targets(self, frame: Frame, number: int) -> None:
         """Follow the vehicles given for this frame; a name given again replaces the one before."""
@@ -174,14 +171,6 @@ class TrafficRun:
             if name in self._by_name:
                 self.session.remove(self._by_name[name])
             self._by_name[name] = self.session.add(box, "" if name.isdecimal() else name)
-
-    def _write(
-        self, number: int, stamp_ns: int, estimates: Sequence[TrackEstimate], files: TrackFiles
-    ) -> None:
-        crossings = self.counter.update(estimates, stamp_ns) if self.counter is not None else ()
-        files.write(number, stamp_ns, estimates, crossings)
-        occupancy = self.counter.occupancy if self.counter is not None else {}
-        self.summary.add(estimates, occupancy)
 
 
 def _words(number: int, elapsed_ns: int, estimates: Sequence[TrackEstimate]) -> str:

@@ -283,7 +283,7 @@ class TrafficSummary:
         """Vehicles that stayed invisible after their last occlusion."""
         return sum(one.is_hidden for one in self.vehicles.values())
 
-    def sentences(self, counter: Counter | None = None) -> list[str]:
+    def sentences(self, counter: Counter) -> list[str]:
         """Return the summary, a line for each fact."""
         if not self.vehicles:
             return [f"no vehicle was found in {self.frames} frames"]
@@ -293,30 +293,28 @@ class TrafficSummary:
             f"{_number(self.survived, 'occlusion')} survived under the same number; "
             f"{_number(self.ended_hidden, 'vehicle')} not seen again after an occlusion",
         ]
-        return found + (self._counts(counter) if counter is not None else [])
+        return found + self._counts(counter)
 
-    def to_json(self, counter: Counter | None = None) -> dict[str, Any]:
+    def to_json(self, counter: Counter) -> dict[str, Any]:
         """Return the summary for `run.json`."""
-        document: dict[str, Any] = {
+        return {
             "frames": self.frames,
             "vehicles": len(self.vehicles),
             "most_at_once": self.most_at_once,
             "occlusions_survived": self.survived,
             "ended_occluded": self.ended_hidden,
-        }
-        if counter is not None:
-            document["counts"] = [
+            "counts": [
                 {"place": place, "direction": direction, "class": label, "count": count}
                 for (place, direction, label), count in sorted(counter.totals.items())
-            ]
-            document["occupancy"] = {
+            ],
+            "occupancy": {
                 zone.name: {
                     "mean": self._mean_in(zone.name),
                     "most": self._most_in_zone.get(zone.name, 0),
                 }
                 for zone in counter.plan.zones
-            }
-        return document
+            },
+        }
 
     def _classes(self) -> str:
         classes = Tally(one.label for one in self.vehicles.values() if one.label)

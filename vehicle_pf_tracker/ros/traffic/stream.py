@@ -31,6 +31,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.offline.detectors import PacedDetector
 from vehicle_pf_tracker.offline.drawing import Colour, draw_box, line_width
 from vehicle_pf_tracker.offline.traffic_drawing import annotated
 from vehicle_pf_tracker.parameters.configuration import Configuration, NodeParameters
@@ -48,7 +49,7 @@ from vehicle_pf_tracker.ros.traffic.messages import (
     scalars,
     tracks_message,
 )
-from vehicle_pf_tracker.ros.traffic.rates import Rates, TimedDetector
+from vehicle_pf_tracker.ros.traffic.rates import Rates
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
@@ -110,7 +111,7 @@ class TrafficOutputs(Outputs):
         header: Header,
         frame: Frame,
         estimates: Sequence[TrackEstimate],
-        counter: Counter | None,
+        counter: Counter,
         selected: TrackEstimate | None,
     ) -> None:
         """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
@@ -302,7 +303,7 @@ class TrafficStream(NodeStream):
         period = vehicles.session.tracker.frame_period
         estimates, selected = vehicles.estimates, vehicles.selected
         self._outputs.publish_vehicles(header, estimates, own, period)
-        if vehicles.counter is not None:
+        if vehicles.counter.plan.is_counting:
             self._outputs.publish_counts(header, vehicles.counter, vehicles.latest)
         if selected is not None:
             self._outputs.publish_vehicle(in_pixels(header, own), selected, own, period)
@@ -329,7 +330,7 @@ class TrafficStream(NodeStream):
         detector, found, seconds = self.vehicles.session.detector, len(self._detections or ()), 0.0
         if self._waiting is not None:
             seconds = self._waiting.latency
-        elif isinstance(detector, TimedDetector):
+        elif isinstance(detector, PacedDetector):
             found, seconds = detector.found, detector.seconds
         known = [one.identity for one in estimates if one.mode in CONFIRMED]
         visible = sum(one.mode is TrackMode.TRACKING for one in estimates)

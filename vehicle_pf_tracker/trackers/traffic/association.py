@@ -22,7 +22,7 @@ are hidden near by: by distance, size and colours.
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import math
 from collections.abc import Sequence
 
@@ -53,18 +53,20 @@ _LEAST_PART = 0.15
 
 
 def check_library() -> None:
-    """Check at the start, not in the first frame, that the library of `assign` is there.
+    """Load the library of `assign` at the start: it takes a second, in which a node loses images.
 
     Raises
     ------
     InputError
         If it is not.
     """
-    if importlib.util.find_spec("scipy") is None:
+    try:
+        importlib.import_module("scipy.optimize")
+    except ModuleNotFoundError:
         raise InputError(
             "traffic needs the Python module scipy: install the extra [video], "
             "pip install 'vehicle_pf_tracker[video]', or with apt python3-scipy"
-        )
+        ) from None
 
 
 def deviations(edges: Array, noise: float) -> Array:

@@ -26,10 +26,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
+from vehicle_pf_tracker.parameters.counting_plan import Region
 
 MOST_DETECTIONS = 300
 """Detections of a frame that are looked at, the highest scores first. No camera shows as many
@@ -77,10 +80,25 @@ class Detections:
     def __len__(self) -> int:
         return len(self.boxes)
 
-    def take(self, indices: Array) -> Detections:
+    def take(self, indices: npt.NDArray[np.intp]) -> Detections:
         """Those at `indices`, in this order."""
         labels = tuple(self.labels[i] for i in indices.tolist())
         return Detections(self.boxes[indices], self.scores[indices], labels)
+
+    def within(self, regions: Sequence[Region]) -> Detections:
+        """Those whose centre lies in one of the inner regions, if any, and in no outer one."""
+        centres = (self.boxes[:, :2] + self.boxes[:, 2:] / 2).astype(np.float32)
+        kept, inner = np.ones(len(self), bool), np.zeros(len(self), bool)
+        for region in regions:
+            outline = np.asarray(region.corners, np.float32)
+            inside = [cv2.pointPolygonTest(outline, one, False) >= 0 for one in centres.tolist()]
+            if region.is_inside:
+                inner |= inside
+            else:
+                kept &= ~np.asarray(inside, bool)
+        if any(region.is_inside for region in regions):
+            kept &= inner
+        return self.take(np.flatnonzero(kept))
 
     def usable(self, width: int, height: int) -> Detections:
         """Those a tracker can use in an image of `width` x `height` px.

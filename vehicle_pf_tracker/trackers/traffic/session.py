@@ -28,6 +28,7 @@ from typing import Protocol
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import CodedFrame, Frame
+from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.image_stream import Turn
 from vehicle_pf_tracker.trackers.session import StreamSession
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
@@ -77,8 +78,8 @@ class TrafficSession(StreamSession[TrafficTracker]):
         Nominal rate in 1/s; 0 takes the median of the first ten intervals.
     reset_on_time_jump : bool
         Discard all vehicles when stamps go back and stay back.
-    every : int
-        The detector looks at every k-th image; pixels hold the vehicles in between.
+    regions : sequence of Region
+        Detections elsewhere are ignored; none: all count.
 
     Attributes
     ----------
@@ -101,7 +102,7 @@ class TrafficSession(StreamSession[TrafficTracker]):
         *,
         frame_rate: float = 0.0,
         reset_on_time_jump: bool = True,
-        every: int = 1,
+        regions: Sequence[Region] = (),
     ) -> None:
         super().__init__(tracker, frame_rate, reset_on_time_jump)
         self.estimates: tuple[TrackEstimate, ...] = ()
@@ -109,7 +110,7 @@ class TrafficSession(StreamSession[TrafficTracker]):
         self.successors: Mapping[int, int] = MappingProxyType({})
         self.detector = make_detector() if make_detector else None
         self._make_detector = make_detector
-        self._every, self._images = every, 0
+        self._regions = tuple(regions)
         self._given: dict[int, tuple[Box, str]] = {}
         self._detections: Detections | None = None
 
@@ -173,6 +174,8 @@ class TrafficSession(StreamSession[TrafficTracker]):
     def _step(self, turn: Turn, detections: Detections | None) -> None:
         if detections is None and self.detector is not None:
             detections = self._detected(self.detector, turn.frame)
+        if detections is not None and self._regions:
+            detections = detections.within(self._regions)
         self.estimates = self.tracker.step(turn.frame, detections, turn.elapsed)
         if self._given:
             followed = {one.identity: (one.box, one.label) for one in self.estimates}
@@ -180,9 +183,6 @@ class TrafficSession(StreamSession[TrafficTracker]):
 
     def _detected(self, detector: Detector, frame: Frame) -> Detections | None:
         """Return the detections; None where it did not look, so that no vehicle is missed."""
-        self._images += 1
-        if (self._images - 1) % self._every:
-            return None
         found = detector.detect(frame, self.estimates)
         if detector.disturbed:
             self.events.append(_DISTURBED)
