@@ -112,7 +112,7 @@ dist: .venv/docs  ## build the wheel and the source archive, into results/dist
 		PYTHONPATH=. $(CURDIR)/$(BIN)/python -m pytest -m "not slow" test/core test/packaging test/tools test/test_walls.py
 
 clean:  ## remove what the other targets made
-	rm -rf .venv .venv-noble .venv-baselines build install log results *.egg-info
+	rm -rf .venv .venv-noble .venv-kilted .venv-baselines build install log results *.egg-info
 	rm -rf .coverage .coverage.* .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
@@ -124,10 +124,13 @@ clean:  ## remove what the other targets made
 .venv-noble/locked: requirements/noble.txt requirements/ros-jazzy.txt
 	.ci/make-venv .venv-noble requirements/noble.txt $(or $(NOBLE_PYTHON),3.12 3.11 3.10)
 
+.venv-kilted/locked: requirements/noble.txt requirements/ros-kilted.txt
+	ROS_LOCK=requirements/ros-kilted.txt .ci/make-venv .venv-kilted requirements/noble.txt $(or $(NOBLE_PYTHON),3.12 3.11 3.10)
+
 .venv-baselines/locked: vehicle_pf_tracker/evaluation/baselines.txt
 	.ci/make-venv --without-ros .venv-baselines vehicle_pf_tracker/evaluation/baselines.txt $(PYTHON)
 
-.venv/installed .venv-noble/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml package.xml \
+.venv/installed .venv-noble/installed .venv-kilted/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml package.xml \
 		vehicle_pf_tracker/trackers/registry.py
 	$*/bin/python $(INSTALL) --no-build-isolation --editable .
 	touch $@
