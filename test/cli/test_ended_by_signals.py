@@ -91,8 +91,9 @@ def test_a_video_that_is_not_done_leaves_nothing(tmp_path):
     assert end_in_the_middle(tmp_path, signal.SIGTERM, "synth", "highway", "a.mp4") == []
 
 
-def test_an_import_that_is_not_done_leaves_nothing(tmp_path, clip):
-    assert end_in_the_middle(tmp_path, signal.SIGTERM, "import", str(clip), "rec") == []
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_an_import_that_is_not_done_leaves_nothing(tmp_path, clip, number):
+    assert end_in_the_middle(tmp_path, number, "import", str(clip), "rec") == []
 
 
 STUCK = """

@@ -45,7 +45,7 @@ def test_a_detector_looks_at_every_third_image_and_says_whether_it_looked():
         (0.018, 0.005, 30, 1),
         (0.018, 0.020, 30, 3),  # 6.7 ms are left of 26.7
         (0.018, 0.020, 10, 1),
-        (0.2, 0.1, 30, 6),  # too slow for any: a fifth of a second, no longer
+        (0.2, 0.1, 30, 4),  # too slow for any: a seventh of a second, no longer
         (0.2, 0.1, 2, 1),
     ],
 )

@@ -16,13 +16,12 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import UsageError, counting, print_rows, tell_notices
+from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_rows, tell_notices
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import stopping
@@ -97,7 +96,11 @@ def _track(request: Request, variant: Variant, source: Source, folder: RunFolder
         with recording as on_frame:
             rows = follow(trackers, frames, pictures, on_frame)
     ended = cut_short(stop, source, max(map(len, rows.values())))
-    of_trackers = itertools.chain.from_iterable(one.notices for one in trackers.values())
+    of_trackers = [
+        f"{name}: {sentence}" if len(trackers) > 1 else sentence
+        for name, tracker in trackers.items()
+        for sentence in tracker.notices
+    ]
     notices = [*source.notices, *of_trackers, *pictures.notices, *ended]
     tell_notices(notices)
     _write(folder, request, source, trackers, rows, notices)
@@ -105,11 +108,11 @@ def _track(request: Request, variant: Variant, source: Source, folder: RunFolder
     for name, of_target in rows.items():
         print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target)}")
     print(f"results are in {folder.path}; {SHEET} shows the key frames")
-    if request.video:
+    if request.video and not pictures.problem:
         print(f"the video is {request.video}")
     if request.recording:
         print(f"the recording is {request.recording}, for Foxglove and `ros2 bag play`")
-    return stop.status if ended else 0
+    return stop.status if ended else int(bool(pictures.problem))
 
 
 def _trackers(
@@ -126,8 +129,8 @@ def _trackers(
         if truth is None:
             tell_notices(source.notices)  # they say which truth was seen and not read
             raise UsageError(
-                f"{request.source} has no truth to start on; give the vehicle's box in the first "
-                "image with --target x,y,w,h"
+                f"{request.source} has no truth to start on; draw a box around the vehicle with "
+                f"`{PROGRAM} pick {request.source}`, or give it with --target x,y,w,h"
             )
     return {
         name: OfflineTracker(

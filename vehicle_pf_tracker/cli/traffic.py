@@ -37,6 +37,7 @@ from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.offline.detectors import DetectionFile
 from vehicle_pf_tracker.offline.driver import is_road_given
+from vehicle_pf_tracker.offline.live_page import live_page
 from vehicle_pf_tracker.offline.model_files import model_file
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.pictures import Pictures
@@ -54,7 +55,16 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
 PICTURE = "summary.png"
-PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE)
+HEAT = "heat.png"
+_LAST_PORT = 65535
+PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE, HEAT)
+
+
+def _port(text: str) -> int:
+    """Read a port of a command line."""
+    if not text.isdecimal() or int(text) > _LAST_PORT:
+        raise InputError(f"{text!r} is not a port, 0 to {_LAST_PORT}")
+    return int(text)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +73,7 @@ class Request(TrackingRequest):
 
     output: Path | None = option(
         "-o", type=Path, metavar="DIR",
-        help="folder for tracks.csv, tracks.txt, counts.csv, run.json and summary.png "
+        help="folder for tracks.csv, tracks.txt, counts.csv, run.json, summary.png and heat.png "
         "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
     detections: Path | None = option(
@@ -83,6 +93,11 @@ class Request(TrackingRequest):
         metavar="FILE",
         help="lines, zones and regions of interest, lines.yaml",
     )
+    serve: int | None = option(
+        type=_port, nargs="?", const=0, metavar="PORT",
+        help="show picture and counts meanwhile on a page for this machine's browsers; without "
+        "PORT at any free one",
+    )  # fmt: skip
     visible_only: bool = switch(
         help="leave vehicles that are occluded, and so predicted, out of tracks.txt"
     )
@@ -101,7 +116,8 @@ def run(request: Request) -> int:
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
-        status, notices = _follow(request, tracking, source, make_folder(folder), stop)
+        pictures = Pictures(request.video)
+        status, notices = _follow(request, tracking, source, make_folder(folder), stop, pictures)
         notices = [
             *source.notices,
             *(detections.notices if detections is not None else []),
@@ -109,10 +125,11 @@ def run(request: Request) -> int:
         ]
         tell_notices(notices)
         _write(request, configuration, tracking, source, notices, folder)
-    for sentence in tracking.summary.sentences(tracking.counter):
+    detector = str(request.detections or configuration.tracker.detector.kind)
+    for sentence in tracking.sentences(detector):
         print(sentence)
     print(f"results are in {folder}; {PICTURE} shows all paths")
-    if request.video:
+    if request.video and not pictures.problem:
         print(f"the video is {request.video}")
     if stop.has_left:
         sys.stdout.flush()
@@ -153,24 +170,36 @@ class _LeavableDetector:
 
 
 def _follow(
-    request: Request, tracking: TrafficRun, source: Source, folder: Path, stop: Stop
+    request: Request,
+    tracking: TrafficRun,
+    source: Source,
+    folder: Path,
+    stop: Stop,
+    pictures: Pictures,
 ) -> tuple[int, list[str]]:
     """Follow all vehicles to the end or to a signal; return the exit status, and notices."""
-    pictures = Pictures(request.video)
     counts = tracking.counter.plan.is_counting
     with (
         stopping(stop),
         counting("tracked") as progress,
+        live_page(request.serve) as page,
         track_files(folder, counting=counts, visible_only=request.visible_only) as files,
     ):
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
         targets = by_name(request.given_targets(), first[0])
+        if page is not None:
+            print(f"open {page.url} in a browser on this machine", flush=True)
         with suppress(StillAtWork):
-            tracking.follow_all(frames, files, pictures, targets)
+            tracking.follow_all(frames, files, pictures, page, targets)
     ended = cut_short(stop, source, tracking.summary.frames)
-    if not tracking.paths.write(folder / PICTURE, tracking.counter):
-        (folder / PICTURE).unlink(missing_ok=True)
-    return stop.status if ended else 0, [*tracking.notices, *pictures.notices, *ended]
+    if tracking.paths.ground is None:
+        for name in (PICTURE, HEAT):
+            (folder / name).unlink(missing_ok=True)
+    else:
+        tracking.paths.write(folder / PICTURE, tracking.counter)
+        tracking.heat.write(folder / HEAT, tracking.paths.ground)
+    status = stop.status if ended else int(bool(pictures.problem))
+    return status, [*tracking.notices, *pictures.notices, *ended]
 
 
 def _write(

@@ -17,19 +17,21 @@
 from __future__ import annotations
 
 import time
+from collections import Counter as Tally
 from collections.abc import Callable
 from pathlib import Path
 
 from vehicle_pf_tracker.core.frame import CodedFrame, Frame
 from vehicle_pf_tracker.offline.detectors import PacedDetector, detector_maker
 from vehicle_pf_tracker.offline.model_files import Progress, silent
+from vehicle_pf_tracker.offline.traffic_drawing import Trails, annotated
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.association import check_library
-from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import Detector, TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
@@ -48,11 +50,14 @@ class CountedVehicles:
     ----------
     session, counter
         The same.
+    trails : Trails
+        Paths over the last images.
     """
 
     def __init__(self, session: TrafficSession, counter: Counter | None = None) -> None:
         self.session = session
         self.counter = counter or Counter(CountingPlan())
+        self.trails = Trails()
         self._restarts = session.restarts
 
     @property
@@ -79,7 +84,28 @@ class CountedVehicles:
             detector.pace(time.perf_counter() - began, self.session.tracker.frame_period)
         if self.session.restarts != self._restarts:
             self._begin_anew()
+        self.trails.add(self.estimates)
         return self.counter.update(self.estimates, stamp_ns)
+
+    def drawn(self, frame: Frame, head: str = "") -> Frame:
+        """Return a copy of the last image with vehicles, counts, `head` and their number."""
+        modes = Tally(one.mode for one in self.estimates)
+        hidden = f", {modes[TrackMode.OCCLUDED]} occluded" if modes[TrackMode.OCCLUDED] else ""
+        words = f"{head}{sum(modes[mode] for mode in CONFIRMED)} vehicles{hidden}"
+        return annotated(frame, words, self.estimates, self.counter, self.trails)
+
+    def facts(self) -> dict[str, object]:
+        """Return the number of vehicles, and what was counted, by name."""
+        counter = self.counter
+        return {
+            "vehicles": sum(one.mode in CONFIRMED for one in self.estimates),
+            **{f"{zone}: inside": there for zone, there in counter.occupancy.items()},
+            **{
+                f"{place}: {to}": counter.count(place, to)
+                for place, both in counter.directions.items()
+                for to in both
+            },
+        }
 
     def _begin_anew(self) -> None:
         """Note that the session has discarded all vehicles but its `successors`."""

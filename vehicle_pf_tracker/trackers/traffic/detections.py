@@ -91,11 +91,12 @@ class Detections:
         kept, inner = np.ones(len(self), bool), np.zeros(len(self), bool)
         for region in regions:
             outline = np.asarray(region.corners, np.float32)
-            inside = [cv2.pointPolygonTest(outline, one, False) >= 0 for one in centres.tolist()]
+            signs = [cv2.pointPolygonTest(outline, one, False) for one in centres.tolist()]
+            inside = np.array(signs, np.float64) >= 0  # of no detection too
             if region.is_inside:
                 inner |= inside
             else:
-                kept &= ~np.asarray(inside, bool)
+                kept &= ~inside
         if any(region.is_inside for region in regions):
             kept &= inner
         return self.take(np.flatnonzero(kept))
