@@ -14,6 +14,9 @@ INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
 # What the versions of NumPy and OpenCV decide: numbers, pixels and messages.
 VERSIONED := $(addprefix test/,filtering image trackers recordings scenes/test_first_scenes_stay.py \
 	ros/test_conversions.py ros/node/test_node_images.py ros/node/test_node_encodings.py)
+# Lifecycle, parameters, targets, processes and a replay: what a release of rclpy may change.
+KILTED := $(addprefix test/ros/,test_rclpy_internals.py test_transport.py node/test_node_lifecycle.py \
+	node/test_several_nodes.py node/test_node_requests.py replay/test_replay_lockstep.py)
 # What each part of the tests but test-offline runs, which has the rest.
 test-ros := ros
 test-footage := scenes recordings reproduction
@@ -25,7 +28,7 @@ COVERED := 92
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 # Each target that says of itself what it does, with two hashes, is listed by `make help`.
-.PHONY: help demo test test-all test-offline test-footage test-programs test-ros test-noble kernels lint types format config colcon baselines bench reproduce docs dist clean
+.PHONY: help demo test test-all test-offline test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs dist clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
@@ -68,6 +71,9 @@ test-ros test-footage test-programs: .venv/installed
 
 test-noble: .venv-noble/installed  ## numbers, pixels and messages with the NumPy and OpenCV of Ubuntu 24.04
 	.venv-noble/bin/python -m pytest -m "not slow" $(PYTEST_ARGS) $(VERSIONED)
+
+test-kilted: .venv-kilted/installed  ## some tests of the nodes with the ROS 2 after Jazzy
+	.venv-kilted/bin/python -m pytest -m "not slow" $(KILTED)
 
 colcon: .venv/colcon  ## colcon build and its tests, in a scratch folder
 	PATH="$(CURDIR)/$(BIN):$$PATH" .ci/colcon
