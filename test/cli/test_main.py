@@ -63,10 +63,14 @@ def test_a_parser_of_all_verbs_has_their_options():
 
 
 @pytest.mark.parametrize(
-    ("verb", "field", "name"),
-    [("params", "variant", "traffic"), ("run", "variant", "fusion"), ("synth", "scene", "bridge")],
+    ("verb", "field", "name", "words"),
+    [
+        ("params", "variant", "traffic", ["nope"]),
+        ("run", "variant", "fusion", ["v.mp4", "--variant", "nope"]),
+        ("synth", "scene", "bridge", ["nope", "out"]),
+    ],
 )
-def test_a_shell_completes_names_and_the_verb_refuses_others(capsys, verb, field, name):
+def test_a_shell_completes_names_and_the_verb_refuses_others(capsys, verb, field, name, words):
     """A program that writes completions reads the choices of the parser."""
     module = importlib.import_module(f"vehicle_pf_tracker.cli.{verb}")
     declared = {

@@ -104,22 +104,22 @@ def answer_usage(name: str, words: Sequence[str], usage: str) -> int:
 NodeT = TypeVar("NodeT", bound=Node)
 
 
-def spin_node(
-    make_node: Callable[[], NodeT],
+def spin_nodes(
+    makers: Sequence[Callable[[], NodeT]],
     image_bytes: int,
     spin: Callable[[SingleThreadedExecutor, NodeT], int],
     arguments: Sequence[str],
 ) -> int:
-    """Make a node, run `spin`, and destroy the node.
+    """Make nodes, run `spin`, and destroy the nodes.
 
     Parameters
     ----------
-    make_node : callable
-        Makes the node.
+    makers : sequence of callable
+        Each makes a node.
     image_bytes : int
         Size of the images of which shared memory should have room for some.
     spin : callable
-        Runs the node's callbacks; returns the exit status.
+        Runs the callbacks of all, and logs as the first; returns the exit status.
     arguments : sequence of str
         Command line without the program's name.
 
@@ -128,19 +128,20 @@ def spin_node(
     int
         That of `spin`; 0 where a signal took the ground from under a call.
     """
-    executor, node = SingleThreadedExecutor(), None
+    executor, nodes = SingleThreadedExecutor(), list[NodeT]()
     try:
         with image_transport(image_bytes, rclpy.get_rmw_implementation_identifier()) as notices:
-            node = make_node()
-        for notice in [*notices, *_files_for_others(arguments, node.get_name())]:
-            node.get_logger().warning(notice)
-        executor.add_node(node)
-        return spin(executor, node)
+            for make in makers:
+                nodes.append(make())
+                executor.add_node(nodes[-1])
+        for notice in [*notices, *_files_for_others(arguments, nodes)]:
+            nodes[0].get_logger().warning(notice)
+        return spin(executor, nodes[0])
     except Exception:
         if rclpy.ok():
             raise
     finally:
-        if node is not None:
+        for node in nodes:
             node.destroy_node()
         executor.shutdown()
     return 0
@@ -165,13 +166,17 @@ def _parameter_files(arguments: Sequence[str]) -> Iterator[Path]:
             yield Path(value)
 
 
-def _files_for_others(arguments: Sequence[str], name: str) -> Iterator[str]:
-    """Say which parameter files have nothing for the node `name`: ROS passes over them."""
+def _files_for_others(arguments: Sequence[str], nodes: Sequence[Node]) -> Iterator[str]:
+    """Say which parameter files have nothing for these nodes: ROS passes over them."""
     for path in _parameter_files(arguments):
-        try:
-            read_yaml(path, name)
-        except InputError as error:  # noqa: PERF203 - of a file or two
-            yield str(error)
+        refusals = []
+        for node in nodes:
+            try:
+                read_yaml(path, node.get_name())
+            except InputError as error:  # noqa: PERF203 - of a node or two
+                refusals.append(str(error))
+        if len(refusals) == len(nodes):
+            yield refusals[0]
 
 
 def _fail(name: str, sentence: str) -> int:
