@@ -35,7 +35,7 @@ from vehicle_pf_tracker.cli.console import (
     tell_notices,
 )
 from vehicle_pf_tracker.cli.report import ReportParts
-from vehicle_pf_tracker.cli.requests import MaxDiffOption, TopicOption, option, switch
+from vehicle_pf_tracker.cli.requests import IdOption, MaxDiffOption, TopicOption, option, switch
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
 _GRID_ONLY = (
-    "params", "without_defaults", "baseline_model", "max_rmse", "topic",
+    "params", "without_defaults", "baseline_model", "max_rmse", "topic", "id",
     "shifted_starts", "figures", "write",
 )  # fmt: skip
 """Options of the grid that do not apply."""
@@ -142,7 +142,7 @@ _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "fail
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(TrafficRequest, ReportParts, TopicOption, MaxDiffOption):
+class Request(TrafficRequest, ReportParts, TopicOption, IdOption, MaxDiffOption):
     """Request of `evaluate`."""
 
     shifted_starts: bool = switch(
@@ -177,7 +177,7 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
 def _plan(request: Request, sources: Sequence[str]) -> Plan:
     systems, notes = system_options.chosen(request)
     with stages("evaluate") as on_stage:
-        recordings = describe(sources, request.topic, request.max_diff, on_stage)
+        recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
     tell_notices(notes)
     return Plan(
         dict(recordings),
