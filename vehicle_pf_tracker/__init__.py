@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from vehicle_pf_tracker.core.box import Box
     from vehicle_pf_tracker.core.errors import InputError
+    from vehicle_pf_tracker.offline.library import Estimates, track
     from vehicle_pf_tracker.offline.track_tables import read_counts, read_tracks
     from vehicle_pf_tracker.offline.traffic_library import TrafficTracker
     from vehicle_pf_tracker.recordings.source import open_source
@@ -36,6 +37,7 @@ __version__: str
 __all__ = [
     "Box",
     "Estimate",
+    "Estimates",
     "InputError",
     "Mode",
     "TrafficTracker",
@@ -43,11 +45,13 @@ __all__ = [
     "open_source",
     "read_counts",
     "read_tracks",
+    "track",
 ]
 
 _HOMES = {
     "Box": "core.box",
     "Estimate": "trackers.estimate",
+    "Estimates": "offline.library",
     "InputError": "core.errors",
     "Mode": "trackers.estimate",
     "TrafficTracker": "offline.traffic_library",
@@ -55,6 +59,7 @@ _HOMES = {
     "open_source": "recordings.source",
     "read_counts": "offline.track_tables",
     "read_tracks": "offline.track_tables",
+    "track": "offline.library",
 }
 
 

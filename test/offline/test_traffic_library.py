@@ -35,7 +35,7 @@ from vehicle_pf_tracker.offline.traffic_drawing import identity_colour
 ROOT = Path(__file__).parents[2]
 PROGRAMS = dict(
     re.findall(
-        r"^## (.*?)\n\n```py\n(.*?)```", (ROOT / "docs" / "examples.md").read_text(), re.S | re.M
+        r"^## (.*?)\n```py\n(.*?)```", (ROOT / "docs" / "examples.md").read_text(), re.S | re.M
     )
 )
 GROUND = np.random.default_rng(0).integers(90, 130, (240, 320, 3)).astype(np.uint8)

@@ -24,7 +24,7 @@ from pathlib import Path
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_rows, tell_notices
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
-from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.cli.stopping import Stop, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -80,13 +80,17 @@ def run(request: Request) -> int:
     )  # fmt: skip
     path = request.output or Path("results", Path(request.source).stem or "run")
     outputs = (Products(path, PRODUCTS), request.video, request.recording)
+    stop = Stop()
     with claimed(outputs, (*request.inputs, request.truth), overwrite=request.overwrite):
-        return _track(request, variant, source, RunFolder(path))
+        status = _track(request, variant, source, RunFolder(path), stop)
+    return stop.ended(status)
 
 
-def _track(request: Request, variant: Variant, source: Source, folder: RunFolder) -> int:
+def _track(
+    request: Request, variant: Variant, source: Source, folder: RunFolder, stop: Stop
+) -> int:
     pictures = Pictures(request.video, particles=request.particles)
-    with stopping() as stop, counting("tracked") as progress:
+    with stopping(stop), counting("tracked") as progress:
         (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
         trackers = _trackers(request, variant, source, first, found.stamp_ns)
         recording: AbstractContextManager[OnFrame | None] = nullcontext()

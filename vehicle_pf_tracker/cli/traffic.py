@@ -16,8 +16,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -130,10 +128,7 @@ def run(request: Request) -> int:
     print(f"results are in {folder}; {PICTURE} shows all paths")
     if request.video and not pictures.problem:
         print(f"the video is {request.video}")
-    if stop.has_left:
-        sys.stdout.flush()
-        os._exit(status)
-    return status
+    return stop.ended(status)
 
 
 def _tracking(
