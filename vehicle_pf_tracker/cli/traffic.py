@@ -41,7 +41,7 @@ from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import RUN, RunInfo, describe
 from vehicle_pf_tracker.offline.traffic_following import TrafficRun
 from vehicle_pf_tracker.offline.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
-from vehicle_pf_tracker.recordings.source import Source, open_source
+from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
@@ -108,7 +108,7 @@ def run(request: Request) -> int:
     detections = DetectionFile(request.detections) if request.detections else None
     stop = Stop()
     tracking = _tracking(request, configuration, detections, stop)
-    source = open_source(request.source, topic=request.topic, fps=request.fps)
+    source = request.open_source()
     folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
