@@ -34,7 +34,6 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.offline.detectors import DetectionFile
-from vehicle_pf_tracker.offline.driver import is_road_given
 from vehicle_pf_tracker.offline.live_page import live_page
 from vehicle_pf_tracker.offline.model_files import model_file
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
@@ -142,12 +141,10 @@ def _tracking(
             "without a detector nothing is followed; give vehicles with --target x,y,w,h, or "
             "--detections FILE"
         )
-    road = configuration.session.road
-    plane = road.plane(road.lens, road.pose) if is_road_given(road) else None
     is_network = parameters.detector.kind == MODEL
     leavable = (lambda one: _LeavableDetector(one, stop)) if is_network else (lambda one: one)
     with shown_progress() as show:
-        parts = session_and_counter(configuration, plane, leavable, show)
+        parts = session_and_counter(configuration, leavable, show)
     return TrafficRun(*parts, detections_of=detections.of if detections is not None else None)
 
 
