@@ -67,6 +67,20 @@ def test_a_start_in_another_package_counts_with_what_it_imports_from_both(root):
         file.write_text(kept)
 
 
+@pytest.mark.parametrize("name", ["plugged", "plugged.cells"])
+def test_a_plug_in_counts_where_it_is_installed(root, tmp_path_factory, monkeypatch, name):
+    site = tmp_path_factory.mktemp("site")
+    file = site.joinpath(*name.split(".")).with_suffix(".py")
+    file.parent.mkdir(exist_ok=True)
+    monkeypatch.syspath_prepend(site)
+    result_store._home.cache_clear()
+    digests = []
+    for text in ("import made.start\n", "import made.start\nX = 1\n", "import made.other\n"):
+        file.write_text(text)
+        digests.append(digest(root, name))
+    assert len(set(digests)) == 3
+
+
 def test_what_is_not_imported_does_not_count(root):
     before = digest(root, "made.start")
     (root / "made" / "other.py").write_text("Y = 2\n")

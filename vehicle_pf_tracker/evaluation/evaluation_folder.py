@@ -58,6 +58,8 @@ class Source:
         Number of images, and their size in px.
     digest : str
         SHA-256 of its content.
+    identity : int or None
+        Number of the target, where the truth has several.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Source:
     width: int
     height: int
     digest: str
+    identity: int | None = None
 
 
 COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
@@ -260,7 +263,7 @@ def read_document(path: Path) -> dict[str, Any]:
 def _source(entry: Mapping[str, Any]) -> Source:
     name, path, topic, digest = (str(entry[key]) for key in ("name", "path", "topic", "digest"))
     frames, width, height = (int(entry[key]) for key in ("frames", "width", "height"))
-    return Source(name, path, topic, frames, width, height, digest)
+    return Source(name, path, topic, frames, width, height, digest, entry.get("identity"))
 
 
 def _system(entry: Mapping[str, Any], seeds: Sequence[int]) -> SystemEntry:

@@ -27,6 +27,7 @@ import json
 import os
 import platform
 from collections.abc import Iterable, Iterator, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -168,8 +169,17 @@ def _targets(node: ast.AST) -> Iterator[str]:
 
 
 def _path(name: str, root: Path) -> Path | None:
-    base = root.joinpath(*name.split("."))
+    base = _home(name.partition(".")[0], root).joinpath(*name.split("."))
     for path in (base.with_suffix(".py"), base / "__init__.py"):
         if path.is_file():
             return path
     return None
+
+
+@functools.cache
+def _home(package: str, root: Path) -> Path:
+    """Return the folder that a package lies in: `root`, or where a plug-in was installed."""
+    spec = None if Path(root, package).exists() else find_spec(package)
+    if spec is None:
+        return root
+    return Path(next(iter(spec.submodule_search_locations or [spec.origin or ""]))).parent
