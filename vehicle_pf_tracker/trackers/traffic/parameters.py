@@ -184,8 +184,8 @@ class TrafficParameters:
     )  # fmt: skip
     page_port: int = parameter(
         -1,
-        "Port of a page with picture and counts, for browsers of this machine; 0: any free one, -1: "
-        "no page.",
+        "Port of a page with picture and counts, for browsers of this machine; 0: any free one, "
+        "-1: no page.",
         bounds=(-1, 65535), read_only=True,
     )  # fmt: skip
     detector: DetectorParameters = group(DetectorParameters)
