@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 from vehicle_pf_tracker.image import kernels
 from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections, direction_bins
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.kernels.choice import CHOICES, load_kernels
+from vehicle_pf_tracker.image.kernels.interface import CHOICES, load_kernels
 from vehicle_pf_tracker.parameters.table import Effect, group, parameter
 
 
