@@ -34,7 +34,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell, VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.grid.running import Runner
-from vehicle_pf_tracker.evaluation.result_store import ResultStore, scoring_digest
+from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.search_space import Dimension, Objective
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
 from vehicle_pf_tracker.evaluation.tables import NOTHING, csv_text
@@ -96,7 +96,7 @@ class SearchTask:
 
     def key(self, cell: GridCell) -> str:
         """Return the key of a run's score."""
-        return f"{self.objective.metric}-{scoring_digest()[:16]}-{cell.key()}"
+        return f"{self.objective.metric}-{cell.key()}"
 
 
 class Trial(NamedTuple):
