@@ -89,13 +89,13 @@ def check(request: TrafficRequest) -> None:
 
 def run_traffic(request: TrafficRequest) -> int:
     """Run the comparison, write its report, and print its tables."""
-    from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
     from vehicle_pf_tracker.evaluation.traffic.comparison import (
         NAME,
         cases_of,
         compare,
         write_traffic_report,
     )
+    from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
     from vehicle_pf_tracker.parameters.configuration import Configuration
     from vehicle_pf_tracker.trackers.registry import TRAFFIC

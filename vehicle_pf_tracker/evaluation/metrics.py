@@ -31,13 +31,14 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.evaluation.occlusions import (
+from vehicle_pf_tracker.evaluation.scores import (
     CLOSE_PX,
+    FrameScore,
     OcclusionScore,
+    Scores,
     count_failures,
     score_occlusions,
 )
-from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING
 from vehicle_pf_tracker.trackers.estimate import Mode
 

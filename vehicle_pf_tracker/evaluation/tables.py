@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
-from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
+from vehicle_pf_tracker.evaluation.scores import OcclusionScore
 
 NOTHING = "-"
 Rows: TypeAlias = list[list[str]]

@@ -39,13 +39,13 @@ from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
 from vehicle_pf_tracker.recordings.importing import jpeg
-from vehicle_pf_tracker.recordings.messages import as_token
-from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.recordings.topics import (
+from vehicle_pf_tracker.recordings.messages import (
     DIAGNOSTIC_ARRAY,
     POINT_STAMPED,
     POLYGON_STAMPED,
+    as_token,
 )
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.estimate import Mode
 

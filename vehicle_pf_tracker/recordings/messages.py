@@ -30,17 +30,26 @@ from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings.cdr import message_class
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
-from vehicle_pf_tracker.recordings.topics import (
-    CAMERA_FRAME,
-    COMPRESSED_IMAGE,
-    DIAGNOSTIC_ARRAY,
-    IMAGE,
-    POINT_STAMPED,
-    POLYGON_STAMPED,
-    TRUTH_BOX_TOPIC,
-    TRUTH_MODE_TOPIC,
-    TRUTH_POSITION_TOPIC,
-)
+
+IMAGE_TOPIC = "/camera/image_raw"
+COMPRESSED_TOPIC = "/camera/image_raw/compressed"
+TRUTH_POSITION_TOPIC = "/ground_truth/position"
+TRUTH_BOX_TOPIC = "/ground_truth/box"
+TRUTH_MODE_TOPIC = "/ground_truth/mode"
+TRUTH_TOPICS = (TRUTH_POSITION_TOPIC, TRUTH_BOX_TOPIC, TRUTH_MODE_TOPIC)
+
+IMAGE = "sensor_msgs/msg/Image"
+COMPRESSED_IMAGE = "sensor_msgs/msg/CompressedImage"
+POINT_STAMPED = "geometry_msgs/msg/PointStamped"
+POLYGON_STAMPED = "geometry_msgs/msg/PolygonStamped"
+DIAGNOSTIC_ARRAY = "diagnostic_msgs/msg/DiagnosticArray"
+
+IMAGE_TYPES = (IMAGE, COMPRESSED_IMAGE)
+STAMPED_TYPES = (*IMAGE_TYPES, POINT_STAMPED, POLYGON_STAMPED, DIAGNOSTIC_ARRAY)
+"""Types that begin with a header, of those in our recordings."""
+
+CAMERA_FRAME = "camera"
+"""The `frame_id` of everything in our recordings."""
 
 
 def as_token(name: str) -> str:

@@ -32,9 +32,9 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
+from vehicle_pf_tracker.evaluation.scores import SETTLING_FRAMES
 from vehicle_pf_tracker.offline.drawing import draw_box, write_words
 from vehicle_pf_tracker.recordings.source import open_source
 

@@ -39,8 +39,12 @@ from vehicle_pf_tracker.evaluation.tables import (
     csv_text,
     markdown,
 )
-from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
-from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
+from vehicle_pf_tracker.evaluation.traffic.scoring import (
+    TRAFFIC_BASELINES,
+    TrafficWorker,
+    counts,
+    kept_identities,
+)
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.offline.run_folder import versions

@@ -30,7 +30,6 @@ from collections.abc import Sequence
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image import gradient_cells, mean_shift, spectra
-from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Coefficients, Positions, Window, WindowFeature
 
@@ -57,6 +56,8 @@ class Kernels:
 
     gradient_cells = staticmethod(gradient_cells.gradient_cells)
     correlated = staticmethod(spectra.correlated)
+    kernel_similarity = staticmethod(mean_shift.kernel_similarity)
+    mean_shift = staticmethod(mean_shift.mean_shift)
 
     def __init__(self, notices: Sequence[str] = ()) -> None:
         self.notices = notices
@@ -90,29 +91,6 @@ class Kernels:
             Bhattacharyya coefficients, 0 to 1.
         """
         return feature.similarity(frame, positions, window, reference)
-
-    def kernel_similarity(
-        self,
-        feature: JointColour,
-        frame: Frame,
-        positions: Positions,
-        window: Window,
-        reference: Reference,
-    ) -> Coefficients:
-        """Compare kernel-weighted histograms with a reference; see `image.mean_shift`."""
-        histogram = reference.histogram
-        return mean_shift.kernel_similarity(frame, positions, window, histogram, feature.bits)
-
-    def mean_shift(
-        self,
-        feature: JointColour,
-        frame: Frame,
-        positions: Positions,
-        window: Window,
-        reference: Reference,
-    ) -> Positions:
-        """Move every position one mean-shift step; see `image.mean_shift`."""
-        return mean_shift.mean_shift(frame, positions, window, reference.histogram, feature.bits)
 
 
 CHOICES = ("auto", "opencv", "numba")

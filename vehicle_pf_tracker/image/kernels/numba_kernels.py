@@ -174,6 +174,34 @@ _COUNTED_PIXELS = {JointColour, RgbMarginals, Cooccurrence}
 """Features of which each pixel counts equally in all windows."""
 
 
+def kernel_similarity(
+    frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
+) -> Coefficients:
+    """Compare kernel-weighted histograms; see `image.mean_shift`."""
+    return compare_kernels(*_ellipses(frame, positions, window, reference, bits))
+
+
+def mean_shift(
+    frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
+) -> Positions:
+    """Move every position one mean-shift step; see `image.mean_shift`."""
+    arguments = _ellipses(frame, positions, window, reference, bits)
+    steps = shift_kernels(*arguments)
+    return np.where(np.isnan(steps), positions, arguments[1] + 0.5 + steps)
+
+
+def _ellipses(
+    frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
+) -> tuple[Cells, Pixels, tuple[int, int], Offsets, Ellipse]:
+    """Return the arguments of `compare_kernels`."""
+    placement = Placement.of(JointColour(bits), frame, positions, window)
+    table = table_of(reference)
+    left, top, right, bottom = placement.covered()
+    cells = joint_cells(frame[top:bottom, left:right], bits, table.cells)
+    offsets, profile = ellipse(window)
+    return cells, placement.pixels, (left, top), offsets, (profile, table.values)
+
+
 class NumbaKernels(Kernels):
     """Compiled kernels; importing this module compiles them, or loads what was compiled before."""
 
@@ -181,6 +209,8 @@ class NumbaKernels(Kernels):
 
     gradient_cells = staticmethod(numba_correlation.gradient_cells)
     correlated = staticmethod(numba_correlation.correlated)
+    kernel_similarity = staticmethod(kernel_similarity)
+    mean_shift = staticmethod(mean_shift)
 
     def __init__(self) -> None:
         super().__init__(numba_jit.notices())
@@ -200,31 +230,6 @@ class NumbaKernels(Kernels):
         if _counts_edges(feature):
             return _compare_edges(feature, frame, positions, window, table_of(reference))
         return super().similarity(feature, frame, positions, window, reference)
-
-    def kernel_similarity(
-        self,
-        feature: JointColour,
-        frame: Frame,
-        positions: Positions,
-        window: Window,
-        reference: Reference,
-    ) -> Coefficients:
-        """Compare; see `Kernels.kernel_similarity`."""
-        placement = Placement.of(feature, frame, positions, window)
-        return compare_kernels(*_ellipses(feature, frame, placement, window, reference))
-
-    def mean_shift(
-        self,
-        feature: JointColour,
-        frame: Frame,
-        positions: Positions,
-        window: Window,
-        reference: Reference,
-    ) -> Positions:
-        """Move; see `Kernels.mean_shift`."""
-        placement = Placement.of(feature, frame, positions, window)
-        steps = shift_kernels(*_ellipses(feature, frame, placement, window, reference))
-        return np.where(np.isnan(steps), positions, placement.pixels + 0.5 + steps)
 
 
 def _counts_edges(feature: WindowFeature) -> TypeGuard[GradientDirections]:
@@ -278,14 +283,3 @@ def _compare_edges(
         counts,
     )
     return compare_counts(counts, totals, (table.values, roots_up_to(window.width * window.height)))
-
-
-def _ellipses(
-    feature: JointColour, frame: Frame, placement: Placement, window: Window, reference: Reference
-) -> tuple[Cells, Pixels, tuple[int, int], Offsets, Ellipse]:
-    """Return the arguments of `compare_kernels`."""
-    table = table_of(reference)
-    left, top, right, bottom = placement.covered()
-    cells = joint_cells(frame[top:bottom, left:right], feature.bits, table.cells)
-    offsets, profile = ellipse(window)
-    return cells, placement.pixels, (left, top), offsets, (profile, table.values)

@@ -47,14 +47,14 @@ from vehicle_pf_tracker.trackers.papers.clear_level import (
     ClearLevel,
     ClearLevelParameters,
 )
-from vehicle_pf_tracker.trackers.papers.likelihood import (
+from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
+    MeanVelocity,
     as_printed_switch,
     histogram_bits_parameter,
     log_likelihood,
     resampling_parameter,
 )
-from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.parameters import ParticleParameters, share
 
 

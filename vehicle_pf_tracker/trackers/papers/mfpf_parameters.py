@@ -24,7 +24,7 @@ from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
 from vehicle_pf_tracker.image.window import WindowFeature
 from vehicle_pf_tracker.parameters.table import group, parameter
-from vehicle_pf_tracker.trackers.papers.likelihood import (
+from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
     as_printed_switch,
     resampling_parameter,

@@ -39,13 +39,13 @@ from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.papers.likelihood import (
+from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
+    MeanVelocity,
     histogram_bits_parameter,
     log_likelihood,
     resampling_parameter,
 )
-from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.parameters import ParticleParameters
 
 VELOCITY_WINDOW = 8

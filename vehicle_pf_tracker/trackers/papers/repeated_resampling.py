@@ -40,12 +40,12 @@ from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.likelihood import (
+from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
     as_printed_switch,
     log_likelihood,
 )
-from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.parameters import share
 
 
