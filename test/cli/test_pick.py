@@ -31,7 +31,7 @@ from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.pick import BOXES, FrameStore, PickingServer
 from vehicle_pf_tracker.cli.tracking_options import read_targets
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.recordings.importing import jpeg
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import open_source
 

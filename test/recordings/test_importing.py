@@ -149,7 +149,7 @@ def test_faulty_truth_is_named(frame_folder, tmp_path, truth, said):
 def test_truth_that_is_no_text_is_named(frame_folder, tmp_path):
     folder = frame_folder()
     (folder / "groundtruth.csv").write_bytes(b"\xff\xfe\x00\x80")
-    with pytest.raises(InputError, match="not a text table"):
+    with pytest.raises(InputError, match="is not text"):
         import_recording(folder, tmp_path / "bag")
 
 

@@ -39,11 +39,11 @@ from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, opti
 from vehicle_pf_tracker.cli.tracking_options import TargetOption, read_list
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.outputs import claimed
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.drawing import draw_pixel_grid
 from vehicle_pf_tracker.offline.output_files import write_picture, write_text
 from vehicle_pf_tracker.offline.pictures import has_display
 from vehicle_pf_tracker.parameters.road import format_pairs
-from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source, frame_at, open_source
 from vehicle_pf_tracker.road.plane import Pair

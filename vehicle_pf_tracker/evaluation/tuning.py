@@ -37,7 +37,8 @@ from vehicle_pf_tracker.evaluation.grid.running import Runner
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.search_space import Dimension, Objective
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
-from vehicle_pf_tracker.evaluation.tables import NOTHING, csv_text
+from vehicle_pf_tracker.evaluation.tables import NOTHING
+from vehicle_pf_tracker.offline.output_files import csv_text
 from vehicle_pf_tracker.offline.processes import OnProgress
 from vehicle_pf_tracker.parameters.table import Value
 

@@ -27,6 +27,7 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.drawing import (
     COLOURS,
     NEUTRAL,
@@ -38,7 +39,6 @@ from vehicle_pf_tracker.offline.drawing import (
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
-from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.messages import (
     DIAGNOSTIC_ARRAY,
     POINT_STAMPED,

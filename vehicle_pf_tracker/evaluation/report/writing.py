@@ -48,8 +48,8 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredRun,
     score_folder,
 )
-from vehicle_pf_tracker.evaluation.tables import csv_text, markdown
-from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.evaluation.tables import markdown
+from vehicle_pf_tracker.offline.output_files import csv_text, make_folder, write_json, write_text
 from vehicle_pf_tracker.trackers.estimate import Mode
 
 ALL_RECORDINGS = "(all)"

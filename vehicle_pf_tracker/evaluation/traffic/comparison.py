@@ -36,7 +36,6 @@ from vehicle_pf_tracker.evaluation.tables import (
     Header,
     Table,
     TableCell,
-    csv_text,
     markdown,
 )
 from vehicle_pf_tracker.evaluation.traffic.scoring import (
@@ -46,7 +45,7 @@ from vehicle_pf_tracker.evaluation.traffic.scoring import (
     kept_identities,
 )
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
-from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.offline.output_files import csv_text, make_folder, write_json, write_text
 from vehicle_pf_tracker.offline.run_folder import versions
 from vehicle_pf_tracker.offline.traffic_results import IN_TRACKS, Backdating, Frames
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
