@@ -68,6 +68,11 @@ class Source:
     digest: str
 
 
+FORMAT = 2
+"""Format of the folder; folders of another format are refused."""
+PLAN, FAILED = "evaluation.json", "failed.json"
+TRUTH = "truth.csv"
+
 _SOURCE: Mapping[str, type] = {
     "name": str, "path": str, "topic": str, "frames": int, "width": int, "height": int,
     "digest": str,
@@ -114,12 +119,6 @@ def _row(path: Path, number: int, line: Sequence[str]) -> tuple[int, Truth]:
         return int(frame), Truth(int(stamp_ns), box, Occlusion[occlusion.upper()])
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"line {number} of the truth {path} is broken: {error}") from error
-
-
-FORMAT = 2
-"""Format of the folder; folders of another format are refused."""
-PLAN, FAILED = "evaluation.json", "failed.json"
-TRUTH = "truth.csv"
 
 
 @dataclass(frozen=True, slots=True)

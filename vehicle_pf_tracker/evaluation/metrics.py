@@ -42,6 +42,11 @@ from vehicle_pf_tracker.evaluation.scores import (
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING
 from vehicle_pf_tracker.trackers.estimate import Mode
 
+PRECISION_PX = 20.0
+"""Threshold of the precision that the OTB benchmark ranks by."""
+NORMALISED_PRECISION = 0.2
+"""Threshold of the normalised precision that the LaSOT benchmark ranks by."""
+
 PRECISION_THRESHOLDS: Array = np.arange(51, dtype=np.float64)
 """Errors of the centre in px: 0, 1, ... 50."""
 SUCCESS_THRESHOLDS: Array = np.linspace(0.0, 1.0, 21)
@@ -107,12 +112,6 @@ def _at_most(errors: Sequence[float | None], thresholds: Array) -> Curve | None:
         return None
     known = np.array([np.inf if error is None else error for error in errors])
     return Curve(thresholds, (known[:, None] <= thresholds).mean(axis=0))
-
-
-PRECISION_PX = 20.0
-"""Threshold of the precision that the OTB benchmark ranks by."""
-NORMALISED_PRECISION = 0.2
-"""Threshold of the normalised precision that the LaSOT benchmark ranks by."""
 
 
 @dataclass(frozen=True, slots=True)

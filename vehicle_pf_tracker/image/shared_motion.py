@@ -39,38 +39,6 @@ Points: TypeAlias = npt.NDArray[np.float32]
 """x, y in px as OpenCV counts them, the middle of the first pixel being 0, shape (N, 2)."""
 Found: TypeAlias = npt.NDArray[np.bool_]
 
-AGREEING_PX = 0.7
-"""Residual of a corner that agrees with the motion, in px of the reduced frame."""
-LEAST_CORNERS = 6
-"""Fewest corners that four numbers are fitted to."""
-STILL_SHARE = 0.5
-"""Share of corners at rest from which the camera stands: a lorry moves many, not half."""
-FITS = 5
-"""Reweighted fits; the weights change little after the third."""
-TURN_FITS = 2
-"""Fits of the turn: one for all, and one in which those that strayed from it count less."""
-TURN_INERTIA = 0.3
-"""Resistance of the turn's fit, as the sum of the squared places of five points: the few that an
-occluder leaves must not turn all."""
-FEWEST_POINTS = 12
-"""Fewest tracked points that tell a change of size."""
-APART = 0.25
-"""Least distance of two points that tell a change of size, of the size."""
-LARGEST_STRETCH = 0.05
-"""Bound of the change of log size per frame."""
-LEAST_RATIO = 0.2
-"""Bound of the ratio of two distances, whose logarithm is taken."""
-
-CELL = 4
-"""Px between points of a surface: dense flow is no finer."""
-STRAYED_PX = 3.0
-"""Distance in px from where its vehicle would have taken it, from which a point has moved on its
-own: what a second occluder drives, or flow that has failed."""
-FEWEST_CARRIED = 8
-"""Fewest points that a turn is fitted to."""
-NEARLY = 1.3
-"""Factor to the limits within which points take part in the fit of the turn."""
-
 
 @dataclass(frozen=True, slots=True)
 class PointFlow:
@@ -135,6 +103,39 @@ class PointFlow:
         back = None if guess is None else points
         again, returned = self.follow(after, before, moved, back)
         return moved, found & returned, again - points
+
+
+AGREEING_PX = 0.7
+"""Residual of a corner that agrees with the motion, in px of the reduced frame."""
+LEAST_CORNERS = 6
+"""Fewest corners that four numbers are fitted to."""
+STILL_SHARE = 0.5
+"""Share of corners at rest from which the camera stands: a lorry moves many, not half."""
+FITS = 5
+"""Reweighted fits; the weights change little after the third."""
+TURN_FITS = 2
+"""Fits of the turn: one for all, and one in which those that strayed from it count less."""
+TURN_INERTIA = 0.3
+"""Resistance of the turn's fit, as the sum of the squared places of five points: the few that an
+occluder leaves must not turn all."""
+FEWEST_POINTS = 12
+"""Fewest tracked points that tell a change of size."""
+APART = 0.25
+"""Least distance of two points that tell a change of size, of the size."""
+LARGEST_STRETCH = 0.05
+"""Bound of the change of log size per frame."""
+LEAST_RATIO = 0.2
+"""Bound of the ratio of two distances, whose logarithm is taken."""
+
+CELL = 4
+"""Px between points of a surface: dense flow is no finer."""
+STRAYED_PX = 3.0
+"""Distance in px from where its vehicle would have taken it, from which a point has moved on its
+own: what a second occluder drives, or flow that has failed."""
+FEWEST_CARRIED = 8
+"""Fewest points that a turn is fitted to."""
+NEARLY = 1.3
+"""Factor to the limits within which points take part in the fit of the turn."""
 
 
 def shared_similarity(before: Array, after: Array) -> Array:

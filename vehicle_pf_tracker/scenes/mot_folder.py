@@ -40,6 +40,13 @@ _FALSE_SCORE = 0.35
 """Mean score of false alarms: some are as high as those of vehicles."""
 
 
+LEAST_SIDE = 8.0
+"""Sides of a box inside the image, px, below which a vehicle has no truth but is ignored."""
+
+
+OCCLUDERS_HEADER = "frame,id,depth,hidden_by,share"
+
+
 @dataclass(frozen=True, slots=True)
 class SimulatedDetector:
     """A detector.
@@ -175,11 +182,6 @@ def false_alarm(size: tuple[int, int], rng: np.random.Generator) -> tuple[Array,
     mean = _FALSE_SCORE
     score = rng.beta(_CONCENTRATION * mean, _CONCENTRATION * (1 - mean))
     return np.array([left, top, width, height]), float(score)
-
-
-OCCLUDERS_HEADER = "frame,id,depth,hidden_by,share"
-LEAST_SIDE = 8.0
-"""Sides of a box inside the image, px, below which a vehicle has no truth but is ignored."""
 
 
 def write_mot_folder(

@@ -45,6 +45,9 @@ from vehicle_pf_tracker.scenes.compositing import (
 FIRST_STAMP_NS = 1_000_000_000
 """Stamp of frame 0: a stamp of zero means "unknown" to many tools."""
 
+MARGIN = 12
+"""Stage around the image, px on each side: room for the camera to shake."""
+
 Path: TypeAlias = Callable[[float], Box]
 """Gives the box (px) a sprite fills at a frame number, counted from 0."""
 Look: TypeAlias = Callable[[float], Sprite]
@@ -196,10 +199,6 @@ def _quantised(picture: Image) -> Frame:
     np.rint(picture, out=picture)
     np.clip(picture, 0, 255, out=picture)
     return picture.astype(np.uint8)
-
-
-MARGIN = 12
-"""Stage around the image, px on each side: room for the camera to shake."""
 
 
 @dataclass(frozen=True, slots=True)
