@@ -167,25 +167,18 @@ def judge(
 
 
 class _Recorder(MotionDetector):
-    """Keeps what it finds as rows."""
+    """Keeps frame, left, top, width, height and score of all that moved."""
 
     def __init__(self) -> None:
         super().__init__()
-        self._found: list[Detections] = []
+        self.rows: list[Array] = []
 
     def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
         """Find what moves."""
-        self._found.append(super().detect(frame, tracks))
-        return self._found[-1]
-
-    def rows(self) -> Array:
-        """Return frame, left, top, width, height and score of all that moved."""
-        return np.vstack(
-            [
-                np.column_stack([np.full(len(found.scores), number), found.boxes, found.scores])
-                for number, found in enumerate(self._found, start=1)
-            ]
-        )
+        found = super().detect(frame, tracks)
+        numbers = np.full(len(found.scores), len(self.rows) + 1)
+        self.rows.append(np.column_stack([numbers, found.boxes, found.scores]))
+        return found
 
 
 def follow(
@@ -224,7 +217,8 @@ def follow(
         tracks += _rows(backdating.add(number, 0, estimates))
     tracks += _rows(backdating.rest())
     rows = np.array(tracks, dtype=np.float64).reshape(-1, 6)
-    return rows, recorder.rows() if given is None else given, seconds / sequence.frame_count
+    detected = np.vstack(recorder.rows) if given is None else given
+    return rows, detected, seconds / sequence.frame_count
 
 
 def _rows(frames: Frames) -> list[list[float]]:
@@ -240,17 +234,10 @@ NAME = "traffic"
 """Name of the files without their suffix."""
 
 COLUMNS: Mapping[str, tuple[str, int]] = {
-    "HOTA": ("HOTA", 1),
-    "DetA": ("DetA", 1),
-    "AssA": ("AssA", 1),
-    "IDF1": ("IDF1", 1),
-    "MOTA": ("MOTA", 1),
-    "IDSW": ("switches", 1),
-    "Frag": ("fragm.", 1),
-    "kept": ("identity kept", 0),
-    "count_error": ("count error", 1),
-    "step_ms": ("ms", 1),
-}
+    **{name: (name, 1) for name in ("HOTA", "DetA", "AssA", "IDF1", "MOTA")},
+    "IDSW": ("switches", 1), "Frag": ("fragm.", 1), "kept": ("identity kept", 0),
+    "count_error": ("count error", 1), "step_ms": ("ms", 1),
+}  # fmt: skip
 """Measures, with their headings and decimals."""
 _LOWER_IS_BETTER = ("IDSW", "Frag", "step_ms")
 
